@@ -7,6 +7,7 @@ from typing import Optional
 
 import zmq
 import zmq.auth.thread
+import zmq.utils.monitor
 
 _LONGEST = 128 << 20  # [bytes]: twice a controller's limit; above, the connection is closed (T4)
 _REBINDING = 5.0  # [s] until a port is free again
@@ -41,6 +42,8 @@ class ServerSocket:
             port = probe.getsockname()[1]
         self.endpoint = f"tcp://127.0.0.1:{port}"
         self._socket: Optional[zmq.Socket] = None
+        self._monitor: Optional[zmq.Socket] = None
+        self._connected: set[int] = set()  # descriptors
         if listens:
             self.open()
 
@@ -51,6 +54,8 @@ class ServerSocket:
         if self._secret_key is not None:
             self._socket.curve_secretkey = self._secret_key
             self._socket.curve_server = True
+        self._connected = set()
+        self._monitor = self._socket.get_monitor_socket(zmq.EVENT_ACCEPTED | zmq.EVENT_DISCONNECTED)
         deadline = time.monotonic() + _REBINDING
         while True:
             try:
@@ -63,8 +68,18 @@ class ServerSocket:
 
     def close(self) -> None:
         """Ends all connections."""
-        if self._socket is not None:
+        if self._socket is not None and not self._socket.closed:
+            self._socket.disable_monitor()
+            self._monitor.close(linger=0)
             self._socket.close()
+
+    def connections(self) -> int:
+        """How many there are now."""
+        while self._monitor.poll(0):
+            event = zmq.utils.monitor.recv_monitor_message(self._monitor)
+            change = self._connected.add if event["event"] == zmq.EVENT_ACCEPTED else self._connected.discard
+            change(event["value"])
+        return len(self._connected)
 
     def destroy(self) -> None:
         self.close()
@@ -76,6 +91,7 @@ class ServerSocket:
         if self._socket is None:
             time.sleep(max(0.0, seconds))
             return None
+        self.connections()  # no more events wait than those of one call
         if not self._socket.poll(max(0, int(1000 * seconds))):
             return None
         first, *frames = self._socket.recv_multipart(copy=False)

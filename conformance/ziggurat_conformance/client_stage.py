@@ -1,6 +1,5 @@
 """Where cases for clients are played: a server's socket, and a controller program that connects to it."""
 
-import base64
 import os
 import subprocess
 import tempfile
@@ -10,6 +9,7 @@ from typing import Any, Optional
 
 from . import wire
 from .case import Case, Failed, NonStrict, Unimplemented
+from .client_bytes import client_message, form_of
 from .client_robots import readings, robot
 from .client_socket import PlainGreeter, ServerSocket
 from .client_steps import (CheckClient, Cut, Ends, HearCorrection, HearFrom, HearLate, HearResume, Listen,
@@ -18,8 +18,8 @@ from .keys import LATE_SERVER, MISLED, PLAIN_SERVER, RESTARTED, SPACED_FILE, UNL
 from .peer import Transcript
 from .rules.fault import Fault, musts
 from .rules.observation import time_of
+from .rules.secret import is_sent_astray, is_told
 from .rules.session import Session, State
-from .rules.text_form import strict_json
 from .scene_robots import SceneRobots
 from .wire import protocol
 
@@ -120,7 +120,7 @@ class ClientStage:
     def _prints_token(self) -> bool:
         self._output.seek(0)
         printed = self._output.read(4 << 20)
-        return any(form in printed for form in (_TOKEN, _TOKEN.hex().encode(), base64.b64encode(_TOKEN)))
+        return is_told(_TOKEN, printed)
 
     def _play(self, steps: tuple) -> None:
         for step in steps:
@@ -276,6 +276,10 @@ class ClientStage:
         if not found:
             raise Unimplemented("it does not connect with the keys that it was given (T10)")
 
+    def connections(self) -> int:
+        """For checks."""
+        return self._socket.connections()
+
     # ---- messages ----------------------------------------------------------------------------------
 
     def receive(self, seconds: float) -> Optional[protocol.ClientMessage]:
@@ -328,26 +332,21 @@ class ClientStage:
         if size > limit:
             raise Failed(f"the client sent {size} bytes; at most {limit} are allowed (T4)")
         self.routing_id, self.key = arrival.routing_id, arrival.key
-        message = self._decoded(arrival.frames[0].bytes)
+        data = arrival.frames[0].bytes
+        message = self._decoded(data)
         self.transcript.add("client", "──▶", wire.text_of(message))
+        if is_sent_astray(_TOKEN, message, data):
+            raise Failed(f"its {wire.kind_of(message) or 'message'} has the token of its session, which is a secret (T10)")
         return message
 
     def _decoded(self, data: bytes) -> protocol.ClientMessage:
-        form = wire.JSON if data[:1] == b"{" else wire.BINARY
+        form = form_of(data)
         expected = self.options.form or self.form or form
         if form != expected:
             why = "--form asks for it" if self.options.form else "its session began so"
             raise Failed(f"the client sent a message in the {form} form; {expected} is expected: {why} (T6)")
         self.form = form
-        try:
-            if form == wire.JSON:
-                strict_json(data)
-            return wire.decode(protocol.ClientMessage, data, form)
-        except ValueError as error:
-            if form == wire.BINARY and data.lstrip(b" \t\r\n\xef\xbb\xbf")[:1] == b"{":
-                error = "JSON that does not begin with `{`: nothing may stand before it"
-                form = wire.JSON
-            raise Failed(f"the client sent {error} ({'T6' if form == wire.JSON else 'T2, T5'})") from None
+        return client_message(data)
 
     def _count(self, message: protocol.ClientMessage) -> None:
         """Messages other than Commands, as M7 counts them."""

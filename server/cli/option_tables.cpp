@@ -25,7 +25,8 @@ void add_lua_limits(po::options_description& options) {
   options.add_options()                                                                   //
       ("lua-memory", text("MIB"), "largest memory of a robot's Lua script; default 256")  //
       ("lua-instructions", text("MILLIONS"),
-       "most Lua instructions of a robot at one tick, in millions; default 1000");
+       "most Lua instructions of a robot at one tick, in millions; default 1000")  //
+      ("lua-time", text("SECONDS"), "most processor time of a robot's Lua script at one tick; default 20");
 }
 
 po::options_description scene_options() {

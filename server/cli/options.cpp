@@ -64,7 +64,8 @@ std::vector<std::string> lua_arguments(const Values& values) {
   std::vector<std::string> arguments;
   if (values.has("trust-scripts")) arguments.emplace_back("--trust-scripts");
   for (const auto& [option, passed] : {std::pair{"lua-memory", "--max-memory"},
-                                       std::pair{"lua-instructions", "--max-instructions"}}) {
+                                       std::pair{"lua-instructions", "--max-instructions"},
+                                       std::pair{"lua-time", "--max-time"}}) {
     if (!values.has(option)) continue;
     constexpr std::uint64_t most = std::uint64_t{1} << 20;
     const auto number = text::to_integer(std::string("--") + option, values.text(option));

@@ -178,26 +178,26 @@ class Keys(SceneTest):
 
     def test_scripts_change_no_file_of_the_run_and_read_no_secret_key(self):
         """Whatever these files are called; the scene starts programs, and the list decides who may connect."""
-        scene = self.write("arms.scene", self.text.replace("<framework>", '<include file="more.part"/><framework>')
-                           .replace("swing.lua", "swing.script"))
-        self.write("more.part", "<more/>")
+        scene = self.write("arms.txt", self.text.replace("<framework>", '<include file="more.dat"/><framework>')
+                           .replace("swing.lua", "swing.log"))
+        self.write("more.dat", "<more/>")
         listed = self.keygen("server")
-        self.write("clients", f"{listed} controller\n")
-        self.write("swing.script", """function init()
-   for _, name in ipairs{"arms.scene", "more.part", "swing.script", "clients", "server.secret", "hashes", "x.LUA", "notes"} do
+        self.write("clients.txt", f"{listed} controller\n")
+        self.write("swing.log", """function init()
+   for _, name in ipairs{"arms.txt", "more.dat", "swing.log", "clients.txt", "server.secret", "hashes.csv", "x.LUA", "notes.txt"} do
       local reads, appends = io.open(name), io.open(name, "a")
-      log(name, reads and " is read" or "", appends and " is written" or "", os.rename("data", name) and " is replaced" or "",
+      log(name, reads and " is read" or "", appends and " is written" or "", os.rename("data.txt", name) and " is replaced" or "",
           os.remove(name) and " is removed" or "")
    end
 end
 function step() end""")
-        self.write("data", "")
+        self.write("data.txt", "")
         outcome = self.run_scene("--ticks", 1, "--lua-processes", 1, "--endpoint", "tcp://127.0.0.1:*",
-                                 "--curve-secret", "server.secret", "--curve-clients", "clients",
-                                 "--hash-file", "hashes", scene=scene)
+                                 "--curve-secret", "server.secret", "--curve-clients", "clients.txt",
+                                 "--hash-file", "hashes.csv", scene=scene)
         self.assertEqual([line.removeprefix("[0 r0] ") for line in outcome.lines if "r0" in line],
-                         ["arms.scene is read", "more.part is read", "swing.script is read", "clients is read",
-                          "server.secret", "hashes is read", "x.LUA", "notes is written is replaced is removed"])
+                         ["arms.txt is read", "more.dat is read", "swing.log is read", "clients.txt is read",
+                          "server.secret", "hashes.csv is read", "x.LUA", "notes.txt is written is replaced is removed"])
 
     def test_run_starts_its_own_controllers_beside_protected_endpoints(self):
         expected = self.hash_of("--ticks", 5)

@@ -266,6 +266,18 @@ function step() if robot.id == "r0" then take(300) end end""")
         outcome = self.run_scene("--ticks", 2, code=CONTROLLER_FAILED)
         self.assertRegex(outcome.err, r"r0.*not enough memory.*\(it may have 256 MiB\) \(in step 1")
 
+    def test_a_script_that_computes_for_too_long_ends_alone(self):
+        self.write("swing.lua", """function init() end
+local text, pattern = ("a"):rep(15), ("a?"):rep(15) .. ("a"):rep(15) .. "b"
+function step()
+   while robot.id == "r1" do pcall(string.find, text, pattern) end
+   log("here")
+end
+""")
+        outcome = self.run_scene("--ticks", 2, "--lua-time", 1, "--lua-processes", 1, code=CONTROLLER_FAILED)
+        self.assertRegex(outcome.err, r"r1.*swing\.lua:4: computes for more than 1 s in one call")
+        self.assertIn("[2 r2] here", outcome.lines)
+
     def test_lua_error_at_the_start(self):
         self.write("swing.lua", "function init() error('no start') end function step() end")
         outcome = self.run_scene("--ticks", 2, code=CONTROLLER_FAILED)

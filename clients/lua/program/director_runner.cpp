@@ -73,7 +73,8 @@ class DirectorRunner {
     try {
       script_ = std::make_unique<DirectorScript>(
           director_, ScriptOptions{script.path, director_.seed(), director_.tick(), options_.max_memory,
-                                   options_.max_instructions, options_.trusts_scripts ? nullptr : &folders_, {}});
+                                   options_.max_instructions, options_.max_computing,
+                                   options_.trusts_scripts ? nullptr : &folders_, {}});
     } catch (const std::bad_alloc&) {
       return "no memory for a Lua state";
     }

@@ -64,11 +64,13 @@ po::options_description description() {
       ("hidden-file", po::value<std::vector<std::string>>()->composing()->value_name("FILE"),
        "scripts may not use FILE; may be repeated; the file of --curve-secret is hidden, too")  //
       ("trust-scripts",
-       "scripts may use all of Lua, start programs, and read and write all files; no limit of "
-       "instructions unless one is set")                                           //
+       "scripts may use all of Lua, start programs, and read and write all files; no limits of "
+       "instructions and time unless one is set")                                  //
       ("max-memory", text("MIB"), "largest memory of the script of a robot; 256")  //
       ("max-instructions", text("MILLIONS"),
        "most Lua instructions of a robot at one tick, in millions; 1000")  //
+      ("max-time", text("SECONDS"),
+       "most processor time of a robot's script at one tick; 20")  //
       ("place-file", text("FILE"),
        "keep the robot whose script runs in FILE, with the script's line if that takes long")  //
       ("echo",
@@ -163,13 +165,16 @@ void read_limits(const po::variables_map& found, ProgramOptions& options) {
   add("hidden-file", options.exceptions.hidden);
   if (!options.curve_secret.empty()) options.exceptions.hidden.emplace_back(options.curve_secret);
   options.trusts_scripts = found.count("trust-scripts") > 0;
-  if (options.trusts_scripts) options.max_instructions = 0;
+  if (options.trusts_scripts) options.max_instructions = options.max_computing = 0;
   if (found.count("max-memory")) {
     options.max_memory = to_count("--max-memory", text_of("max-memory"), "MiB") << 20;
   }
   if (found.count("max-instructions")) {
     options.max_instructions =
         to_count("--max-instructions", text_of("max-instructions"), "millions") * 1'000'000;
+  }
+  if (found.count("max-time")) {
+    options.max_computing = to_count("--max-time", text_of("max-time"), "seconds");
   }
 }
 

@@ -30,6 +30,7 @@ struct ProgramOptions {
   bool trusts_scripts = false;                      ///< all of Lua, all files
   std::size_t max_memory = std::size_t{256} << 20;  ///< per robot [bytes]
   std::uint64_t max_instructions = 1'000'000'000;   ///< per robot and call; 0 = any number
+  std::uint64_t max_computing = 20;                 ///< processor time per robot and call [s]; 0 = any
   std::string place_file;                           ///< as of open_place_file(); empty: none
   bool echo = false;                                ///< print log lines here too
   bool quiet = false;

@@ -41,7 +41,7 @@ void Runner::start(Seat& seat) {
   try {
     seat.controller = std::make_unique<Controller>(
         *seat.robot, ScriptOptions{script.path, session_.seed(), session_.tick(),
-                                       options_.max_memory, options_.max_instructions,
+                                       options_.max_memory, options_.max_instructions, options_.max_computing,
                                        options_.trusts_scripts ? nullptr : &folders_,
                                        regions_[static_cast<std::size_t>(&seat - seats_.data())]});
   } catch (const std::bad_alloc&) {

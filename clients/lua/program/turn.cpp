@@ -12,7 +12,7 @@ std::mutex scripts;
 void change_mask(int how) {
   sigset_t timer;
   ::sigemptyset(&timer);
-  ::sigaddset(&timer, SIGVTALRM);
+  ::sigaddset(&timer, SIGPROF);
   ::pthread_sigmask(how, &timer, nullptr);
 }
 

@@ -1,15 +1,11 @@
 #include "script/confined_files.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <iterator>
-#include <string>
-#include <string_view>
 #include <system_error>
 
+#include "script/data_files.h"
 #include "script/guarded.h"
 
 namespace ziggurat::lua {
@@ -20,18 +16,12 @@ namespace fs = std::filesystem;
 // Upvalues of every function here: the folders, and Lua's own function.
 const Folders& folders_of(lua_State* state) { return upvalue<const Folders>(state); }
 
-/// Whether a script may create this file, or change it: no program, script or scene, as those run
-/// with more rights than the script has.
+/// Whether a script may create this file, or change it: data alone, as programs, scripts, scenes and what
+/// other programs read as instructions have more rights than the script.
 bool may_write(const Folders& folders, const char* file) {
-  constexpr std::string_view code[] = {".lua", ".argos", ".xml", ".toml", ".so", ".py", ".pyc", ".sh",
-                                       ".js",  ".mjs",   ".cjs", ".rb",   ".pl", ".jar", ".m"};
-  if (!may_read(folders, file) || folders.is_read_only(file)) return false;
-  const fs::path path(file);
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  if (std::ranges::find(code, extension) != std::end(code)) return false;
+  if (!may_read(folders, file) || folders.is_read_only(file) || !is_data_file(file)) return false;
   std::error_code error;
-  const auto status = fs::status(path, error);
+  const auto status = fs::status(file, error);
   constexpr auto may_run = fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;
   return !fs::exists(status) || (status.permissions() & may_run) == fs::perms::none;
 }
@@ -44,17 +34,28 @@ int call_original(lua_State* state) {
   return lua_gettop(state);
 }
 
+/// Why a file may not be written.
+void push_refusal_to_write(lua_State* state, const char* file) {
+  if (std::strlen(file) > longest_path || is_data_file(file)) return push_refusal(state, file);
+  lua_pushfstring(state,
+                  "'%s' is not a file that scripts may write: they may write data, whose names end with %s and are not "
+                  "those of files that other programs take for instructions; --trust-scripts allows all",
+                  file, data_endings);
+}
+
 /// nil, a message and a number, as Lua returns them for a file that cannot be opened.
+template <void (*push)(lua_State*, const char*)>
 int refuse(lua_State* state, const char* file) {
   lua_pushnil(state);
-  push_refusal(state, file);
+  push(state, file);
   lua_pushinteger(state, EACCES);
   return 3;
 }
 
+template <void (*push)(lua_State*, const char*)>
 int raise_refusal(lua_State* state, const char* file) {
   luaL_where(state, 1);
-  push_refusal(state, file);
+  push(state, file);
   lua_concat(state, 2);
   return lua_error(state);
 }
@@ -63,17 +64,16 @@ int open(lua_State* state) {
   const char* const file = luaL_checkstring(state, 1);
   const char* const mode = luaL_optstring(state, 2, "r");
   const bool reads_only = std::strpbrk(mode, "wa+") == nullptr;
-  const bool allowed =
-      reads_only ? may_read(folders_of(state), file) : may_write(folders_of(state), file);
-  return allowed ? call_original(state) : refuse(state, file);
+  if (reads_only) return may_read(folders_of(state), file) ? call_original(state) : refuse<push_refusal>(state, file);
+  return may_write(folders_of(state), file) ? call_original(state) : refuse<push_refusal_to_write>(state, file);
 }
 
 /// io.lines, io.input and io.output: a file, its name, or nothing.
-template <bool (*may)(const Folders&, const char*)>
+template <bool (*may)(const Folders&, const char*), void (*push)(lua_State*, const char*)>
 int open_by_name(lua_State* state) {
   if (lua_isstring(state, 1)) {
     const char* const file = lua_tostring(state, 1);
-    if (!may(folders_of(state), file)) return raise_refusal(state, file);
+    if (!may(folders_of(state), file)) return raise_refusal<push>(state, file);
   }
   return call_original(state);
 }
@@ -83,7 +83,7 @@ template <int names>
 int change_names(lua_State* state) {
   for (int i = 1; i <= names; ++i) {
     const char* const file = luaL_checkstring(state, i);
-    if (!may_write(folders_of(state), file)) return refuse(state, file);
+    if (!may_write(folders_of(state), file)) return refuse<push_refusal_to_write>(state, file);
   }
   return call_original(state);
 }
@@ -133,9 +133,9 @@ void push_refusal(lua_State* state, const char* file) {
 void confine_files(lua_State* state, const Folders& folders) {
   lua_getglobal(state, LUA_IOLIBNAME);
   replace<open>(state, "open", folders);
-  replace<open_by_name<may_read>>(state, "lines", folders);
-  replace<open_by_name<may_read>>(state, "input", folders);
-  replace<open_by_name<may_write>>(state, "output", folders);
+  replace<open_by_name<may_read, push_refusal>>(state, "lines", folders);
+  replace<open_by_name<may_read, push_refusal>>(state, "input", folders);
+  replace<open_by_name<may_write, push_refusal_to_write>>(state, "output", folders);
   lua_pop(state, 1);
   lua_getglobal(state, LUA_OSLIBNAME);
   replace<change_names<1>>(state, "remove", folders);

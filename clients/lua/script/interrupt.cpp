@@ -16,6 +16,7 @@ constexpr int step = 1000;            // instructions between two looks of the h
 constexpr long interval_us = 50'000;  // computing time between two looks of the signal
 // Such intervals without an instruction: a library function runs.
 constexpr unsigned patience_for_place = 10, patience = 100;
+constexpr int looks_per_s = 1'000'000 / interval_us;
 constexpr int switch_cost = 100;      // of a coroutine that is resumed [instructions]
 constexpr int exit_failed_script = 3;
 
@@ -31,7 +32,10 @@ struct Watch {
   std::uint64_t instructions = 0;  // counted so far
   bool was_seen = false;           // by the signal
   bool is_counting = false;
-  bool is_over = false;              // more than max_instructions
+  bool is_over = false;              // more than max_instructions, or late
+  std::uint64_t max_looks = 0;       // of the signal; 0 = any number
+  std::uint64_t looks = 0;           // so far
+  bool is_late = false;              // more than max_looks
   bool place_is_old = false;         // the place file has that of an earlier look of the signal
   unsigned quiet = 0;                // looks of the signal since an instruction was counted
   char place[LUA_IDSIZE + 16] = "";  // file and line, noted last
@@ -49,19 +53,33 @@ void note_place(lua_State* state) {
   }
 }
 
+// The place is that which was noted, whatever called what runs now.
 void raise(lua_State* state, lua_Debug*) {
   if (interrupted) {
     luaL_error(state, "interrupted");
+  } else if (watch.is_late) {
+    lua_pushfstring(state, "%s: computes for more than %d s in one call: an endless loop?", watch.place,
+                    static_cast<int>(watch.max_looks / looks_per_s));
   } else {
-    luaL_error(state, "%s: runs more than %d million instructions in one call: an endless loop?",
-               watch.place, static_cast<int>(watch.max_instructions / 1'000'000));
+    lua_pushfstring(state, "%s: runs more than %d million instructions in one call: an endless loop?",
+                    watch.place, static_cast<int>(watch.max_instructions / 1'000'000));
   }
+  lua_error(state);
 }
 
+constexpr int each = LUA_MASKCALL | LUA_MASKRET | LUA_MASKLINE | LUA_MASKCOUNT;
+
 // Raises again at each instruction: a script that catches the error does not continue.
-void end_script(lua_State* state) {
-  constexpr int each = LUA_MASKCALL | LUA_MASKRET | LUA_MASKLINE | LUA_MASKCOUNT;
-  lua_sethook(state, raise, each, 1);
+void end_script(lua_State* state) { lua_sethook(state, raise, each, 1); }
+
+// The first instruction behind the time of the call.
+void end_late(lua_State* state, lua_Debug* what) {
+  if (!watch.is_late) return lua_sethook(state, nullptr, 0, 0);  // left by an earlier call
+  note_place(state);
+  write_place(watch.robot, watch.place);
+  watch.is_over = true;
+  end_script(state);
+  raise(state, what);
 }
 
 void add(std::uint64_t instructions, lua_State* state) {
@@ -86,6 +104,7 @@ void count(lua_State* state, lua_Debug* what) {
 // A hook that counts already stays: it would begin to count again.
 void set_hook(lua_State* state) {
   if (interrupted || watch.is_over) return end_script(state);
+  if (watch.is_late) return lua_sethook(state, end_late, each, 1);
   const bool counts = lua_gethook(state) == count;
   if (watch.is_counting && !counts) lua_sethook(state, count, LUA_MASKCOUNT, step);
 }
@@ -106,12 +125,14 @@ void look(int) {
   lua_State* const state = running;
   if (state == nullptr || watch.is_over) return;
   watch.place_is_old = true;
+  watch.is_late = watch.max_looks > 0 && ++watch.looks > watch.max_looks;
+  if (watch.is_late) set_hook(state);
   if (!watch.was_seen) {
     watch.was_seen = true;
   } else if (!watch.is_counting) {
     watch.is_counting = true;
     set_hook(state);
-  } else if (++watch.quiet > patience && watch.max_instructions > 0) {
+  } else if (++watch.quiet > patience && (watch.max_instructions > 0 || watch.max_looks > 0)) {
     end_process(state);
   } else if (watch.quiet == patience_for_place) {
     note_place(state);
@@ -137,15 +158,16 @@ void watch_scripts() {
   action.sa_handler = look;
   action.sa_flags = SA_RESTART;
   ::sigemptyset(&action.sa_mask);
-  ::sigaction(SIGVTALRM, &action, nullptr);
+  ::sigaction(SIGPROF, &action, nullptr);
   const itimerval timer{{0, interval_us}, {0, interval_us}};
-  ::setitimer(ITIMER_VIRTUAL, &timer, nullptr);
+  ::setitimer(ITIMER_PROF, &timer, nullptr);
 }
 
 Running::Running(const Calling& calling) noexcept : state_(calling.state) {
   watch = {};
   watch.robot = calling.robot;
   watch.max_instructions = calling.max_instructions;
+  watch.max_looks = calling.max_computing * looks_per_s;
   write_place(calling.robot, calling.script);
   running = calling.state;
   if (interrupted) set_hook(calling.state);

@@ -1,6 +1,6 @@
 #pragma once
 // Ends scripts from a signal handler, also in endless loops: when the program is interrupted, and
-// when a call runs too many instructions. Signals belong to the process, and so does this state;
+// when a call runs too many instructions or computes for too long. Signals belong to the process, and so does this state;
 // nothing else in this program does.
 
 #include <cstdint>
@@ -14,18 +14,19 @@ void interrupt_scripts() noexcept;
 
 bool are_scripts_interrupted() noexcept;
 
-/// Whether the running script ends: interrupted, or after too many instructions.
+/// Whether the running script ends: interrupted, or after too many instructions or too much time.
 bool must_scripts_end() noexcept;
 
 /// For tests: scripts run again.
 void allow_scripts() noexcept;
 
-/// From now on a signal (SIGVTALRM) looks at the running call each time that this process has
+/// From now on a signal (SIGPROF) looks at the running call each time that this process has
 /// computed for 50 ms. A call that lasts longer counts its instructions from there on: counting all
 /// of them would make every script slower. Its file and line are then in the place file, if there
 /// is one, and those of a library function that computes for half a second; of one that sleeps, only
-/// the script's file is. A call with a limit that
-/// then runs no instruction for 5 s of computing is in a library function that can't be ended: the
+/// the script's file is. A call that computes for more than its time, in all of its library functions,
+/// in Lua and in collections of garbage, ends when Lua runs next. A call with a limit that
+/// runs no instruction for 5 s of computing is in a library function that can't be ended: the
 /// process ends with a message.
 void watch_scripts();
 
@@ -35,9 +36,11 @@ struct Calling {
   const char* script = "";             ///< file, in the place file until a line is known
   lua_State* state = nullptr;          ///< of the script
   std::uint64_t max_instructions = 0;  ///< 0 = any number
+  std::uint64_t max_computing = 0;     ///< processor time [s]; 0 = any
 };
 
-/// While it lives, interrupt_scripts() ends the script, and too many instructions do. Do not nest.
+/// While it lives, interrupt_scripts() ends the script, and so do too many instructions and too much
+/// time. Do not nest.
 class Running {
  public:
   explicit Running(const Calling& calling) noexcept;

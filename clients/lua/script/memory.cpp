@@ -6,7 +6,16 @@
 #include <cstring>
 #include <new>
 
+#include "script/interrupt.h"
+
 namespace ziggurat::lua {
+namespace {
+
+// A script that must end may have it, too: each error that it raises without memory would cost a full
+// collection of its garbage [bytes].
+constexpr std::size_t reserve_for_errors = std::size_t{1} << 20;
+
+}  // namespace
 
 BoundedState::BoundedState(std::size_t max_bytes, std::span<std::byte> region)
     : budget_{0, max_bytes, BlockPool(region)}, state_(lua_newstate(&allocate, &budget_)) {
@@ -50,7 +59,8 @@ void* BoundedState::allocate(void* budget_of_state, void* block, std::size_t old
     return nullptr;
   }
   // Lua requires that shrinking succeeds.
-  if (new_size > old_size && new_size - old_size > budget.max - budget.used) {
+  const std::size_t most = budget.max + (must_scripts_end() ? reserve_for_errors : 0);
+  if (new_size > old_size && new_size - old_size > most - std::min(most, budget.used)) {
     note_place(budget);
     return nullptr;
   }

@@ -53,6 +53,7 @@ Script::Script(std::string name, const ScriptOptions& options)
       first_tick_(options.first_tick),
       max_memory_(options.max_memory),
       max_instructions_(options.max_instructions),
+      max_computing_(options.max_computing),
       folders_(options.folders),
       script_(shown(options.script).string()),
       folder_(shown(options.script).parent_path().string()),

@@ -22,6 +22,7 @@ struct ScriptOptions {
   std::uint64_t first_tick = 0;                     ///< at which the script begins
   std::size_t max_memory = std::size_t{256} << 20;  ///< of the script's Lua state [bytes]
   std::uint64_t max_instructions = 1'000'000'000;   ///< of a call (interrupt.h); 0 = any number
+  std::uint64_t max_computing = 20;                 ///< processor time of a call [s]; 0 = any
   /// The files that the script may use; they outlive it. Null: the script is trusted, and may use
   /// all of Lua.
   const Folders* folders = nullptr;
@@ -69,7 +70,7 @@ class Script {
   RandomStreams& random() { return random_; }
   const std::string& path() const { return script_; }  ///< for messages
   std::uint64_t first_tick() const { return first_tick_; }
-  Calling calling() const { return {name_.c_str(), script_.c_str(), state_.get(), max_instructions_}; }
+  Calling calling() const { return {name_.c_str(), script_.c_str(), state_.get(), max_instructions_, max_computing_}; }
 
  private:
   static int build(lua_State* state);
@@ -86,6 +87,7 @@ class Script {
   std::uint64_t first_tick_;
   std::size_t max_memory_;
   std::uint64_t max_instructions_;
+  std::uint64_t max_computing_;
   const Folders* folders_;
   std::string script_;  // path for messages
   std::string folder_;  // of the script

@@ -13,6 +13,11 @@ def _own_routing_id(stage) -> str:
     return "" if stage.routing_id[:1] == b"\0" else f"it set the routing id {stage.routing_id!r}"
 
 
+def _one_connection(stage) -> str:
+    count = stage.connections()
+    return "" if count == 1 else f"it has {count} connections; one carries the session (T1)"
+
+
 def storm(stage) -> str:
     """At most five Hellos within half a second."""
     count = 0
@@ -46,7 +51,7 @@ CASES = [
     Case("H4.asks-for-robots", "It asks for robots in some way", (HELLO,)),
     Case("H9.named", "Its Hello has its name", (HearFrom("hello", {"client_name": Some()}, should=True),)),
     Case("T1.one-dealer", "It connects with one DEALER, and sends one frame each time",
-         (*BEGUN, *ticks(1, 2))),
+         (*BEGUN, *ticks(1, 2), Quiet(0.3), CheckClient("connections", _one_connection, should=True))),
     Case("T7.routing-id", "It lets ZeroMQ choose its routing id",
          (HELLO, CheckClient("routing id", _own_routing_id, should=True))),
     Case("T4.small-limit", "No message is longer than Welcome allows",

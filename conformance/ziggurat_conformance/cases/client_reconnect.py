@@ -73,7 +73,7 @@ CASES = [
           *BEGUN, *ticks(1, 3), error("OUT_OF_STATE", "FATAL"), _resumed(3)),
     Case("T10.token", "A program that finds the token of a session in its environment resumes that session",
          (HearResume(), welcome(), *ticks(5, 7)), Level.RECONNECT, variant=RESTARTED),
-    Case("T10.secret", "It does not print that token",
+    Case("T10.secret", "It does not print that token, and sends it in no other place",
          (HearResume(), welcome(), *ticks(5, 6), end(6), Ends()), Level.RECONNECT, variant=RESTARTED),
     _case("L4.no-such-session", "A session that can't be resumed is no reason for a storm of Hellos",
           *BEGUN, Cut(), HearResume(), refusal("NO_SUCH_SESSION"), CheckClient("storm", storm, should=True)),

@@ -1,7 +1,7 @@
 """The JSON form (T6)."""
 
 import json
-from typing import Any, Iterator
+from typing import Any, Callable, Iterator
 
 from google.protobuf import json_format
 from google.protobuf.message import Message
@@ -13,25 +13,28 @@ def _no_constant(name: str) -> None:
     raise ValueError(f"{name} is not JSON; \"{name}\" is")
 
 
-def strict_json(data: bytes) -> Any:
-    """RFC 8259 in UTF-8, each name once. Raises ValueError, saying what is wrong."""
-
-    def once(pairs: list) -> dict:
-        found = dict(pairs)
-        if len(found) != len(pairs):
-            raise ValueError("a name stands twice in one object")
-        return found
-
+def parsed(data: bytes, object_of: Callable) -> Any:
+    """RFC 8259 in UTF-8; an object is what object_of makes of its names and values. Raises ValueError, saying
+    what is wrong."""
     try:
-        return json.loads(data.decode(), parse_constant=_no_constant, object_pairs_hook=once)
-    except (UnicodeDecodeError, RecursionError) as error:
+        return json.loads(data.decode(), parse_constant=_no_constant, object_pairs_hook=object_of)
+    except UnicodeDecodeError as error:
         raise ValueError(str(error)) from None
+    except RecursionError:
+        raise ValueError("it is nested too deep") from None
+
+
+def _once(pairs: list) -> dict:
+    found = dict(pairs)
+    if len(found) != len(pairs):
+        raise ValueError("a name stands twice in one object")
+    return found
 
 
 def server_text_faults(data: bytes, message: Message) -> Iterator[Fault]:
     """Of a ServerMessage in the JSON form: it must be canonical, with every value that is not absent."""
     try:
-        told = strict_json(data)
+        told = parsed(data, _once)
     except ValueError as error:
         yield Fault("T6", f"text that is not JSON: {error}")
         return

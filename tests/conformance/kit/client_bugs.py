@@ -26,6 +26,7 @@ HELLOS = {
     "observer": _set("role", protocol.ROLE_OBSERVER),
     "long-name": _set("client_name", "x" * 70_000),
     "many-patterns": _many_patterns,
+    "names-its-token": lambda hello: setattr(hello, "client_name", hello.session_token.hex() or "tiny"),
     "long-pattern": lambda hello: hello.robots.append("x" * 300),
     "hold-without-deadline": _policy(protocol.DeadlinePolicy.HOLD),
     "unknown-action": _policy(77),
@@ -46,6 +47,12 @@ TEXTS = {
     "nan-literal": lambda text: text.replace('"jointTargets": [0.5', '"jointTargets": [NaN').encode(),
     "name-twice": lambda text: ('{"hello": {}, ' + text[1:] if "hello" in text else text).encode(),
     "two-kinds": lambda text: (text[:-1] + ', "heartbeat": {}}' if "command" in text else text).encode(),
+    "both-names": lambda text: text.replace('"jointTargets"', '"joint_targets": [], "jointTargets"').encode(),
+    "deep": lambda text: (text[:-1] + ', "later": ' + "[" * 70 + "]" * 70 + "}").encode(),
+    "not-base64": lambda text: text.replace('"rangeAndBearingData": "', '"rangeAndBearingData": "!!!').encode(),
+    "true-target": lambda text: text.replace('"jointTargets": [0.5', '"jointTargets": [true').encode(),
+    "spaced-number": lambda text: text.replace('"jointTargets": [0.5', '"jointTargets": [" 0.5"').encode(),
+    "misspelt-mode": lambda text: text.replace("TURRET_SPEED", "TURRET_SPED").encode(),
     "utf-16": lambda text: text.encode("utf-16-le"),
     "space-first": lambda text: (" " + text).encode(),
     "text-for-a-list": lambda text: text.replace('"robots": ["*"]', '"robots": "*"').encode(),
@@ -172,6 +179,7 @@ def _metrics(count=1, **fields):
 
 
 COMMANDS = {
+    "logs-its-token": lambda client, command: command.log.add(robot=0, text=f"session {client.token.hex()}"),
     "metric-beyond": _metrics(robot=99),
     "metric-of-two-words": _metrics(name="two words"),
     "metric-not-finite": _metrics(value=math.nan),
@@ -213,6 +221,8 @@ COMMANDS = {
     "log-beyond": _log(None),
     "names-dropped": lambda client, command: _names(client, command, 1) if client.tick == 6 else None,
     "line-feed": _log(0, "a line\n"),
+    "many-logs": lambda client, command: [command.log.add() for _ in range(1 << 18)],
+    "many-numbers": _at_tick(3, lambda client, command: command.robots.extend([0] * (5 << 20))),
     "long-log": _log(0, "x" * 5000),
     "huge-log": _log(0, "x" * (80 << 20)),
     "misses-deadlines": _sleeps,

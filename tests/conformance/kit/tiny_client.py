@@ -56,6 +56,9 @@ class Client:
         self.monitor = self.socket.get_monitor_socket(zmq.EVENT_DISCONNECTED | zmq.EVENT_HANDSHAKE_FAILED_NO_DETAIL
                                                       | zmq.EVENT_HANDSHAKE_FAILED_AUTH)
         self.socket.connect(os.environ["ZIGGURAT_ENDPOINT"])
+        if self.bug == "idle-connection":
+            self.idle = self.context.socket(zmq.DEALER)
+            self.idle.connect(os.environ["ZIGGURAT_ENDPOINT"])
 
     def set_keys(self):
         server, path = os.environ.get("ZIGGURAT_SERVER_KEY"), os.environ.get("ZIGGURAT_CURVE_SECRET")

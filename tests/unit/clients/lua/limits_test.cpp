@@ -2,6 +2,8 @@
 
 #include <sys/resource.h>
 
+#include <ctime>
+
 #include "script/interrupt.h"
 #include "script_fixture.h"
 
@@ -30,6 +32,12 @@ class Limits : public ScriptTest {
 };
 
 TEST_F(Limits, EndALoopWithItsLine) { expect_ended("\n\nwhile true do\nend", "3"); }
+
+TEST_F(Limits, NameThePlaceOnce) {
+  const Failure failure = start("local function loop()\nwhile true do end end\nlocal function outer() loop() end\nouter()");
+  ASSERT_TRUE(failure);
+  EXPECT_EQ(failure->find("main.lua"), failure->find("main.lua:2: runs more than")) << *failure;
+}
 
 TEST_F(Limits, EndALoopThatCatchesErrors) {
   const Failure failure = start("while true do pcall(function() while true do end end) end");
@@ -79,6 +87,49 @@ TEST_F(Limits, OfOneRobotDoNotAffectAnother) {
   EXPECT_TRUE(loop.step(1));
   ASSERT_EQ(controller().step(1), std::nullopt);
   EXPECT_EQ(controller().log().lines.at(0).text, "here");
+}
+
+// Each call of the library is short, and little Lua runs between them.
+TEST_F(Limits, EndCallsThatComputeForLongInTheLibrary) {
+  options_.max_computing = 1;
+  const std::string slow_find = "local s, p = ('a'):rep(15), ('a?'):rep(15) .. ('a'):rep(15) .. 'b' ";
+  for (const char* loop :
+       {"while true do s:find(p) end", "while true do pcall(string.find, s, p) end",
+        "coroutine.wrap(function() while true do pcall(s.find, s, p) end end)()",
+        "while true do coroutine.wrap(function() s:find(p) end)() end",
+        "while true do pcall(function() while true do s:find(p) end end) end",
+        "local t = {} for i = 1, 3e5 do t[i] = 'xxxxxxxxxxxxxxxxxxxx' end while true do table.concat(t) end",
+        "while true do io.open('main.lua') end"}) {
+    const Failure failure = start("\n" + slow_find + "\n" + loop);
+    ASSERT_TRUE(failure) << loop;
+    EXPECT_NE(failure->find("main.lua:3: computes for more than 1 s in one call"), std::string::npos)
+        << loop << "\n"
+        << *failure;
+    EXPECT_EQ(failure->find("main.lua"), failure->find("main.lua:3: computes")) << *failure;  // the place stands once
+  }
+}
+
+// Each allocation costs a full collection of garbage.
+TEST_F(Limits, EndAScriptThatStaysAtTheLimitOfItsMemory) {
+  options_.max_computing = 1;
+  options_.max_memory = std::size_t{128} << 20;
+  const std::clock_t begin = std::clock();
+  const Failure failure = start(
+      "local keep = {}\n"
+      "local function fill() while true do keep[#keep + 1] = {} end end\n"
+      "local function deep(n) while true do pcall(n < 50 and deep or fill, n + 1) end end\n"
+      "deep(1)");
+  ASSERT_TRUE(failure);
+  EXPECT_NE(failure->find(": computes for more than 1 s in one call"), std::string::npos) << *failure;
+  EXPECT_LT(std::clock() - begin, 15 * CLOCKS_PER_SEC);  // of processor time
+}
+
+TEST_F(Limits, OfTimeHoldForEachCall) {
+  options_.max_computing = 1;
+  ASSERT_EQ(start("local s, p = ('a'):rep(15), ('a?'):rep(15) .. ('a'):rep(15) .. 'b' "
+                  "function step() local t = os.clock() while os.clock() - t < 0.6 do s:find(p) end end"),
+            std::nullopt);
+  for (std::uint64_t tick = 1; tick <= 4; ++tick) ASSERT_EQ(controller().step(tick), std::nullopt) << tick;
 }
 
 TEST_F(Limits, CoroutinesWorkAsInLua) {

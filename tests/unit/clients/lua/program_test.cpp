@@ -90,6 +90,7 @@ TEST_F(Program, ReportsWrongArguments) {
   for (const char* memory : {"0", "-1", "x", "1x", "", "99999999999999999999"}) {
     EXPECT_NE(fault_of({"--connect", "x", "--max-memory", memory}), "") << memory;
     EXPECT_NE(fault_of({"--connect", "x", "--max-instructions", memory}), "") << memory;
+    EXPECT_NE(fault_of({"--connect", "x", "--max-time", memory}), "") << memory;
   }
 }
 
@@ -139,6 +140,12 @@ TEST_F(Program, LimitsInstructionsUnlessScriptsAreTrusted) {
   EXPECT_EQ(read({"--connect", "x", "--trust-scripts", "--max-instructions", "3"})
                 .options.max_instructions,
             3'000'000u);
+}
+
+TEST_F(Program, LimitsProcessorTimeUnlessScriptsAreTrusted) {
+  EXPECT_EQ(read({"--connect", "x"}).options.max_computing, 20u);
+  EXPECT_EQ(read({"--connect", "x", "--trust-scripts"}).options.max_computing, 0u);
+  EXPECT_EQ(read({"--connect", "x", "--trust-scripts", "--max-time", "3"}).options.max_computing, 3u);
 }
 
 TEST_F(Program, FindsTheScriptFromTheWorkingDirectory) {

@@ -75,14 +75,14 @@ TEST_F(Sandbox, LoadsNoByteCode) {
                  "local n = 0 return assert(load(function() n = n + 1 "
                  "return n == 1 and code or nil end, 'x', 'b'))()");
   expect_refused(code +
-                 "local f = assert(io.open(IN .. 'c', 'wb')) f:write(code) f:close() "
-                 "assert(loadfile(IN .. 'c', 'b'))");
+                 "local f = assert(io.open(IN .. 'c.bin', 'wb')) f:write(code) f:close() "
+                 "assert(loadfile(IN .. 'c.bin', 'b'))");
   expect_refused(code +
-                 "local f = assert(io.open(IN .. 'c', 'wb')) f:write(code) f:close() "
-                 "dofile(IN .. 'c')");
+                 "local f = assert(io.open(IN .. 'c.bin', 'wb')) f:write(code) f:close() "
+                 "dofile(IN .. 'c.bin')");
   expect_refused(code +
-                 "local f = assert(io.open(IN .. 'c', 'wb')) f:write(code) f:close() "
-                 "package.path = IN .. '?' require 'c'");
+                 "local f = assert(io.open(IN .. 'c.bin', 'wb')) f:write(code) f:close() "
+                 "package.path = IN .. '?.bin' require 'c'");
   EXPECT_EQ(value("load('return 7')()"), "7");
   EXPECT_EQ(value("load('return x', 'c', 't', {x = 8})()"), "8");
   EXPECT_EQ(value("select('#', load('return 7', 'c', 'bt'))"), "1");
@@ -134,7 +134,7 @@ TEST_F(Sandbox, OpensNoFileOutsideItsFolders) {
     expect_refused("assert(loadfile(" + file + "))");
     expect_refused("dofile(" + file + ")");
     expect_refused("assert(os.remove(" + file + "))");
-    expect_refused("assert(os.rename(" + file + ", IN .. 'moved'))");
+    expect_refused("assert(os.rename(" + file + ", IN .. 'moved.txt'))");
   }
   for (const char* name : {"OUT .. 'new.txt'", "IN .. 'dangling.txt'", "IN .. 'up/new.txt'"}) {
     const std::string file = name;
@@ -143,7 +143,7 @@ TEST_F(Sandbox, OpensNoFileOutsideItsFolders) {
     expect_refused("assert(os.rename(IN .. 'data.txt', " + file + "))");
   }
   EXPECT_FALSE(fs::exists(folder() / "new.txt"));
-  expect_refused("assert(os.rename(IN .. 'up', IN .. 'elsewhere'))");
+  expect_refused("assert(os.rename(IN .. 'up', IN .. 'elsewhere.txt'))");
 }
 
 TEST_F(Sandbox, RequiresNoModuleOutsideItsFolders) {
@@ -188,27 +188,57 @@ TEST_F(Sandbox, ReadsAndWritesInItsFolders) {
 TEST_F(Sandbox, ChangesNoProgramsAndScripts) {
   write("inside/drive", "#!/bin/sh");
   fs::permissions(folder() / "inside/drive", fs::perms::owner_all);
-  for (const char* name : {"drive", "part.lua", "new.lua", "scene.argos", "drive.js", "part.pyc", "sweep.toml", "new.LUA", "scene.Argos"}) {
+  write("inside/drive.txt", "#!/bin/sh");
+  fs::permissions(folder() / "inside/drive.txt", fs::perms::owner_all);
+  for (const char* name : {"drive", "drive.txt", "part.lua", "new.lua", "scene.argos", "drive.js", "part.pyc", "sweep.toml", "new.LUA", "scene.Argos"}) {
     expect_refused("assert(io.open(IN .. '" + std::string(name) + "', 'a'))");
     expect_refused("assert(os.rename(IN .. 'data.txt', IN .. '" + std::string(name) + "'))");
   }
   expect_refused("assert(io.open(IN .. 'part.lua', 'r+'))");
 }
 
+// They would run when the folder is next worked in.
+TEST_F(Sandbox, WritesNothingThatOtherProgramsTakeForInstructions) {
+  write("inside/Makefile", "all:");
+  fs::create_symlink(folder() / "inside/Makefile", folder() / "inside/make.txt");
+  for (const char* name :
+       {"Makefile", "make.txt", "Dockerfile", "x.pth", "a.desktop", "x.ps1", "x.bat", "x.R", "x.el", "x.service", "x.mk",
+        "x.cmake", "x.yaml", "x.ini", "x.html", "x.svg", "new", "x.csv.", "x.csv ", "x. ", "CMakeLists.txt", "CMakeCache.txt",
+        "cmakelists.TXT", "CMakePresets.json", "package.json", "package-lock.json", "tsconfig.json", "babel.config.json",
+        "requirements.txt", "requirements-dev.txt", "compile_commands.json", "settings.json", "kernel.json", "composer.json"}) {
+    const std::string file = "IN .. '" + std::string(name) + "'";
+    expect_refused("assert(io.open(" + file + ", 'w'))");
+    expect_refused("io.output(" + file + ")");
+    expect_refused("assert(os.rename(IN .. 'data.txt', " + file + "))");
+    expect_refused("assert(os.remove(" + file + "))");
+  }
+  EXPECT_EQ(value("io.open(IN .. 'Makefile'):read('a')"), "all:");
+  const std::string why = value("select(2, io.open(IN .. 'x.py', 'w'))");
+  EXPECT_NE(why.find("end with .csv .tsv .txt"), std::string::npos) << why;
+  EXPECT_NE(why.find("--trust-scripts"), std::string::npos) << why;
+}
+
+TEST_F(Sandbox, WritesData) {
+  for (const char* name : {"a.csv", "A.CSV", "b.tsv", "c.txt", "d.log", "e.dat", "results.json", "f.jsonl", "g.bin", "h.data",
+                           "picture.ppm", "i.csv.tmp", "robot.1.csv"}) {
+    EXPECT_EQ(value("io.type(io.open(IN .. '" + std::string(name) + "', 'w'))"), "file") << name;
+  }
+}
+
 TEST_F(Sandbox, ChangesNoFilesThatAreReadOnlyAndUsesNoneThatAreHidden) {
-  write("inside/arms.scene", "<scene/>");
-  write("inside/key", "key");
-  fs::create_hard_link(folder() / "inside/arms.scene", folder() / "inside/other");
-  fs::create_symlink(folder() / "inside/key", folder() / "inside/other_key");
+  write("inside/arms.txt", "<scene/>");
+  write("inside/key.txt", "key");
+  fs::create_hard_link(folder() / "inside/arms.txt", folder() / "inside/other.txt");
+  fs::create_symlink(folder() / "inside/key.txt", folder() / "inside/other_key.txt");
   folders_.emplace(std::vector<fs::path>{folder() / "inside"},
-                   Exceptions{{folder() / "inside/../inside/arms.scene"}, {folder() / "inside/key"}});
-  EXPECT_EQ(value("io.open(IN .. 'arms.scene'):read('a')"), "<scene/>");
-  for (const char* name : {"arms.scene", "other"}) {
+                   Exceptions{{folder() / "inside/../inside/arms.txt"}, {folder() / "inside/key.txt"}});
+  EXPECT_EQ(value("io.open(IN .. 'arms.txt'):read('a')"), "<scene/>");
+  for (const char* name : {"arms.txt", "other.txt"}) {
     expect_refused("assert(io.open(IN .. '" + std::string(name) + "', 'r+'))");
     expect_refused("assert(os.remove(IN .. '" + std::string(name) + "'))");
     expect_refused("assert(os.rename(IN .. 'data.txt', IN .. '" + std::string(name) + "'))");
   }
-  for (const char* name : {"key", "other_key"}) {
+  for (const char* name : {"key.txt", "other_key.txt"}) {
     expect_refused("assert(io.open(IN .. '" + std::string(name) + "'))");
     expect_refused("io.lines(IN .. '" + std::string(name) + "')");
     expect_refused("assert(select(2, loadfile(IN .. '" + std::string(name) + "')):find('near'))");

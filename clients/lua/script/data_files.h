@@ -1,0 +1,16 @@
+#pragma once
+// Which files a script that is not trusted may write, by their names.
+
+#include <filesystem>
+
+namespace ziggurat::lua {
+
+/// How names of data end, in lower case.
+inline constexpr const char* data_endings = ".csv .tsv .txt .log .dat .data .json .jsonl .bin .pgm .ppm .tmp";
+
+/// Whether a name, and the one that it leads to by links, is that of data: it ends as data do, and no
+/// program that we know takes a file of that name for instructions.
+bool is_data_file(const std::filesystem::path& file);
+
+
+}  // namespace ziggurat::lua

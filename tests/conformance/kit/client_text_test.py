@@ -1,0 +1,56 @@
+"""The kit refuses the same JSON of clients as a server: the texts of json_test.cpp, and more."""
+
+import unittest
+
+from ziggurat_conformance.rules.client_text import client_text_faults
+
+
+def _hello(fields: str) -> str:
+    return '{"hello":{"version":{"major":1},"role":"ROLE_CONTROLLER",%s}}' % fields
+
+
+def _nested(levels: int) -> str:
+    return '{"later":' + "[" * levels + "]" * levels + ',"heartbeat":{}}'
+
+
+RIGHT = [
+    _hello('"robots":["*"],"later":{"a":[1,[true,null],{"robots":"*"}],"a":"\\u00e9"}'),
+    _nested(63),
+    '{"command":{"tick":7,"joint_targets":["1.5",2,"NaN","-1e-3"],"colour":[{"x":null}],"log":null}}',
+    '{"command":{"tick":"7","turretModes":["TURRET_SPEED",1,"2"],"tagPayloads":["","YQ==","YQ","_-8="]}}',
+    '{"leave":{"reason":1,"message":"\\ud83d\\ude00"}}',
+    '{"command":{"tick":7.0},"leave":null}',
+]
+WRONG = [
+    "[]", '{"hello":', "{}{}", "{'hello':{}}", "{hello:{}}", '{"hello":7}', '{"leave":"DONE"}',
+    _hello('"robots":["*",]'), _hello('"robots":["*"],"x":+1'), _hello('"robots":["*"],"x":01'),
+    _hello('"robots":["*"],"x":1e400'), _hello('"robots":["*"],"x":"\\ud800"'), _hello('"robots":["*"],"x":"a\nb"'),
+    _hello('"robots":"*"'), _hello('"robots":[["*"]]'), _hello('"robots":["*",null]'), _hello('"robots":[7]'),
+    _hello('"robots":{"0":"*"}'), _hello('"robots":["*"],"takeover":"true"'), _hello('"robots":["*"],"takeover":1'),
+    _hello('"robots":["*"],"clientName":["me"]'), _hello('"robots":["*"],"robots":["x"]'),
+    _hello('"robots":["*"],"clientName":"a","client_name":"b"'), _hello('"deadlinePolicy":{"action":"STOPP"}'),
+    _nested(64), _nested(5000),
+    '{"command":{"jointTargets":[true]}}', '{"command":{"jointTargets":[" 1"]}}', '{"command":{"jointTargets":["1_0"]}}',
+    '{"command":{"jointTargets":["inf"]}}', '{"command":{"jointTargets":["1e400"]}}', '{"command":{"log":{"text":"one"}}}',
+    '{"command":[{"tick":"0"}]}', '{"command":{"tick":"+1"}}', '{"command":{"tick":1.5}}', '{"command":{"tick":true}}',
+    '{"command":{"turretModes":[1.5]}}', '{"command":{"turretModes":["FAST"]}}',
+    '{"command":{"rangeAndBearingData":"!!!"}}', '{"command":{"rangeAndBearingData":"A"}}',
+    '{"command":{"rangeAndBearingData":"AB=="}}', '{"command":{"rangeAndBearingData":"YQ="}}',
+    '{"command":{"rangeAndBearingData":5}}',
+]
+
+
+class ClientText(unittest.TestCase):
+    def test_what_a_server_takes_is_right(self):
+        for text in RIGHT:
+            with self.subTest(text):
+                self.assertEqual([], list(client_text_faults(text.encode())))
+
+    def test_what_a_server_refuses_is_wrong(self):
+        for text in WRONG:
+            with self.subTest(text[:80]):
+                self.assertNotEqual([], list(client_text_faults(text.encode())))
+
+
+if __name__ == "__main__":
+    unittest.main()
