@@ -147,9 +147,10 @@ class BrokenArguments(SceneTest):
         self.refuses(r"--seed is for reset", "ctl", url, "pause", "--seed", "3")
 
     def test_files_that_cannot_be_written(self):
-        for option in ("--trace", "--readings", "--hash-file", "--summary", "--report-card"):
+        for option, ending in (("--trace", ".csv"), ("--readings", ".jsonl"), ("--hash-file", ""), ("--summary", ".json"),
+                               ("--report-card", ".json")):
             outcome = self.refuses(r"/no/such/folder/x.*No such file", "run", self.scene, option,
-                                   "/no/such/folder/x")
+                                   "/no/such/folder/x" + ending)
             self.assertEqual(outcome.out, "", "no controller has been started")
 
     def test_outputs_with_a_wrong_ending(self):
@@ -177,7 +178,7 @@ class BrokenArguments(SceneTest):
         self.change("<arena ", '<include file="models.xml"/><arena ')
         for path in (models, self.folder / "swing.lua"):
             before = path.read_bytes()
-            self.refuses(r"--hash-file is .*a file of the scene", "run", self.scene, "--hash-file", path)
+            self.refuses(r"--hash-file is .*(a file of the scene|a Lua script)", "run", self.scene, "--hash-file", path)
             self.assertEqual(path.read_bytes(), before)
 
     def test_a_list_of_clients_that_others_can_write(self):

@@ -110,7 +110,7 @@ class Processes(Recorded):
         recording, _ = self.record("--ticks", 5)
         marker.unlink()
         for words in (("replay", recording), ("verify", recording), ("diff", recording, recording), ("info", recording),
-                      ("export", recording, "--csv", self.folder / "csv"),
+                      ("export", recording, "--csv", self.folder / "poses.csv"),
                       ("replay", recording, "--from-poses", "--trace", "t.csv")):
             with self.subTest(words[0]):
                 self.ask(*words)
