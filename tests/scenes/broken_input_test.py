@@ -35,6 +35,14 @@ class BrokenScene(SceneTest):
         self.assertEqual(outcome.code, FINISHED, outcome.err)
         self.assertRegex(outcome.err, r"notice: .*colour")
 
+    def test_a_root_that_is_misspelt_and_an_encoding_that_is_not_read(self):
+        self.change("argos-configuration", "argos-config")
+        outcome = self.ziggurat("check", self.scene)
+        self.assertEqual(outcome.code, FINISHED)
+        self.assert_is_sentence(outcome, "<argos-config>; did you mean <argos-configuration>")
+        self.scene.write_text('<?xml version="1.0" encoding="EBCDIC"?>\n' + self.text.partition("?>")[2].lstrip())
+        self.assert_is_sentence(self.ziggurat("check", self.scene), 'arms.argos:1:31: encoding="EBCDIC" is not read')
+
     def test_cyclic_joints(self):
         self.change("</joints>\n    </prototype>", """  <joint id="back" type="fixed">
           <parent link="arm" position="0,0,0" orientation="0,0,0" />

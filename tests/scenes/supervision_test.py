@@ -291,7 +291,7 @@ class Hil(unittest.TestCase):
             self.assertTrue(report["passed"])
             self.assertEqual(report["controllers"][0]["answers"], 11)  # to the ticks 0 to 10
             picture = pathlib.Path(folder) / "card.svg"
-            bad = self.run_vehicle("--gate", "max<0us", "--report-card", picture)
+            bad = self.run_vehicle("--gate", "max<0.001us", "--report-card", picture)
             self.assertEqual(4, bad.returncode, bad.stderr)
             self.assertIn("gate: not met", bad.stderr)
             self.assertIn("<svg", picture.read_text())
