@@ -34,6 +34,17 @@ std::vector<OutputName> outputs_of(const Options& options) {
   return files;
 }
 
+/// Each by the name with its number.
+std::vector<OutputName> pictures_of(const Options& options) {
+  std::vector<OutputName> files;
+  if (!options.pictures || options.pictures->out.empty()) return files;
+  const std::size_t count = options.pictures->times.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    files.push_back({"--out", picture_path(options.pictures->out, i, count), {".png"}});
+  }
+  return files;
+}
+
 TakenFile taken_by(const std::string& what, const std::string& path) {
   return {path, fmt::format("the file of {} too", what)};
 }
@@ -65,11 +76,13 @@ std::vector<TakenFile> taken_by_scene(const std::vector<std::string>& files) {
 }
 
 void check_files(const Options& options) {
-  std::vector<TakenFile> taken = inputs_of(options);
+  const std::vector<TakenFile> inputs = inputs_of(options);
+  std::vector<TakenFile> taken = inputs;
   for (const OutputName& output : outputs_of(options)) {
     check_output(output, taken);
     taken.push_back(taken_by(output.option, output.path));
   }
+  for (const OutputName& picture : pictures_of(options)) check_output(picture, inputs);
   check_clients(options.curve_clients, ::geteuid());
 }
 
@@ -79,6 +92,7 @@ void check_outputs(const Options& options, const scene::Scene& scene,
   inputs.insert(inputs.end(), read.begin(), read.end());
   const std::vector<TakenFile> taken = taken_by_scene(inputs);
   for (const OutputName& output : outputs_of(options)) check_output(output, taken);
+  for (const OutputName& picture : pictures_of(options)) check_output(picture, taken);
 }
 
 std::vector<std::string> exceptions_of(const Options& options, const scene::Scene* scene, const std::string& path) {

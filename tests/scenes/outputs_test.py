@@ -71,6 +71,12 @@ class Outputs(Recorded):
         for link in self.links_to("run.mcap", ".csv"):
             self.refuses("the recording itself", "export", "run.mcap", "--csv", link)
 
+    def test_pictures_are_checked_with_their_numbers(self):
+        for name, out in (("p_001.png", "p.png"), ("q0001.png", "q%04d.png")):
+            os.link(self.scene, self.folder / name)
+            self.refuses(f"--out is '{name}', a scene", "render", "magnets.argos", "--at", "0,0.2", "--out", out)
+            self.refuses(f"--out is '{name}', the file of the scene too", "render", self.scene, "--at", "0,0.2", "--out", out)
+
     def test_files_of_a_sweep_are_not_replaced(self):
         self.ask("sweep", self.scene, "--out", "s", "--seeds", "1..2", "--axis", "physics_engines/*/@iterations=5|10",
                  "--ticks", 1, "--quiet")
@@ -99,6 +105,17 @@ class Outputs(Recorded):
                 self.assertFalse((self.folder / "-").exists())
         self.refuses("stdout is for the object of --json", "diff", "run.mcap", "other.mcap", "--json", "--plot", "-")
         self.refuses("a recording needs a file", "info", "run.mcap", "--repair", "-")
+
+    def test_a_dash_is_stdout_for_sweeps_too(self):
+        grid = ("--seeds", "1..2", "--axis", "physics_engines/*/@iterations=5|10", "--ticks", 1, "--quiet")
+        self.ask("sweep", self.scene, "--out", "s", *grid)
+        if shutil.which("gnuplot"):
+            outcome = self.ask("sweep", "plot", "s", "--y", "ticks", "--file", "-")
+            self.assertEqual(outcome.out, (self.folder / "s/ticks.svg").read_text())
+        outcome = self.ask("sweep", self.scene, "--out", "t", *grid, "--kubernetes", "-", "--image", "i", "--claim", "c",
+                           "--mount", self.folder)
+        self.assertIn("kind: Job", outcome.out.replace('"', ""))
+        self.assertEqual(list(self.folder.rglob("-")), [])
 
     def test_older_outputs_are_replaced(self):
         for _ in range(2):
