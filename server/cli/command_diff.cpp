@@ -1,9 +1,12 @@
 #include <boost/program_options/value_semantic.hpp>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "recording/output_file.h"
+#include "recording/output_name.h"
 #include "reports/console.h"
 #include "run/divergence.h"
 #include "text/numbers.h"
@@ -21,6 +24,15 @@ po::options_description diff_options() {
   return options;
 }
 
+void check_plot(const std::string& out, const std::vector<std::string>& recordings, bool as_json) {
+  std::vector<recording::TakenFile> taken;
+  for (const std::string& path : recordings) taken.push_back({path, "a recording that is compared"});
+  recording::check_output({"--plot", out, {".svg"}}, taken);
+  if (out == "-" && as_json) {
+    throw text::UsageError("--plot is '-', and stdout is for the object of --json; name a file");
+  }
+}
+
 }  // namespace
 
 std::string help_diff() {
@@ -32,6 +44,7 @@ that differ (commands, acts of supervisors), then how far poses are apart over t
 most.
 
   ziggurat diff before.mcap after.mcap --plot apart.svg
+      with - instead of a file the picture goes to stdout, and the table to stderr
 
 Exit codes: 0 all states are the same; 5 they differ; 1 fault of arguments or recordings.
 
@@ -44,6 +57,9 @@ int execute_diff(const Arguments& arguments) {
   if (parsed.positional.size() != 2) {
     throw text::UsageError("two recordings must be given, as in: ziggurat diff a.mcap b.mcap");
   }
+  const std::string out = Values(parsed.values).text("plot");
+  const bool as_json = parsed.values.count("json") > 0;
+  if (!out.empty()) check_plot(out, parsed.positional, as_json);
   const replay::RecordingFile a(parsed.positional[0]), b(parsed.positional[1]);
   const run::Divergence divergence = run::compare(a, b);
   reports::Console console;
@@ -52,14 +68,14 @@ int execute_diff(const Arguments& arguments) {
       console.warning(file->path() + ": " + missing);
     }
   }
-  if (parsed.values.count("plot")) {
-    recording::OutputFile plot(parsed.values["plot"].as<std::string>());
+  if (!out.empty()) {
+    recording::OutputFile plot(out);
     plot.buffer().append(to_svg(divergence));
     plot.close();
   }
-  std::string text = parsed.values.count("json") ? to_json(divergence) : to_text(divergence);
+  std::string text = as_json ? to_json(divergence) : to_text(divergence);
   if (text.ends_with('\n')) text.pop_back();
-  console.result(text);
+  out == "-" ? console.report(text) : console.result(text);
   console.flush();
   return divergence.is_same() ? exit_code::finished : exit_code::differs;
 }

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <boost/program_options/value_semantic.hpp>
-#include <filesystem>
-#include <set>
 #include <sstream>
+#include <vector>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/html_export.h"
 #include "network/glob.h"
+#include "recording/output_name.h"
 #include "replay/export.h"
 #include "reports/console.h"
 #include "run/page_folder.h"
@@ -48,13 +48,14 @@ std::string to_html(const Order& order) {
 struct Format {
   const char* option;
   const char* value;
+  const char* ending;
   const char* help;
   std::string (*write)(const Order&);
 };
 constexpr Format formats[] = {
-    {"csv", "FILE.csv", "poses of all entities at every tick, with the columns of --trace", to_csv},
-    {"jsonl", "FILE.jsonl", "each message as a line of JSON: topic, time_s, message", to_jsonl},
-    {"html", "FILE.html",
+    {"csv", "FILE.csv", ".csv", "poses of all entities at every tick, with the columns of --trace", to_csv},
+    {"jsonl", "FILE.jsonl", ".jsonl", "each message as a line of JSON: topic, time_s, message", to_jsonl},
+    {"html", "FILE.html", ".html",
      "one page that plays the recording in a browser, without a server or a network", to_html},
 };
 
@@ -69,6 +70,21 @@ po::options_description export_options() {
        "jsonl: only topics that match, as '/robots/*/command'; may be repeated")(
           "quiet", "no message on what was written");
   return options;
+}
+
+bool has_format(const po::variables_map& values) {
+  return std::ranges::any_of(formats, [&](const Format& format) { return values.count(format.option) > 0; });
+}
+
+/// Those of all formats, before the first one is written.
+void check_outputs(const po::variables_map& values, const std::string& recording) {
+  std::vector<recording::TakenFile> taken{{recording, "the recording itself"}};
+  for (const Format& format : formats) {
+    if (!values.count(format.option)) continue;
+    const auto path = values[format.option].as<std::string>();
+    recording::check_output({fmt::format("--{}", format.option), path, {format.ending}}, taken);
+    taken.push_back({path, "the file of another format too"});
+  }
 }
 
 }  // namespace
@@ -103,26 +119,15 @@ int execute_export(const Arguments& arguments) {
   if (parsed.values.count("topics")) {
     order.topics = parsed.values["topics"].as<std::vector<std::string>>();
   }
-  std::set<std::filesystem::path> written;
+  if (!has_format(parsed.values)) {
+    throw text::UsageError(
+        "no format is given; write --csv FILE.csv, --jsonl FILE.jsonl or --html FILE.html");
+  }
+  check_outputs(parsed.values, file.path());
   for (const Format& format : formats) {
     if (!parsed.values.count(format.option)) continue;
     order.out = parsed.values[format.option].as<std::string>();
-    std::error_code error;
-    if (std::filesystem::equivalent(order.out, file.path(), error)) {
-      throw text::UsageError(
-          fmt::format("--{} is the recording itself; name another file", format.option));
-    }
-    // Of a pipe, as /dev/stdout can be one, there is no whole path.
-    const auto path = std::filesystem::weakly_canonical(std::filesystem::absolute(order.out), error);
-    if (!written.insert(error ? std::filesystem::path(order.out) : path).second) {
-      throw text::UsageError(fmt::format("--{} is '{}', the file of another format too; name another file",
-                                         format.option, order.out));
-    }
     console.report(fmt::format("{}: {}", order.out, format.write(order)));
-  }
-  if (written.empty()) {
-    throw text::UsageError(
-        "no format is given; write --csv FILE.csv, --jsonl FILE.jsonl or --html FILE.html");
   }
   console.flush();
   return exit_code::finished;

@@ -2,7 +2,6 @@
 #include <fmt/ostream.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -12,6 +11,7 @@
 #include "mcap/scan.h"
 #include "recorder/disk.h"
 #include "recorder/overview.h"
+#include "recording/output_name.h"
 #include "reports/console.h"
 #include "text/numbers.h"
 #include "text/printable.h"
@@ -183,11 +183,6 @@ Examined examine(const std::string& path, const mcap::Source& source, const mcap
 
 void write_repaired(const std::string& path, const mcap::Reader& reader, const std::string& out,
                     reports::Console& console) {
-  std::error_code error;
-  if (std::filesystem::equivalent(path, out, error)) {
-    throw text::UsageError(
-        fmt::format("--repair is '{}', the damaged file; name another file", out));
-  }
   recorder::Disk disk(out);
   const mcap::Repaired repaired =
       mcap::repair(reader, [&](std::string_view bytes) { disk.write(bytes); });
@@ -225,6 +220,9 @@ int execute_info(const Arguments& arguments) {
   }
   const std::string& path = parsed.positional[0];
   const bool as_json = parsed.values.count("json") > 0;
+  const std::string out = Values(parsed.values).text("repair");
+  const recording::TakenFile damaged_file{path, "the damaged file"};
+  if (!out.empty()) recording::check_output({"--repair", out, {".mcap"}}, {&damaged_file, 1});
   reports::Console console({false, as_json});
   try {
     const mcap::Source source = mcap::open_file(path);
@@ -236,9 +234,9 @@ int execute_info(const Arguments& arguments) {
     } else {
       console.result(to_text(file));
     }
-    const bool repairs = parsed.values.count("repair") > 0;
+    const bool repairs = !out.empty();
     if (repairs) {
-      write_repaired(path, reader, parsed.values["repair"].as<std::string>(), console);
+      write_repaired(path, reader, out, console);
     } else if (!file.is_whole()) {
       console.fault(complaint(file));
     }

@@ -2,7 +2,6 @@
 #include <fmt/ostream.h>
 
 #include <cmath>
-#include <fstream>
 #include <optional>
 
 #include "cli/arguments.h"
@@ -10,8 +9,11 @@
 #include "magnetism/closed_forms.h"
 #include "magnetism/field.h"
 #include "physics/magnet_source.h"
+#include "recording/output_file.h"
+#include "recording/output_name.h"
 #include "reports/console.h"
 #include "reports/plot.h"
+#include "run/files.h"
 #include "scene/reader.h"
 #include "text/numbers.h"
 
@@ -38,7 +40,7 @@ po::options_description plot_options() {
   add("to", po::value<std::string>()->value_name("M"),
       "largest distance [m] (default: 20 times the smallest)");
   add("out", po::value<std::string>()->value_name("FILE.svg"),
-      "the picture (default magnetism.svg)");
+      "the picture (default magnetism.svg; - is stdout)");
   return options;
 }
 
@@ -244,18 +246,20 @@ int execute_magnetism(const Arguments& arguments) {
         "the arguments are not understood; write: ziggurat magnetism plot SCENE");
   }
   reports::Console console;
-  const auto read = scene::read_file(parsed.positional[1]);
+  const std::string& scene = parsed.positional[1];
+  const auto read = scene::read_file(scene);
   if (!read.ok()) throw scene::SceneError(read.problems);
+  const std::string path =
+      parsed.values.count("out") ? parsed.values["out"].as<std::string>() : "magnetism.svg";
+  recording::check_output({"--out", path, {".svg"}}, run::taken_by_scene(run::files_of(read.scene, scene)));
   const auto settings = read.scene.physics.magnetism.value_or(scene::Magnetism{});
   const auto pair = choose_pair(read.scene, settings, parsed.values);
   const auto panels = plot(pair, settings, parsed.values);
-  const std::string path =
-      parsed.values.count("out") ? parsed.values["out"].as<std::string>() : "magnetism.svg";
-  std::ofstream file(path);
-  file << to_svg(fmt::format("A = {}, B = {}", pair[0].name, pair[1].name), panels);
+  recording::OutputFile file(path);
+  file.buffer().append(to_svg(fmt::format("A = {}, B = {}", pair[0].name, pair[1].name), panels));
   file.close();
-  if (!file) throw text::UsageError(fmt::format("--out: '{}' cannot be written", path));
-  console.result(fmt::format("{}: {} and {}", path, pair[0].name, pair[1].name));
+  const std::string line = fmt::format("{}: {} and {}", path, pair[0].name, pair[1].name);
+  path == "-" ? console.report(line) : console.result(line);
   console.flush();
   return reports::exit_code::finished;
 }

@@ -72,7 +72,8 @@ int execute_try(const Arguments& arguments, processes::Signals& signals) {
   if (const auto fault = command.empty() ? processes::compile_error(options.script) : std::nullopt) {
     throw text::UsageError("--script: " + *fault);
   }
-  if (const auto wrong = processes::why_not_started(command); !wrong.empty()) throw text::UsageError("COMMAND: " + wrong);
+  const std::string wrong = command.empty() ? std::string() : processes::why_not_started(command);
+  if (!wrong.empty()) throw text::UsageError("COMMAND: " + wrong);
   options.command = command;
   options.quiet = parsed.values.count("quiet") > 0;
   if (parsed.values.count("until")) options.until = text::to_integer("--until", text("until"));

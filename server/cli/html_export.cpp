@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <stdexcept>
 
@@ -64,12 +64,26 @@ Template read_template(const std::string& player) {
           all.substr(recording + recording_place.size())};
 }
 
-void copy_as_base64(std::ifstream& from, std::ofstream& to) {
+/// @return what was written [bytes]
+std::uint64_t copy_as_base64(std::ifstream& from, std::ostream& to) {
+  std::uint64_t size = 0;
   std::string bytes(block, '\0');
   while (from) {
     from.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    to << to_base64({bytes.data(), static_cast<std::size_t>(from.gcount())});
+    const std::string letters = to_base64({bytes.data(), static_cast<std::size_t>(from.gcount())});
+    to << letters;
+    size += letters.size();
   }
+  return size;
+}
+
+/// @return what was written [bytes]
+std::uint64_t write_page(const Template& page, const std::string& name, std::ifstream& recording, std::ostream& to) {
+  const std::string begin = page.before_name + escaped(name) + page.before_recording;
+  to << begin;
+  const std::uint64_t size = copy_as_base64(recording, to);
+  to << page.rest;
+  return begin.size() + size + page.rest.size();
 }
 
 std::ifstream open_recording(const std::string& path) {
@@ -115,20 +129,21 @@ std::string to_base64(std::string_view bytes) {
 
 std::uint64_t export_html(const std::string& player, const std::string& recording,
                           const std::string& out) {
-  if (out == "-") fail("a page needs a file; write its name instead of -");
   const Template page = read_template(player);
+  const std::string name = fs::path(recording).filename().string();
   std::ifstream bytes = open_recording(recording);
+  if (out == "-") {
+    const std::uint64_t size = write_page(page, name, bytes, std::cout);
+    if (!std::cout.flush()) fail(fmt::format("stdout can't be written: {}", std::strerror(errno)));
+    return size;
+  }
   std::error_code error;
   // A pipe or a device, as behind /dev/stdout, is written to; another file would take the place of its name.
   const bool is_file = !fs::exists(out, error) || fs::is_regular_file(out, error);
   const std::string target = fs::is_symlink(out, error) ? fs::weakly_canonical(out, error).string() : out;
   const std::string part = is_file ? target + ".part" : out;
   std::ofstream file(part, std::ios::binary | std::ios::trunc);
-  file << page.before_name << escaped(fs::path(recording).filename().string())
-       << page.before_recording;
-  copy_as_base64(bytes, file);
-  file << page.rest;
-  const auto size = static_cast<std::streamoff>(file.tellp());
+  const std::uint64_t size = write_page(page, name, bytes, file);
   file.close();
   if (!file || bytes.bad()) {
     const std::string reason = std::strerror(errno);
@@ -137,7 +152,7 @@ std::uint64_t export_html(const std::string& player, const std::string& recordin
   }
   if (is_file) fs::rename(part, target, error);
   if (error) fail(fmt::format("{} can't be written: {}", out, error.message()));
-  return static_cast<std::uint64_t>(std::max<std::streamoff>(size, 0));
+  return size;
 }
 
 }  // namespace ziggurat::cli

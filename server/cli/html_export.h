@@ -14,7 +14,7 @@ std::string to_base64(std::string_view bytes);
 /// when it is whole.
 /// @param player     the page without recording, as the build makes it: player.html
 /// @param recording  an MCAP file
-/// @param out        is replaced
+/// @param out        is replaced; `-` is stdout
 /// @return  its size [bytes]
 /// @throws std::runtime_error  a sentence: the page was not built, the recording is none or too
 /// large,

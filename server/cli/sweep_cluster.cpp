@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+#include "recording/output_file.h"
+#include "recording/output_name.h"
 #include "reports/console.h"
 #include "sweep/folder.h"
 #include "sweep/ledger.h"
@@ -30,10 +32,15 @@ int write_manifest(const SweepOptions& options, const sweep::Folder& folder, std
   auto settings = options.settings;
   settings.program = "ziggurat";
   const std::size_t tasks = task_count(options.definition.experiment, chunk);
-  sweep::write_file(options.kubernetes_file,
-                    kubernetes_manifest(
-                        tasks, task_command(folder, settings, options.retries_failed),
-                        settings.jobs, options.kubernetes));
+  const std::string manifest = kubernetes_manifest(
+      tasks, task_command(folder, settings, options.retries_failed), settings.jobs, options.kubernetes);
+  if (options.kubernetes_file == "-") {
+    recording::OutputFile file("-");
+    file.buffer().append(manifest);
+    file.close();
+  } else {
+    sweep::write_file(options.kubernetes_file, manifest);
+  }
   console.report(fmt::format("{0}: an indexed Job with {1} tasks; write: kubectl create -f {2}",
                              options.kubernetes_file, tasks,
                              text::shell_word(options.kubernetes_file)));
@@ -65,6 +72,7 @@ int submit_sweep(const SweepOptions& options) {
   const sweep::Folder folder(options.out);
   const bool for_kubernetes = !options.kubernetes_file.empty();
   if (for_kubernetes) {
+    recording::check_output({"--kubernetes", options.kubernetes_file, {".yaml", ".yml"}});
     check_is_mounted(options.kubernetes.mount, folder.path());
     check_is_mounted(options.kubernetes.mount, options.definition.experiment.scene);
   }

@@ -5,10 +5,14 @@
 #include <algorithm>
 #include <boost/program_options/options_description.hpp>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
+#include <map>
 #include <numeric>
 
 #include "cli/arguments.h"
+#include "recording/output_file.h"
+#include "recording/output_name.h"
 #include "reports/console.h"
 #include "scene/values.h"
 #include "sweep/columns.h"
@@ -31,6 +35,7 @@ struct Sofar {
   sweep::Folder folder;
   sweep::Experiment experiment;
   std::vector<sweep::Result> results;
+  std::map<std::string, std::string> scene_files;  ///< hashes by path
 };
 
 Sofar look(const char* verb, const Parsed& parsed) {
@@ -39,9 +44,9 @@ Sofar look(const char* verb, const Parsed& parsed) {
         fmt::format("one folder of a sweep is expected; write: ziggurat sweep {} DIR", verb));
   }
   sweep::Folder folder(parsed.positional.front());
-  auto experiment = folder.definition().experiment;
+  sweep::Definition definition = folder.definition();
   auto results = folder.results();
-  return {std::move(folder), std::move(experiment), std::move(results)};
+  return {std::move(folder), std::move(definition.experiment), std::move(results), std::move(definition.files)};
 }
 
 double confidence_of(const Values& values) {
@@ -157,7 +162,7 @@ po::options_description plot_options() {
       ("x", text("AXIS"), "from left to right; default: the first axis with two values or more")  //
       ("by", text("AXIS"), "a curve for each value of this axis")                           //
       ("confidence", text("P"), "of the error bars; default 0.95")                          //
-      ("file", text("FILE.svg"), "the picture; default: METRIC.svg in the folder");
+      ("file", text("FILE.svg"), "the picture; default: METRIC.svg in the folder; -: that one, and on stdout");
   return options;
 }
 
@@ -169,6 +174,25 @@ std::size_t usual_abscissa(const sweep::Experiment& experiment) {
   }
   throw text::UsageError("the sweep has no axis with two values or more, so no axis can go "
                          "from left to right");
+}
+
+/// What the sweep is kept in and was made of. A picture in its folder, and the program that drew it, may be replaced.
+std::vector<recording::TakenFile> taken_by(const Sofar& sofar) {
+  std::vector<recording::TakenFile> taken;
+  for (const auto& [path, hash] : sofar.scene_files) taken.push_back({path, "a file of the sweep's scene"});
+  std::error_code error;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(sofar.folder.path(), error)) {
+    const auto ending = entry.path().extension();
+    if (!entry.is_regular_file(error) || ending == ".svg" || ending == ".gnuplot") continue;
+    taken.push_back({entry.path().string(), "a file that the sweep is kept in"});
+  }
+  return taken;
+}
+
+void print(const std::filesystem::path& file) {
+  recording::OutputFile out("-");
+  out.buffer().append(sweep::read_file(file));
+  out.close();
 }
 
 }  // namespace
@@ -255,14 +279,13 @@ int sweep_plot(const Arguments& arguments) {
   }
   std::string name = plot.measure;
   std::ranges::replace(name, '/', '_');
-  const auto file = values.has("file") ? std::filesystem::path(values.text("file"))
-                                                : sofar.folder.path() / (name + ".svg");
-  if (file.extension() != ".svg") {
-    throw text::UsageError(fmt::format("--file is '{}'; its name must end with .svg", file.string()));
-  }
+  const bool to_stdout = values.text("file") == "-";
+  const auto file = values.has("file") && !to_stdout ? std::filesystem::path(values.text("file"))
+                                                     : sofar.folder.path() / (name + ".svg");
+  recording::check_output({"--file", file.string(), {".svg"}}, taken_by(sofar));
   sweep::draw(sofar.experiment, sofar.results, plot, file);
   reports::Console console;
-  console.result(file.string());
+  to_stdout ? print(file) : console.result(file.string());
   console.flush();
   return exit_code::finished;
 }

@@ -213,6 +213,10 @@ std::vector<ClientKey> parse_client_keys(const std::string& text, const std::str
     const auto fault = [&](std::string_view sentence) {
       faults += fmt::format("{}{}:{}: {}", faults.empty() ? "" : "\n", path, number, sentence);
     };
+    if (line.find('\0') != std::string::npos) {
+      fault("has a NUL byte, \\u0000, which no text has; write the list with a text editor");
+      continue;
+    }
     // `#` is a character of keys, too: a comment begins a line, or follows a blank.
     std::istringstream words(line);
     ClientKey client;

@@ -151,6 +151,7 @@ std::string why_not_started(const std::string& command) {
   const fs::path here = fs::current_path() / "-";
   const Finder finder{command, here, here};
   const std::string program = finder.text(finder.program_word());
+  if (program.empty() || program == "''" || program == "\"\"") return "it names no program: its first word is empty";
   if (finder.is_of_shell(finder.program_word())) return {};
   if (program.find('/') == std::string::npos) return finder.missing_in_path(program);
   const fs::path file = fs::absolute(program).lexically_normal();

@@ -61,6 +61,10 @@ Condition parse_condition(const std::string& part) {
   } else if (!unit.empty()) {
     wrong(part);
   }
+  if (condition.limit == 0) {
+    throw text::UsageError(fmt::format("--gate: '{}' is never met: nothing is below 0; write {}", part,
+                                       is_time(condition.subject) ? "a time" : fmt::format("{}<1 for none at all", name)));
+  }
   return condition;
 }
 

@@ -1,9 +1,14 @@
 #pragma once
-// Who can change the file of --curve-clients decides who may connect.
+// The file of --curve-clients: who can change it decides who may connect; whether it fits the scene.
 
 #include <sys/types.h>
 
 #include <string>
+#include <vector>
+
+#include "network/keys.h"
+#include "scene/scene.h"
+#include "world/layout.h"
 
 namespace ziggurat::run {
 
@@ -13,5 +18,10 @@ namespace ziggurat::run {
 /// @param user  who starts the program
 /// @throws text::UsageError
 void check_clients(const std::string& path, uid_t user);
+
+/// A sentence on each pattern that limits a key to robots or controllers which the scene does not have: it is misspelt,
+/// or for robots that are to be spawned.
+std::vector<std::string> doubts_of(const std::vector<network::ClientKey>& clients, const scene::Scene& scene,
+                                   const world::Layout& layout);
 
 }  // namespace ziggurat::run

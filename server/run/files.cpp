@@ -8,22 +8,18 @@
 #include <vector>
 
 #include "processes/scripts.h"
+#include "recording/output_name.h"
 #include "run/clients_file.h"
-#include "text/numbers.h"
 
 namespace ziggurat::run {
 namespace {
 
 namespace fs = std::filesystem;
+using recording::OutputName;
+using recording::TakenFile;
 
-struct File {
-  std::string option;
-  std::string path;
-  std::vector<std::string> endings;  ///< allowed; empty = all
-};
-
-std::vector<File> outputs_of(const Options& options) {
-  std::vector<File> files{{"--trace", options.trace, {".csv"}},
+std::vector<OutputName> outputs_of(const Options& options) {
+  std::vector<OutputName> files{{"--trace", options.trace, {".csv"}},
                           {"--readings", options.readings, {".jsonl"}},
                           {"--rays", options.rays, {".jsonl"}},
                           {"--hash-file", options.hash_file, {}},
@@ -34,63 +30,59 @@ std::vector<File> outputs_of(const Options& options) {
   if (options.pictures && options.pictures->film) {
     files.push_back({"--video", options.pictures->film->path, {}});
   }
-  std::erase_if(files, [](const File& file) { return file.path.empty(); });
+  std::erase_if(files, [](const OutputName& file) { return file.path.empty(); });
   return files;
 }
 
-std::vector<File> inputs_of(const Options& options) {
-  std::vector<File> files;
-  for (const std::string& scene : options.scenes) files.push_back({"the scene", scene, {}});
+/// Each by the name with its number.
+std::vector<OutputName> pictures_of(const Options& options) {
+  std::vector<OutputName> files;
+  if (!options.pictures || options.pictures->out.empty()) return files;
+  const std::size_t count = options.pictures->times.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    files.push_back({"--out", picture_path(options.pictures->out, i, count), {".png"}});
+  }
+  return files;
+}
+
+TakenFile taken_by(const std::string& what, const std::string& path) {
+  return {path, fmt::format("the file of {} too", what)};
+}
+
+std::vector<TakenFile> inputs_of(const Options& options) {
+  std::vector<TakenFile> files;
+  for (const std::string& scene : options.scenes) files.push_back(taken_by("the scene", scene));
   if (!options.curve_secret.empty()) {
-    files.push_back({"--curve-secret", options.curve_secret, {}});
-    files.push_back({"--curve-clients", options.curve_clients, {}});
+    files.push_back(taken_by("--curve-secret", options.curve_secret));
+    files.push_back(taken_by("--curve-clients", options.curve_clients));
   }
   return files;
 }
 
-/// Names without ending are fine: a pipe, or /dev/stdout.
-void check_ending(const File& file) {
-  const std::string ending = fs::path(file.path).extension().string();
-  if (ending.empty() || file.endings.empty()) return;
-  for (const std::string& each : file.endings) {
-    if (ending == each) return;
-  }
-  throw text::UsageError(
-      fmt::format("{} is '{}'; its name must end with {}, because that is the "
-                  "format of its content",
-                  file.option, file.path, fmt::join(file.endings, " or ")));
-}
+}  // namespace
 
-/// Whether both paths are one file. What several may write to at once, a device or a pipe, is not.
-bool is_same(const std::string& a, const std::string& b) {
-  std::error_code error;
-  if (fs::exists(a, error) && !fs::is_regular_file(a, error)) return false;
-  if (fs::equivalent(a, b, error)) return true;
-  const fs::path whole = fs::weakly_canonical(fs::absolute(a), error);
-  return !error && whole == fs::weakly_canonical(fs::absolute(b), error) && !error;
-}
-
-/// What it includes, and its scripts.
 std::vector<std::string> files_of(const scene::Scene& scene, const std::string& path) {
   std::vector<std::string> files = scene.files;
   for (const fs::path& script : processes::scripts_of(scene, path)) files.push_back(script.string());
   return files;
 }
 
-}  // namespace
+std::vector<TakenFile> taken_by_scene(const std::vector<std::string>& files) {
+  std::vector<TakenFile> taken;
+  for (const std::string& file : files) {
+    taken.push_back({file, "a file of the scene, which includes it or runs it as a script"});
+  }
+  return taken;
+}
 
 void check_files(const Options& options) {
-  const std::vector<File> outputs = outputs_of(options);
-  std::vector<File> taken = inputs_of(options);
-  for (const File& output : outputs) {
-    check_ending(output);
-    for (const File& other : taken) {
-      if (!is_same(output.path, other.path)) continue;
-      throw text::UsageError(fmt::format("{} is '{}', the file of {} too; name another file",
-                                         output.option, output.path, other.option));
-    }
-    taken.push_back(output);
+  const std::vector<TakenFile> inputs = inputs_of(options);
+  std::vector<TakenFile> taken = inputs;
+  for (const OutputName& output : outputs_of(options)) {
+    check_output(output, taken);
+    taken.push_back(taken_by(output.option, output.path));
   }
+  for (const OutputName& picture : pictures_of(options)) check_output(picture, inputs);
   check_clients(options.curve_clients, ::geteuid());
 }
 
@@ -98,15 +90,9 @@ void check_outputs(const Options& options, const scene::Scene& scene,
                    const std::vector<std::string>& read) {
   std::vector<std::string> inputs = files_of(scene, only_scene(options));
   inputs.insert(inputs.end(), read.begin(), read.end());
-  for (const File& output : outputs_of(options)) {
-    for (const std::string& input : inputs) {
-      if (!is_same(output.path, input)) continue;
-      throw text::UsageError(
-          fmt::format("{} is '{}', a file of the scene, which includes it or runs it as a script; "
-                      "name another file",
-                      output.option, output.path));
-    }
-  }
+  const std::vector<TakenFile> taken = taken_by_scene(inputs);
+  for (const OutputName& output : outputs_of(options)) check_output(output, taken);
+  for (const OutputName& picture : pictures_of(options)) check_output(picture, taken);
 }
 
 std::vector<std::string> exceptions_of(const Options& options, const scene::Scene* scene, const std::string& path) {
@@ -117,7 +103,7 @@ std::vector<std::string> exceptions_of(const Options& options, const scene::Scen
   if (scene) {
     for (const std::string& file : files_of(*scene, path)) add("--read-only-file", file);
   }
-  for (const File& output : outputs_of(options)) add("--read-only-file", output.path);
+  for (const OutputName& output : outputs_of(options)) add("--read-only-file", output.path);
   add("--read-only-file", options.curve_clients);
   add("--hidden-file", options.curve_secret);
   return arguments;

@@ -5,14 +5,21 @@
 #include <string>
 #include <vector>
 
+#include "recording/output_name.h"
 #include "run/options.h"
 #include "scene/scene.h"
 
 namespace ziggurat::run {
 
-/// @throws text::UsageError if an output's name has a wrong ending; if an output is the scene, a
-/// key file or another output, also by another path; if others may write the list of clients' keys
+/// @throws text::UsageError if check_output() refuses an output, or it is the scene, a key file or another output; if
+/// others may write the list of clients' keys
 void check_files(const Options& options);
+
+/// The scene's file, what it includes, and its scripts.
+std::vector<std::string> files_of(const scene::Scene& scene, const std::string& path);
+
+/// What no output may replace, of files that a scene was read from, and its scripts.
+std::vector<recording::TakenFile> taken_by_scene(const std::vector<std::string>& files);
 
 /// That no output is a file that the scene was read from, or one of its scripts.
 /// @param read  other files that were read for the scene

@@ -10,6 +10,7 @@
 #include "processes/scripts.h"
 #include "processes/spawned_scripts.h"
 #include "run/background.h"
+#include "run/clients_file.h"
 #include "run/files.h"
 #include "run/loading.h"
 #include "run/setup.h"
@@ -235,6 +236,9 @@ supervision::Supervision::Settings Run::supervision_settings() const {
 void Run::print_notices() {
   for (const auto& doubt : simulation::doubts(world_.scene, world_.simulation)) console_.problem(doubt);
   for (const auto& notice : world_.simulation.notices()) console_.notice(path_ + ": " + notice);
+  if (config_.curve) {
+    for (const auto& doubt : doubts_of(config_.curve->clients, world_.scene, world_.simulation.layout())) console_.notice(doubt);
+  }
   const std::uint64_t scene_seed = past_ ? world_.seed : world_.scene.experiment.random_seed;
   if (options_.seed.value_or(scene_seed) == 0) {
     console_.notice(fmt::format("seed {0} drawn; --seed {0} repeats this run", world_.seed));

@@ -6,6 +6,10 @@ namespace ziggurat::run {
 
 void Steering::serve(std::uint64_t tick) {
   if (!calls_.take) return;
+  if (stepping_ && !calls_.can_hear(*stepping_)) {
+    stepping_.reset();
+    set_paused(true);
+  }
   for (const network::Call& call : calls_.take()) handle(call, tick);
 }
 

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "scene/malformed.h"
+#include "scene/values.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -37,6 +39,26 @@ std::size_t first_bad_utf8(std::string_view text) {
     i += size;
   }
   return std::string_view::npos;
+}
+
+/// Encodings that the parser reads: what is not ASCII must be UTF-8.
+constexpr std::array<std::string_view, 6> known_encodings{"utf-8", "utf8", "us-ascii", "ascii", "iso-8859-1", "latin1"};
+
+/// The encoding that the declaration of a text names, a part of it; empty if it names none.
+std::string_view declared_encoding(std::string_view source) {
+  const std::string_view declaration = source.substr(0, source.find("?>"));
+  const std::size_t begin = declaration.find_first_of('<');
+  if (begin == declaration.npos || !declaration.substr(begin).starts_with("<?xml")) return {};
+  const std::size_t name = declaration.find("encoding", begin);
+  const std::size_t quote = declaration.find_first_of("\"'", name);
+  if (name == declaration.npos || quote == declaration.npos) return {};
+  const std::size_t end = declaration.find(declaration[quote], quote + 1);
+  return declaration.substr(quote + 1, end == declaration.npos ? 0 : end - quote - 1);
+}
+
+bool is_known_encoding(std::string_view name) {
+  const auto is_same = [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b + ('a' - 'A') : b); };
+  return std::ranges::any_of(known_encodings, [&](std::string_view known) { return std::ranges::equal(known, name, is_same); });
 }
 
 /// The fault for an error of the parser.
@@ -111,6 +133,11 @@ bool Document::check_text(ReadBudget& budget) {
   }
   if (const std::size_t bad = first_bad_utf8(source_); bad != std::string_view::npos) {
     report_.fault(at(bad), "this is not UTF-8; save the file in UTF-8");
+    return false;
+  }
+  if (const auto encoding = declared_encoding(source_); !encoding.empty() && !is_known_encoding(encoding)) {
+    report_.fault(at(static_cast<std::size_t>(encoding.data() - source_.data())),
+                  fmt::format("encoding={} is not read; save the file in UTF-8 and write encoding=\"UTF-8\"", in_quotes(encoding)));
     return false;
   }
   return true;

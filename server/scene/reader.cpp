@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "scene/draft.h"
+#include "scene/names.h"
 #include "text/shortened.h"
 
 namespace ziggurat::scene {
@@ -50,6 +51,15 @@ bool check_root(const Element& root, const pugi::xml_node& node) {
   return false;
 }
 
+/// A root may have any name; one that is nearly the usual one was meant to be it.
+void doubt_root(Draft& draft, const Element& root) {
+  constexpr std::array<std::string_view, 1> usual{"argos-configuration"};
+  const bool is_cut = root.name().starts_with("argos") && root.name().size() > "argos"sv.size();
+  if (root.name() == usual[0] || !(is_cut || nearest(root.name(), usual))) return;
+  draft.report.warn(root.where(), "root",
+                    fmt::format("the root element is <{}>; did you mean <{}>? It is read as one", root.name(), usual[0]));
+}
+
 /// Reports the settings that set nothing, and those that set more than one attribute.
 void check_settings(Draft& draft, const Document& document) {
   for (std::size_t i = 0; i < draft.set.size(); ++i) {
@@ -80,6 +90,7 @@ void read_scene(Draft& draft, File file, const std::string& name) {
   if (!document.root()) return;
   Element root(document, document.root());
   if (!check_root(root, document.root())) return;
+  doubt_root(draft, root);
   read_parameters(draft, root);
   Parts parts = read_includes(draft, root, file.identity);
   check_settings(draft, document);

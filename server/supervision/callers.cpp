@@ -34,4 +34,16 @@ void Callers::refused(const network::Call& call, const wire::Fault& fault) {
   server_.answer(call, [&](wire::Outbox& outbox) { outbox.response(call.request.id, fault); });
 }
 
+void answer_waiting(std::vector<network::Call>& waiting, const Callers& callers,
+                    const std::function<Reply(const network::Call&)>& answer) {
+  std::vector<std::string> busy;  // connections with an earlier request that still waits
+  std::erase_if(waiting, [&](const network::Call& call) {
+    if (!callers.can_hear(call)) return true;
+    if (std::ranges::find(busy, call.peer) != busy.end()) return false;
+    if (answer(call) == Reply::given) return true;
+    busy.push_back(call.peer);
+    return false;
+  });
+}
+
 }  // namespace ziggurat::supervision

@@ -45,7 +45,7 @@ std::string list_of(const std::vector<std::string>& clients) {
 
 /// Waits for a restore that was asked for before: what that goes back to is found already, but a recording has it behind
 /// a snapshot that is taken now, which may have the same name.
-Supervision::Reply Supervision::snapshot(const network::Call& call) {
+Reply Supervision::snapshot(const network::Call& call) {
   if (resetting_) return Reply::later;
   if (auto fault = snapshots_.keep(call.request.text, world_)) return fail(call, std::move(*fault));
   callers_.tell(Kept{call.request.text});
@@ -53,7 +53,7 @@ Supervision::Reply Supervision::snapshot(const network::Call& call) {
 }
 
 /// Answered by restart().
-Supervision::Reply Supervision::restore(const network::Call& call) {
+Reply Supervision::restore(const network::Call& call) {
   if (resetting_) return Reply::later;
   if (const auto clients = clients_without_restore(server_); !clients.empty()) {
     return fail(call,
@@ -103,6 +103,12 @@ bool Supervision::restart() {
   population_.restart(restart.snapshot ? restart.snapshot->robots
                                        : simulation.layout().robots.size());
   is_gathered_ = false;  // until every robot has its controller again
+  end_steps();
+  answer_waiting(waiting_, callers_, [this](const network::Call& call) {  // also those that waited for their turn
+    if (call.request.kind != wire::Request::Kind::step) return Reply::later;
+    return fail(call, make_fault(ErrorCode::out_of_state, {},
+                                 "A reset or restore has ended these steps; send a Step again for others."));
+  });
   done(*resetting_);
   resetting_.reset();
   restoring_.reset();

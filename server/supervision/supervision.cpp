@@ -87,23 +87,14 @@ Supervision::Supervision(const Settings& settings, World& world, network::Server
 
 bool Supervision::is_standing() const { return server_.pause() == network::Pause::standing; }
 
-/// Requests of one connection are answered in their order; different connections do not wait for
-/// each other.
 void Supervision::serve() {
   paused_.update(is_standing());
-  if (stepping_ && !callers_.can_hear(*stepping_)) stepping_.reset();  // its steps continue
+  if (stepping_ && !callers_.can_hear(*stepping_)) end_steps();
   for (network::Call& call : callers_.take()) waiting_.push_back(std::move(call));
-  std::vector<std::string> busy;  // connections with an earlier request that still waits
-  std::erase_if(waiting_, [&](const network::Call& call) {
-    if (!callers_.can_hear(call)) return true;
-    if (std::ranges::find(busy, call.peer) != busy.end()) return false;
-    if (handle(call) == Reply::given) return true;
-    busy.push_back(call.peer);
-    return false;
-  });
+  answer_waiting(waiting_, callers_, [this](const network::Call& call) { return handle(call); });
 }
 
-Supervision::Reply Supervision::handle(const network::Call& call) {
+Reply Supervision::handle(const network::Call& call) {
   switch (call.request.kind) {
     case Kind::status:
       server_.answer_question(call, [&](wire::Outbox& outbox) { outbox.response(0, status()); });
@@ -138,7 +129,7 @@ Supervision::Reply Supervision::handle(const network::Call& call) {
   }
 }
 
-Supervision::Reply Supervision::pause(const network::Call& call) {
+Reply Supervision::pause(const network::Call& call) {
   const bool was_asked = server_.pause() != network::Pause::none || steps_left_ > 0;
   steps_left_ = 0;
   server_.set_paused(true);
@@ -149,7 +140,7 @@ Supervision::Reply Supervision::pause(const network::Call& call) {
 }
 
 /// A step that still runs ends here: its supervisor is told that the world is not paused.
-Supervision::Reply Supervision::resume(const network::Call& call) {
+Reply Supervision::resume(const network::Call& call) {
   stepping_.reset();
   steps_left_ = 0;
   server_.set_paused(false);
@@ -158,8 +149,18 @@ Supervision::Reply Supervision::resume(const network::Call& call) {
   return done(call);
 }
 
-Supervision::Reply Supervision::step(const network::Call& call) {
-  if (stepping_ && stepping_->peer == call.peer && stepping_->request.id == call.request.id) {
+/// The world is paused again, when the tick in hand is complete at the latest.
+void Supervision::end_steps() {
+  stepping_.reset();
+  if (steps_left_ == 0) return;
+  steps_left_ = 0;
+  server_.set_paused(true);
+  paused_.update(is_standing());
+}
+
+Reply Supervision::step(const network::Call& call) {
+  if (stepping_ && stepping_->peer == call.peer && stepping_->session == call.session &&
+      stepping_->request.id == call.request.id) {
     const bool is_over = steps_left_ == 0 && is_standing();
     if (!is_over) return Reply::later;
     stepping_.reset();
@@ -169,7 +170,7 @@ Supervision::Reply Supervision::step(const network::Call& call) {
     return fail(call, wire::make_fault(ErrorCode::bad_value, "step.ticks",
                                        "A step has at least one tick."));
   }
-  if (stepping_ || steps_left_ > 0) return Reply::later;  // steps of a caller that is gone go on
+  if (stepping_) return Reply::later;
   if (server_.pause() == network::Pause::none) {
     return fail(call,
                 wire::make_fault(ErrorCode::out_of_state, {},
@@ -185,7 +186,7 @@ Supervision::Reply Supervision::step(const network::Call& call) {
 }
 
 /// Answered by restart().
-Supervision::Reply Supervision::reset(const network::Call& call) {
+Reply Supervision::reset(const network::Call& call) {
   if (resetting_) return Reply::later;
   if (call.request.seed == std::uint64_t{0}) {
     return fail(call,
@@ -197,7 +198,7 @@ Supervision::Reply Supervision::reset(const network::Call& call) {
   return Reply::given;
 }
 
-Supervision::Reply Supervision::read(const network::Call& call) {
+Reply Supervision::read(const network::Call& call) {
   const simulation::Simulation& simulation = world_.simulation;
   server_.answer_question(call, [&](wire::Outbox& outbox) {
     const Selection selection = select(call.request.entities, simulation);
@@ -212,7 +213,7 @@ Supervision::Reply Supervision::read(const network::Call& call) {
   return Reply::given;
 }
 
-Supervision::Reply Supervision::move(const network::Call& call) {
+Reply Supervision::move(const network::Call& call) {
   const auto entity = entity_named(world_.simulation, call.request.text);
   if (!entity) return fail(call, no_entity("move.entity", call.request.text, &world_.simulation));
   auto pose = pose_of_move(world_.simulation.state().origins[*entity], call.request);
@@ -222,23 +223,23 @@ Supervision::Reply Supervision::move(const network::Call& call) {
   return done(call);
 }
 
-Supervision::Reply Supervision::spawn(const network::Call& call) {
+Reply Supervision::spawn(const network::Call& call) {
   auto fault = population_.spawn(call.request.text);
   return fault ? fail(call, std::move(*fault)) : done(call);
 }
 
-Supervision::Reply Supervision::remove(const network::Call& call) {
+Reply Supervision::remove(const network::Call& call) {
   auto fault = population_.remove(call.request.text);
   return fault ? fail(call, std::move(*fault)) : done(call);
 }
 
-Supervision::Reply Supervision::fail(const network::Call& call, wire::Fault fault) {
+Reply Supervision::fail(const network::Call& call, wire::Fault fault) {
   fault.tick = world_.simulation.state().tick;
   callers_.refused(call, fault);
   return Reply::given;
 }
 
-Supervision::Reply Supervision::done(const network::Call& call) {
+Reply Supervision::done(const network::Call& call) {
   callers_.done(call, world_.simulation.state().tick);
   return Reply::given;
 }

@@ -67,12 +67,12 @@ class Supervision {
   wire::Status status() const;
 
  private:
-  enum class Reply { given, later };
   bool is_standing() const;
   Reply handle(const network::Call& call);
   Reply pause(const network::Call& call);
   Reply resume(const network::Call& call);
   Reply step(const network::Call& call);
+  void end_steps();
   Reply reset(const network::Call& call);
   Reply read(const network::Call& call);
   Reply move(const network::Call& call);

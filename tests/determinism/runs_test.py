@@ -43,8 +43,8 @@ class Runs(SceneTest):
             self.assertEqual(path.read_text().splitlines(), self.expected)
 
     def test_pace_and_recording_change_nothing(self):
-        self.assertEqual(self.hashes("--real-time", "10", "--trace", self.folder / "t",
-                                     "--readings", self.folder / "r"), self.expected)
+        self.assertEqual(self.hashes("--real-time", "10", "--trace", self.folder / "t.csv",
+                                     "--readings", self.folder / "r.jsonl"), self.expected)
 
     def test_another_seed_gives_other_hashes(self):
         self.assertNotEqual(self.hashes("--seed", 4), self.expected)

@@ -35,6 +35,14 @@ class BrokenScene(SceneTest):
         self.assertEqual(outcome.code, FINISHED, outcome.err)
         self.assertRegex(outcome.err, r"notice: .*colour")
 
+    def test_a_root_that_is_misspelt_and_an_encoding_that_is_not_read(self):
+        self.change("argos-configuration", "argos-config")
+        outcome = self.ziggurat("check", self.scene)
+        self.assertEqual(outcome.code, FINISHED)
+        self.assert_is_sentence(outcome, "<argos-config>; did you mean <argos-configuration>")
+        self.scene.write_text('<?xml version="1.0" encoding="EBCDIC"?>\n' + self.text.partition("?>")[2].lstrip())
+        self.assert_is_sentence(self.ziggurat("check", self.scene), 'arms.argos:1:31: encoding="EBCDIC" is not read')
+
     def test_cyclic_joints(self):
         self.change("</joints>\n    </prototype>", """  <joint id="back" type="fixed">
           <parent link="arm" position="0,0,0" orientation="0,0,0" />
@@ -147,9 +155,10 @@ class BrokenArguments(SceneTest):
         self.refuses(r"--seed is for reset", "ctl", url, "pause", "--seed", "3")
 
     def test_files_that_cannot_be_written(self):
-        for option in ("--trace", "--readings", "--hash-file", "--summary", "--report-card"):
+        for option, ending in (("--trace", ".csv"), ("--readings", ".jsonl"), ("--hash-file", ""), ("--summary", ".json"),
+                               ("--report-card", ".json")):
             outcome = self.refuses(r"/no/such/folder/x.*No such file", "run", self.scene, option,
-                                   "/no/such/folder/x")
+                                   "/no/such/folder/x" + ending)
             self.assertEqual(outcome.out, "", "no controller has been started")
 
     def test_outputs_with_a_wrong_ending(self):
@@ -177,7 +186,7 @@ class BrokenArguments(SceneTest):
         self.change("<arena ", '<include file="models.xml"/><arena ')
         for path in (models, self.folder / "swing.lua"):
             before = path.read_bytes()
-            self.refuses(r"--hash-file is .*a file of the scene", "run", self.scene, "--hash-file", path)
+            self.refuses(r"--hash-file is .*(a file of the scene|a Lua script)", "run", self.scene, "--hash-file", path)
             self.assertEqual(path.read_bytes(), before)
 
     def test_a_list_of_clients_that_others_can_write(self):

@@ -176,6 +176,13 @@ class Keys(SceneTest):
         unlisted.kill()
         unlisted.wait()
 
+    def test_a_key_for_robots_that_are_not_there_is_told(self):
+        self.keygen("server")
+        self.write("clients", f"{self.keygen('listed')} controller robots=zzz*,r0 Alice\n")
+        outcome = self.run_scene("--ticks", 2, "--endpoint", "tcp://127.0.0.1:*", "--curve-secret", "server.secret",
+                                 "--curve-clients", "clients")
+        self.assertIn("notice: --curve-clients: robots=zzz* of the key Alice means no robot of the scene", outcome.err)
+
     def test_scripts_change_no_file_of_the_run_and_read_no_secret_key(self):
         """Whatever these files are called; the scene starts programs, and the list decides who may connect."""
         scene = self.write("arms.txt", self.text.replace("<framework>", '<include file="more.dat"/><framework>')

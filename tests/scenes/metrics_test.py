@@ -28,7 +28,7 @@ class Metrics(SceneTest):
         return json.loads(path.read_text())
 
     def readings(self):
-        lines = map(json.loads, (self.folder / "readings").read_text().splitlines())
+        lines = map(json.loads, (self.folder / "readings.jsonl").read_text().splitlines())
         return [(line["tick"], line["robot"], line["metrics"]) for line in lines if line["metrics"]]
 
     def test_last_values_are_in_the_summary(self):
@@ -42,7 +42,7 @@ class Metrics(SceneTest):
         self.assertEqual(len(summary["metrics"]), 4 * len(robots))
 
     def test_readings_have_them_at_their_tick(self):
-        self.summary("--duration", "0.5", "--readings", self.folder / "readings")
+        self.summary("--duration", "0.5", "--readings", self.folder / "readings.jsonl")
         found = self.readings()
         robot = found[0][1]
         of_one = {tick: metrics for tick, name, metrics in found if name == robot}
@@ -52,10 +52,10 @@ class Metrics(SceneTest):
 
     def test_a_replay_has_the_same(self):
         record = self.folder / "run.mcap"
-        before = self.summary("--duration", "0.5", "--record", record, "--readings", self.folder / "readings")
+        before = self.summary("--duration", "0.5", "--record", record, "--readings", self.folder / "readings.jsonl")
         lines = self.readings()
-        (self.folder / "readings").unlink()
-        after = self.summary("--readings", self.folder / "readings", command="replay", scene=record)
+        (self.folder / "readings.jsonl").unlink()
+        after = self.summary("--readings", self.folder / "readings.jsonl", command="replay", scene=record)
         self.assertEqual(after["metrics"], before["metrics"])
         last = max(int(tick) for tick, _, _ in lines)
         self.assertEqual([line for line in self.readings() if int(line[0]) < last],

@@ -110,7 +110,7 @@ class Processes(Recorded):
         recording, _ = self.record("--ticks", 5)
         marker.unlink()
         for words in (("replay", recording), ("verify", recording), ("diff", recording, recording), ("info", recording),
-                      ("export", recording, "--csv", self.folder / "csv"),
+                      ("export", recording, "--csv", self.folder / "poses.csv"),
                       ("replay", recording, "--from-poses", "--trace", "t.csv")):
             with self.subTest(words[0]):
                 self.ask(*words)
@@ -282,7 +282,7 @@ class FromPoses(Recorded):
         self.interrupt(process)
         self.finish(process)
 
-    def test_it_goes_on_when_the_viewer_that_steps_it_leaves(self):
+    def test_steps_end_when_the_viewer_leaves(self):
         recording, _ = self.record("--ticks", "40")
         process = self.start("replay", recording, "--view", "127.0.0.1:0", "--real-time", "4")
         port, token = self.read_until(process.stderr, r"http://127\.0\.0\.1:(\d+)/\?token=(\S+)").groups()
@@ -294,7 +294,7 @@ class FromPoses(Recorded):
             first.call(STEP, 2, b'{"ticks": 10}')
         with RawViewer(int(port), token) as second:
             number, was_done = 0, False
-            while not was_done:  # the steps of the first are done then
+            while not was_done:  # the steps of the first have ended then
                 number += 1
                 second.call(STEP, number, b'{"ticks": 1}')
                 was_done, _ = second.hear_answer(number)

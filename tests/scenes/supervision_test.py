@@ -151,6 +151,39 @@ class Ctl(unittest.TestCase):
             self.assertEqual(before + 2, int(status["tick"]))
             self.assertRegex(status["sceneHash"], "^[0-9a-f]{16}$")
 
+    def test_steps_end_with_the_one_who_asked_for_them(self):
+        for number in (signal.SIGINT, signal.SIGKILL):
+            for paced in ([], ["--real-time", "5"]):
+                with self.subTest(number=number, paced=paced), Server(DROP, "--duration", "0", *paced) as server:
+                    server.ask("ctl", "pause")
+                    before = server.tick()
+                    stepping = subprocess.Popen([BIN / "ziggurat", "ctl", server.url, "step", "1000000000"],
+                                                stderr=subprocess.DEVNULL)
+                    server.wait_for_tick(before + 1)
+                    stepping.send_signal(number)
+                    stepping.wait()
+                    server.ask("ctl", "step", "1")
+                    before = server.tick()
+                    time.sleep(0.5)
+                    self.assertEqual(server.tick(), before, "it is paused")
+
+    def test_a_reset_ends_steps_of_others(self):
+        with Server(DROP, "--duration", "0") as server:
+            steps = []
+            for _ in range(2):  # the second one waits for the first
+                steps.append(subprocess.Popen([BIN / "ziggurat", "ctl", server.url, "step", "1000000000"],
+                                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True))
+                server.wait_for_tick(1)
+            time.sleep(0.3)
+            server.ask("ctl", "reset")
+            for step in steps:
+                _, said = step.communicate(timeout=20)
+                self.assertEqual(step.returncode, 1)
+                self.assertIn("OUT_OF_STATE: A reset or restore has ended these steps", said)
+            self.assertEqual(server.tick(), 0)
+            server.ask("ctl", "step", "3")
+            self.assertEqual(server.tick(), 3)
+
     def test_a_paused_world_stays_at_the_reported_tick(self):
         for paced in ([], ["--real-time", "50"]):
             with Server(VEHICLE, "--duration", "0", *paced) as server:
@@ -258,7 +291,7 @@ class Hil(unittest.TestCase):
             self.assertTrue(report["passed"])
             self.assertEqual(report["controllers"][0]["answers"], 11)  # to the ticks 0 to 10
             picture = pathlib.Path(folder) / "card.svg"
-            bad = self.run_vehicle("--gate", "max<0us", "--report-card", picture)
+            bad = self.run_vehicle("--gate", "max<0.001us", "--report-card", picture)
             self.assertEqual(4, bad.returncode, bad.stderr)
             self.assertIn("gate: not met", bad.stderr)
             self.assertIn("<svg", picture.read_text())

@@ -4,7 +4,7 @@ import math
 import re
 
 from ..case import Case, Level
-from ..messages import ALL, answer, hear_refusal, hello, join, observe, send_hello
+from ..messages import ALL, answer, hear_refusal, hello, join, leave, observe, send_hello
 from ..server_scene import SCENE
 from ..steps import Check, Hear, Join, Send, Silence, Skip, Tick
 from ..wire import Count, OneOf, Some
@@ -39,6 +39,11 @@ def _paused() -> list:
 
 def _resumed(first: int = 90) -> list:
     return [ask("s", first, resume={}), told("s", first), *observe("p")]
+
+
+def _stepping() -> list:
+    """s steps the world, far; p owes the first of its ticks; t is a supervisor, too."""
+    return [*_paused(), _comes("t"), ask("s", 2, step={"ticks": 1000}), *observe("p")]
 
 
 def _holds_up(stage) -> str:
@@ -151,6 +156,14 @@ CASES = [
        ask("s", 1, step={"ticks": 1}), failed("s", 1, "OUT_OF_STATE"), answer("p"), *observe("p")),
     _v("V5.none", "A step of 0 ticks is BAD_VALUE", *_paused(), ask("s", 2, step={"ticks": 0}),
        failed("s", 2, "BAD_VALUE"), *_resumed()),
+    _v("V5.left", "Steps end with the session that asked for them", *_stepping(), leave("s"), Silence("p", 0.1), answer("p"),
+       Hear("p", "paused"), Silence("p"), ask("t", 1, step={"ticks": 1}), *observe("p"), answer("p"), told("t", 1),
+       Hear("p", "paused"), ask("t", 2, resume={}), told("t", 2), *observe("p"), fresh=True),
+    _v("V5.reset", "Another's reset ends steps, and those that wait; the world is paused", *_stepping(), _comes("u"),
+       ask("u", 1, step={"ticks": 1}), Silence("u", 0.1), ask("t", 1, reset={}), failed("s", 2, "OUT_OF_STATE"),
+       failed("u", 1, "OUT_OF_STATE"), told("t", 1), Hear("p", "reset"), Hear("p", "observation", {"tick": 0}),
+       answer("p"), Hear("p", "paused", {"tick": 0}), Silence("p"), ask("t", 2, resume={}), told("t", 2),
+       Hear("p", "observation", {"tick": 1}), fresh=True),
     _v("V6.reset", "After a reset the world is at tick 0", *ALL, _comes(), ask("s", 1, reset={}),
        Skip("p", "reset"), Hear("p", "observation", {"tick": 0}), told("s", 1), answer("p"),
        Hear("p", "observation", {"tick": 1}), fresh=True),

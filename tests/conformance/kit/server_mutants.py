@@ -192,6 +192,8 @@ MUTANTS = [
     _bent("resume-not-done", "V4.pause"),
     _bent("one-step-more", "V5.step"),
     _bent("step-of-none", "V5.none"),
+    _bent("steps-go-on", "V5.left"),
+    _bent("steps-are-done-by-a-reset", "V5.reset"),
     _bent("reset-not-told", "V6.reset"),
     _bent("seed-not-told", "V6.seed"),
     _bent("seed-ignored", "V6.seed"),

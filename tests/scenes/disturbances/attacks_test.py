@@ -102,7 +102,9 @@ class Attacks(SceneTest):
         for arguments, pattern in (
                 (("run", ""), "no scene is given"), (("run", self.scene, "--paused"), "needs --endpoint.* or --view"),
                 (("fork", "run.mcap", "--at", 2, "--paused"), "needs --endpoint"),
-                (("export", "run.mcap", "--csv", "x", "--jsonl", "x"), "'x', the file of another format too"),
+                (("try", "run.mcap", "--robot", "r0", "--", ""), "COMMAND: it names no program"),
+                (("run", self.scene, "--hil", "--gate", "late<0"), "'late<0' is never met: nothing is below 0; write late<1"),
+                (("export", "run.mcap", "--csv", "-", "--jsonl", "-"), "'-', the file of another format too"),
                 *[(("sweep", self.scene, "--out", "y", "--seeds", seeds), "write for example 1..30 or 1,2,5..9")
                   for seeds in ("1..", "..5", "1,,2")],
                 (("serve", self.scene, "--curve-secret", "", "--curve-clients", ""), "the value of --curve-.* is empty")):

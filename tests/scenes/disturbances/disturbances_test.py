@@ -91,7 +91,7 @@ class Run:
         with open(self.folder / "stderr", "w", encoding="utf-8") as stderr:
             self.server = test.start(
                 "serve", test.scene, "--endpoint", "tcp://127.0.0.1:*", "--ticks", TICKS,
-                "--hash-file", self.folder / "hashes", "--trace", self.folder / "trace", *options,
+                "--hash-file", self.folder / "hashes", "--trace", self.folder / "trace.csv", *options,
                 limit=LIMIT, stderr=stderr)
         self.endpoint = self.server.stdout.readline().split()[1]
         self.others = []
@@ -155,7 +155,7 @@ class Run:
     def differences(self, other):
         """Robot -> the first tick at which one of its poses differs."""
         found = {}
-        with open(self.folder / "trace") as ours, open(other.folder / "trace") as theirs:
+        with open(self.folder / "trace.csv") as ours, open(other.folder / "trace.csv") as theirs:
             for one, two in zip(ours, theirs, strict=True):
                 if one != two:
                     tick, _, robot, _ = one.split(",", 3)
@@ -164,7 +164,7 @@ class Run:
 
     def arm_at_the_end(self, i, ticks):
         """Orientations of a robot's arm in the last ticks."""
-        with open(self.folder / "trace") as rows:
+        with open(self.folder / "trace.csv") as rows:
             found = [row.split(",")[7:] for row in rows if f",robot{i},arm," in row]
         return [[float(value) for value in row] for row in found[-ticks:]]
 

@@ -73,6 +73,15 @@ TEST_F(HtmlExport, LinksAndDevicesStayWhatTheyAre) {
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
+TEST_F(HtmlExport, ADashIsStdout) {
+  const auto player = write("player.html", "@NAME@ @RECORDING@"), recording = write("r.mcap", magic_);
+  testing::internal::CaptureStdout();
+  const std::size_t size = export_html(player, recording, "-");
+  const std::string page = testing::internal::GetCapturedStdout();
+  EXPECT_EQ(page, "r.mcap " + to_base64(magic_));
+  EXPECT_EQ(size, page.size());
+}
+
 TEST_F(HtmlExport, ALargeRecordingIsOneText) {
   const auto player = write("player.html", "@NAME@|@RECORDING@|");
   std::string bytes = magic_;

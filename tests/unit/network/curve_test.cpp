@@ -126,6 +126,16 @@ TEST_F(Keys, FaultsOfLimitsAreNamed) {
   }
 }
 
+TEST_F(Keys, ANulByteIsNamed) {
+  const std::string a = write_key_pair(path("a"));
+  for (const std::string& line : {a + " contr" + '\0' + "oller", a + " controller robots=a" + '\0', a + " controller A" + '\0'}) {
+    const std::string file = write("list", line + "\n" + a + " nonsense\n");
+    const auto text = complaint([&] { read_client_keys(file); });
+    EXPECT_NE(text.find("list:1: has a NUL byte, \\u0000"), std::string::npos) << text;
+    EXPECT_NE(text.find("list:2: 'nonsense' are no roles"), std::string::npos) << "nothing is cut: " << text;
+  }
+}
+
 struct Protected : Keys {
   Protected() {
     server_key = write_key_pair(path("server"));

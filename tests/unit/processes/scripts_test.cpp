@@ -120,6 +120,9 @@ TEST_F(Scripts, ACommandThatNoShellCanStartIsTold) {
   EXPECT_NE(why_not_started(program.string() + "r").find("did you mean 'drive'?"), std::string::npos);
   EXPECT_NE(why_not_started(plain.string()).find("chmod +x"), std::string::npos);
   EXPECT_NE(why_not_started("./").find("is no program"), std::string::npos);
+  for (const char* command : {"", " ", "''", "'' --fast", "\"\"", "exec ''"}) {
+    EXPECT_EQ(why_not_started(command), "it names no program: its first word is empty") << command;
+  }
   EXPECT_NE(why_not_started("no-such-program").find("no program in PATH"), std::string::npos);
 }
 

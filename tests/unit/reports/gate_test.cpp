@@ -28,6 +28,14 @@ TEST(Gate, NamesThePartThatIsWrong) {
                            "p99<-1ms", "p99<nanms", "p99<2ms,,", "p99<2ms,", "p99<0x10ms", "misses<101%", "late<1e3%"}) {
     EXPECT_THROW(parse_gate(text), text::UsageError) << text;
   }
+  for (const char* text : {"late<0", "misses<0%", "p99<0ms", "run<0.0", "max<0us"}) {
+    try {
+      parse_gate(text);
+      ADD_FAILURE() << text;
+    } catch (const text::UsageError& error) {
+      EXPECT_NE(std::string(error.what()).find("is never met: nothing is below 0"), std::string::npos) << error.what();
+    }
+  }
   EXPECT_EQ(parse_gate("misses<100%")[0].limit, 1);
   try {
     parse_gate("p99<2ms,speed<3");

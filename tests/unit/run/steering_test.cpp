@@ -16,10 +16,11 @@ struct Viewer {
   std::vector<network::Call> calls;
   std::vector<std::string> answers;
   std::uint64_t next = 1;
+  bool is_there = true;
 
   Viewer() {
     steering.connect({[this] { return std::exchange(calls, {}); },
-                      [](const network::Call&) { return true; },
+                      [this](const network::Call&) { return is_there; },
                       [this](const network::Call& call, std::uint64_t tick) {
                         answers.push_back(std::to_string(call.request.id) + " at " + std::to_string(tick));
                       },
@@ -62,6 +63,22 @@ TEST(Steering, AStepThatIsInterruptedIsRefused) {
   EXPECT_TRUE(viewer.steering.is_paused());
   EXPECT_EQ(viewer.answers,
             (std::vector<std::string>{"1 refused", "2 at 0", "3 refused", "4 at 1"}));
+}
+
+TEST(Steering, StepsEndWithTheirViewer) {
+  Viewer viewer;
+  viewer.ask(Kind::pause, 0);
+  viewer.ask(Kind::step, 0, 100);
+  viewer.steering.stepped(1);
+  viewer.steering.serve(1);
+  EXPECT_FALSE(viewer.steering.is_paused());
+  viewer.is_there = false;
+  viewer.steering.serve(1);
+  EXPECT_TRUE(viewer.steering.is_paused());
+  viewer.is_there = true;
+  viewer.ask(Kind::step, 1, 1);
+  viewer.steering.stepped(2);
+  EXPECT_EQ(viewer.answers, (std::vector<std::string>{"1 at 0", "3 at 2"}));
 }
 
 TEST(Steering, ChangesNothingOfTheWorld) {

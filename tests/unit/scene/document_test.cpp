@@ -52,6 +52,31 @@ TEST_F(Folder, MissingFilesAndOtherKindsOfFilesAreFaults) {
   EXPECT_TRUE(contains(only_fault(read_file("/dev/zero")), "not a regular file"));
 }
 
+TEST(Encoding, AnotherThanUtf8IsAFault) {
+  const auto read_as = [](const std::string& encoding) {
+    return read_text("<?xml version=\"1.0\" encoding=" + encoding + "?>\n" + SceneText{}.str(), "scene.argos");
+  };
+  for (const char* encoding : {"\"UTF-8\"", "'utf-8'", "\"US-ASCII\"", "\"ISO-8859-1\"", "\"\""}) {
+    EXPECT_TRUE(read_as(encoding).problems.empty()) << encoding << all_problems(read_as(encoding));
+  }
+  for (const char* encoding : {"\"EBCDIC\"", "\"UTF-16\"", "'Shift_JIS'"}) {
+    EXPECT_TRUE(contains(only_fault(read_as(encoding)), "is not read; save the file in UTF-8")) << encoding;
+  }
+  EXPECT_TRUE(contains(only_fault(read_as("\"EBCDIC\"")), "encoding=\"EBCDIC\""));
+}
+
+TEST(Root, ThatIsNearlyTheUsualOneIsDoubted) {
+  for (const std::string name : {"argos-config", "argos_configuration", "argos-configuraton", "Argos-configuration"}) {
+    std::string text = SceneText{}.str();
+    for (auto at = text.find("argos-configuration"); at != std::string::npos; at = text.find("argos-configuration", at + name.size())) {
+      text.replace(at, 19, name);
+    }
+    const ReadResult result = read_text(text, "scene.argos");
+    EXPECT_TRUE(result.ok());
+    EXPECT_TRUE(contains(all_problems(result), "<" + name + ">; did you mean <argos-configuration>?")) << all_problems(result);
+  }
+}
+
 TEST_F(Folder, EmptyAndBinaryFilesAreFaults) {
   EXPECT_TRUE(contains(only_fault(read_file(write("empty", ""))), "is empty"));
   EXPECT_TRUE(contains(only_fault(read_file(write("white", " \n\t\n"))), "is empty"));

@@ -31,6 +31,13 @@ def _(connection, message):
     return None
 
 
+@said("steps-go-on")
+def _(connection, message):
+    is_supervisor = connection.hello is not None and connection.hello.role == protocol.ROLE_SUPERVISOR
+    return [] if is_supervisor and message.HasField("leave") else None
+
+
+TOLD["steps-are-done-by-a-reset"] = clear_fields("response", "error")
 TOLD["reset-not-told"] = drop("reset")
 TOLD["seed-not-told"] = set_fields("reset", seed=0)
 
