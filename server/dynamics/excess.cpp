@@ -340,6 +340,7 @@ void undo_excess(Tree& tree, Workspace& work, const Excess& excess, std::span<co
     if (grounded) give_back_turning(tree, sum);
   } else {
     sum -= take_from_joints(tree, work, held, sum);
+    if (!grounded && tree.free_root) return;  // its momentum is right, and with that the energy of its turning
   }
   const double most = kinetic_energy(tree) - sum;
   take_excess(tree, work, sum);

@@ -66,8 +66,7 @@ bool System::foresee(std::span<Contact> contacts, std::span<Limit> limits, doubl
   gather(contacts_, servos_, limits_);
   for (int& tree : disturbed_) tree = island_[tree];
   std::ranges::sort(disturbed_);
-  const auto repeated = std::ranges::unique(disturbed_);
-  disturbed_.erase(repeated.begin(), repeated.end());
+  disturbed_.erase(std::unique(disturbed_.begin(), disturbed_.end()), disturbed_.end());
   for (const int island : disturbed_) {
     const int first = first_tree_[island], last = first_tree_[island + 1];
     if (last - first > most_bodies) continue;
