@@ -24,10 +24,11 @@ double push_speed(const Tree& tree, double length) {
 }
 
 /// How fast a servo changes what it moves, if it is as strong as that takes [m/s].
-double servo_change(const Servo& servo, const Tree& tree) {
+/// @param least  what need not be known exactly
+double servo_change(const Servo& servo, const Tree& tree, double least) {
   if (servo.dof < 0 || servo.upper <= 0) return 0;
-  const double by = tree.axes[servo.dof].angular.isZero(0) ? 1 : lever;
-  return by * std::abs(servo.speed - tree.v[servo.dof]);
+  const double change = std::abs(servo.speed - tree.v[servo.dof]);
+  return change <= least || tree.axes[servo.dof].angular.isZero(0) ? change : lever * change;
 }
 
 /// How fast two trees part at a contact [m/s].
@@ -46,17 +47,19 @@ bool System::foresee(std::span<Contact> contacts, std::span<Limit> limits, doubl
   out.trees.clear();
   out.speeds.clear();
   const double fast = far / length_;
-  const auto moves = [&](int tree) { return tree >= 0 && trees[tree].dofs > 0 && !asleep(tree); };
+  const auto moves = [&](int tree) { return trees[tree].dofs > 0 && !asleep(tree); };
   disturbed_.clear();
   for (std::size_t i = 0; i < watch_.size(); ++i) {
     const int tree = static_cast<int>(i);
     if ((watch_[i] & pushed) && moves(tree) && push_speed(trees[i], length_) > fast) disturbed_.push_back(tree);
   }
   for (const Servo& servo : servos_) {
-    if (moves(servo.tree) && servo_change(servo, trees[servo.tree]) > fast) disturbed_.push_back(servo.tree);
+    const Tree& tree = trees[servo.tree];
+    if (servo_change(servo, tree, fast) > fast && moves(servo.tree)) disturbed_.push_back(servo.tree);
   }
-  for (const Contact& contact : contacts_) {
-    if (contact.b.tree < 0 || !moves(contact.a.tree) || !moves(contact.b.tree)) continue;
+  for (const int i : between_) {
+    const Contact& contact = contacts_[i];
+    if (!moves(contact.a.tree) || !moves(contact.b.tree)) continue;
     const double apart = parting(trees, contact);
     if (-apart > fast && contact.gap + length_ * apart < 0) disturbed_.push_back(contact.a.tree);
   }

@@ -183,11 +183,16 @@ bool System::wake_disturbed(double length, std::span<Contact> contacts, std::spa
     woke = true;
   });
   const auto moves = [&](int tree) { return trees[tree].dofs > 0; };
+  between_.clear();
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    if (contacts_[i].a.tree >= 0 && contacts_[i].b.tree >= 0) between_.push_back(static_cast<int>(i));
+  }
   for (bool again = true; again;) {  // who wakes may touch another
     again = false;
-    for (const Contact& contact : contacts_) {
+    for (const int i : between_) {
+      const Contact& contact = contacts_[i];
       const int a = contact.a.tree, b = contact.b.tree;
-      if (a < 0 || b < 0 || asleep(a) == asleep(b)) continue;  // most, and this reads no tree
+      if (asleep(a) == asleep(b)) continue;  // most, and this reads no tree
       if (!moves(a) || !moves(b) || !comes_to_touch(contact)) continue;
       wake(a);
       wake(b);

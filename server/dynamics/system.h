@@ -97,7 +97,7 @@ class System {
 
   /// Which trees the coming substep sets in motion within it: by motors, pushes or blows, so that their speeds at its beginning do not
   /// say what they meet. To be called after wake_disturbed(), whose servos it takes.
-  /// @param contacts  those, or more
+  /// @param contacts  those, and perhaps more behind them
   /// @param far  what need not be known: how far such a tree comes in the substep [m]
   /// @return     whether there are some
   bool foresee(std::span<Contact> contacts, std::span<Limit> limits, double far, Foresight& out);
@@ -165,6 +165,7 @@ class System {
   enum Watch : unsigned char { commanded = 1, held = 2, pushed = 4, waits = 8 };
   std::vector<unsigned char> watch_;
   std::vector<int> awake_, disturbed_;
+  std::vector<int> between_;  // contacts of two trees
   double length_ = 0;
   std::span<Contact> contacts_;
   std::span<Servo> servos_;
