@@ -74,9 +74,7 @@ bool System::foresee(std::span<Contact> contacts, std::span<Limit> limits, doubl
     const int first = first_tree_[island], last = first_tree_[island + 1];
     if (last - first > most_bodies) continue;
     gather_island(first, last, first_item_[island], first_item_[island + 1]);
-    aim_rebounds(problem_);
-    problem_.bound_depth();
-    solver_.solve(problem_);
+    solve_velocities(problem_, solver_);
     out.trees.insert(out.trees.end(), tree_order_.begin() + first, tree_order_.begin() + last);
     out.speeds.insert(out.speeds.end(), problem_.velocity.begin(), problem_.velocity.end());
   }

@@ -102,8 +102,7 @@ bool is_met_after(const Problem& problem, const Block& later, const Block& earli
   return later.gap + earlier.met * now[0] + (problem.length - earlier.met) * (now[0] + change) < 0;
 }
 
-}  // namespace
-
+/// Lets contacts with restitution seek the speeds with which they rebound, and end where they do.
 void aim_rebounds(Problem& problem) {
   const auto rebounds = [](const Block& block) { return block.restitution > 0; };
   if (std::ranges::none_of(problem.blocks, rebounds)) return;
@@ -121,6 +120,14 @@ void aim_rebounds(Problem& problem) {
     block.bounces = false;
     block.seek[0] = -block.gap / problem.length;
   }
+}
+
+}  // namespace
+
+Outcome solve_velocities(Problem& problem, Solver& solver) {
+  aim_rebounds(problem);
+  problem.bound_depth();
+  return solver.solve(problem);
 }
 
 }  // namespace ziggurat::dynamics

@@ -330,8 +330,7 @@ bool Problem::turn_into_displacement() {
   if (std::none_of(blocks.begin(), blocks.end(), needs_it)) return false;
   const bool rebounding = std::any_of(blocks.begin(), blocks.end(), bounces);
   const auto holds = [&](const Block& block) {  // through the impact: what it holds did not move when it was struck
-    const double impulse = block.impulse[0];
-    return rebounding && (block.kind == Block::Source::servo ? impulse > block.lower && impulse < block.upper : impulse > 0);
+    return rebounding && (block.kind == Block::Source::servo ? block.is_obeyed() : block.impulse[0] > 0);
   };
   for (Block& block : blocks) {
     if (block.kind == Block::Source::servo && !holds(block)) {

@@ -46,6 +46,8 @@ struct Block {
   double met = 0;                   ///< and when, from the substep's beginning [s]
   Matrix3 frame = Matrix3::Zero();  ///< columns: normal and tangents of a contact
   int source = 0;                   ///< into the contacts, servos or limits of the system
+  /// Of a servo: it does not give all that it has.
+  bool is_obeyed() const { return lower < impulse[0] && impulse[0] < upper; }
   enum class Source : unsigned char { contact, servo, limit } kind = Source::contact;
 };
 
@@ -69,7 +71,7 @@ struct Problem {
   std::vector<int> first_bias;                 ///< of each tree, in `bias`; -1: not needed, or it hardly turns
   std::vector<double> total_mass;              ///< of each tree [kg]
   double weight = 0;                           ///< of all trees [N]
-  std::vector<double> carried;                 ///< memory of aim_rebounds(): what carries each tree, times gravity [N s m/s^2]
+  std::vector<double> carried;                 ///< memory of solve_velocities(): what carries each tree, times gravity [N s m/s^2]
   std::vector<double> velocity;                ///< v: start and solution
   std::vector<std::pair<int, int>> couplings;  ///< pairs of trees that meet in a block
 

@@ -125,9 +125,10 @@ class System {
   void archive(math::Archive& archive);
 
  private:
+  enum Kind { contact_item, servo_item, limit_item };
   struct Item {
     int island;
-    int kind;  // contact, servo, limit
+    Kind kind;
     int index;
   };
   template <class Visit>

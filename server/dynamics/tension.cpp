@@ -10,7 +10,7 @@ namespace {
 
 /// How far a link may swing by itself within a step that is not divided, and how far it does in a part of one that is [rad].
 /// Neighbours swing against each other up to twice as fast, and from 2 on that is unstable.
-constexpr double too_far = 0.7, of_a_part = 0.5;
+constexpr double swings_too_far = 0.7, swing_of_a_part = 0.5;
 
 /// Whether a servo or a limit holds a coordinate.
 bool holds_joint(const Block& block) {
@@ -84,7 +84,7 @@ Matrix3 stiffness(const Matrix3& dyad) {
 bool may_swing(const Tree& tree, std::size_t link, const Matrix3& stiff) {
   if (tree.links[link].joint == JointType::fixed) return false;
   // All eigenvalues are below a bound where the rest up to it is positive definite (Sylvester).
-  const double bound = too_far * too_far / 4 * tree.links[link].inertia.minCoeff();
+  const double bound = swings_too_far * swings_too_far / 4 * tree.links[link].inertia.minCoeff();
   const Matrix3 rest = bound * Matrix3::Identity() - stiff;
   const double minor = rest(0, 0) * rest(1, 1) - rest(0, 1) * rest(0, 1);
   return !(rest(0, 0) > 0 && minor > 0 && rest.determinant() > 0);
@@ -154,7 +154,7 @@ int parts_for_tension(const Problem& problem, std::span<const Contact> contacts,
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     if (memory.free[i] > 0) most = std::max(most, swing(problem, i, work, memory));
   }
-  return most > too_far ? static_cast<int>(std::min(std::ceil(most / of_a_part), 1e6)) : 1;
+  return most > swings_too_far ? static_cast<int>(std::min(std::ceil(most / swing_of_a_part), 1e6)) : 1;
 }
 
 }  // namespace ziggurat::dynamics

@@ -243,7 +243,12 @@ double NewtonCore::velocity(JointIndex index) const {
   return tree.v[dof_of(tree, joint.part)];
 }
 
-void NewtonCore::set_servos_and_limits(std::span<Body> bodies, const Share& share) {
+/// Tells the solver what a share allows, and collects its servos and limits.
+void NewtonCore::prepare(std::span<Body> bodies, const Share& share) {
+  system_.allowed_overlap = share.allowed_overlap;
+  system_.softness = share.softness;
+  system_.most_parts = share.most_parts;
+  system_.is_part = share.is_part;
   servos_.clear();
   limits_.clear();
   std::size_t entity = 0;  // joints of an entity stand together
@@ -297,10 +302,6 @@ void NewtonCore::remember(const Share& share) {
 }
 
 void NewtonCore::step(std::span<dynamics::Contact> contacts, const Share& share) {
-  system_.allowed_overlap = share.allowed_overlap;
-  system_.softness = share.softness;
-  system_.most_parts = share.most_parts;
-  system_.is_part = share.is_part;
   const dynamics::Report report =
       system_.step(share.length, contacts, servos_, limits_, share.trees());
   if (!system_.left.trees.empty()) {
@@ -320,7 +321,7 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
   whole.splits = splits;
   whole.most_parts = most_parts;
   colliders_.follow(system_, length);
-  set_servos_and_limits(bodies, whole);
+  prepare(bodies, whole);
   std::span<dynamics::Contact> contacts = contacts_.find(length);
   bool woke = stiff && wake_stiff(*stiff);
   woke |= system_.wake_disturbed(length, contacts, servos_);
@@ -406,7 +407,7 @@ void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int spl
       stiff.push_stiff(bodies, kick);
     }
     colliders_.follow(system_, share.length, chosen);
-    set_servos_and_limits(bodies, share);
+    prepare(bodies, share);
     step(contacts_.find(share.length, chosen, share.of_impulses), share);
   }
 }
@@ -435,7 +436,7 @@ void NewtonCore::take_parts(std::span<Body> bodies, const Share& whole, int coun
     part.more = part.parts_left > 1;
     if (i > 0) push(system_, chosen_, held_back_, 1);
     colliders_.follow(system_, part.length, chosen_);
-    set_servos_and_limits(bodies, part);
+    prepare(bodies, part);
     step(contacts_.find(part.length, chosen_, part.of_impulses), part);
   }
 }

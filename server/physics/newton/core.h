@@ -70,7 +70,7 @@ class NewtonCore {
     double softness = dynamics::System::usual_softness;
     std::span<const int> trees() const { return chosen ? chosen->trees : std::span<const int>(); }
   };
-  void set_servos_and_limits(std::span<Body> bodies, const Share& share);
+  void prepare(std::span<Body> bodies, const Share& share);
   void keep_servos_and_limits(const TreeSet& chosen);
   void step(std::span<dynamics::Contact> contacts, const Share& share);
   bool wake_stiff(const Plugin& stiff);
