@@ -9,6 +9,8 @@ import zmq
 import zmq.auth.thread
 import zmq.utils.monitor
 
+from .server_process import free_port
+
 _LONGEST = 128 << 20  # [bytes]: twice a controller's limit; above, the connection is closed (T4)
 _REBINDING = 5.0  # [s] until a port is free again
 _PEER_NAMES = ("Socket-Type", "User-Id")
@@ -37,10 +39,7 @@ class ServerSocket:
             self._authenticator = zmq.auth.thread.ThreadAuthenticator(self._context)
             self._authenticator.start()
             self._authenticator.configure_curve_callback(credentials_provider=_Doorkeeper(is_open))
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
-        self.endpoint = f"tcp://127.0.0.1:{port}"
+        self.endpoint = f"tcp://127.0.0.1:{free_port()}"
         self._socket: Optional[zmq.Socket] = None
         self._monitor: Optional[zmq.Socket] = None
         self._connected: set[int] = set()  # descriptors

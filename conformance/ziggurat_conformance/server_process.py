@@ -1,5 +1,6 @@
 """The server under test, as a process that cases may restart."""
 
+import random
 import shlex
 import signal
 import socket
@@ -122,7 +123,14 @@ def _filled(word: str, values: dict) -> str:
 
 
 def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
+    """Of the loopback, and below those that systems give to connections (Linux: from 32768 on): such a one could be
+    taken by a client before the server listens."""
+    for _ in range(1000):
+        port = random.randrange(20000, 32768)
+        with socket.socket() as probe:
+            try:
+                probe.bind(("127.0.0.1", port))
+                return port
+            except OSError:
+                pass  # somebody has it
+    raise RuntimeError("no port from 20000 to 32767 is free")
