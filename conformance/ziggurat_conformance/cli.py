@@ -7,7 +7,7 @@ import sys
 import time
 from pathlib import Path
 
-from . import chaos, client_mode, report, server_mode, wire
+from . import chaos, client_mode, outputs, report, server_mode, wire
 from .case import Level
 from .cases import SERVER_CASES
 from .client_stage import Options
@@ -181,6 +181,28 @@ def _print_list(options) -> None:
     print(f"{len(chosen)} cases, {sum(len(case.forms) for case in chosen)} with their forms")
 
 
+def _outputs(options) -> list:
+    """(option, path, ending) of each report that is asked for."""
+    reports = [("--junit", options.junit, ".xml"), ("--json", options.json, ".json"),
+               ("--html", options.html, ".html")]
+    return [output for output in reports if output[1]]
+
+
+def _write_reports(options, outcomes: list, left_out: collections.Counter) -> None:
+    """Raises outputs.WrongOutput."""
+    title = f"Conformance of a {options.mode}: {shlex.join(options.target)}"
+    writers = {
+        "--junit": lambda path: report.write_junit(path, outcomes, f"conformance.{options.mode}"),
+        "--json": lambda path: report.write_json(path, outcomes, left_out),
+        "--html": lambda path: report.write_html(path, outcomes, left_out, title),
+    }
+    for option, path, _ in _outputs(options):
+        try:
+            writers[option](path)
+        except OSError as error:
+            raise outputs.WrongOutput(f"{option} {path} can't be written: {error.strerror}") from None
+
+
 def main(arguments=None, version="of a source tree") -> int:
     parser = _parser(version)
     words = sys.argv[1:] if arguments is None else list(arguments)
@@ -202,20 +224,15 @@ def main(arguments=None, version="of a source tree") -> int:
     start = time.monotonic()
     try:
         known = _known(options.known_failing)
+        outputs.check(_outputs(options))
         outcomes = (_server if options.mode == "server" else _client)(options, terminal)
-    except (RuntimeError, _Mistake) as error:
+        report.judge_known(outcomes, known)
+        left_out = _left_out(options, outcomes)
+        terminal.end(outcomes, left_out, time.monotonic() - start)
+        _write_reports(options, outcomes, left_out)
+    except (RuntimeError, _Mistake, outputs.WrongOutput) as error:
         print(f"ziggurat-conformance: {error}", file=sys.stderr)
         return 2
-    report.judge_known(outcomes, known)
-    left_out = _left_out(options, outcomes)
-    terminal.end(outcomes, left_out, time.monotonic() - start)
-    title = f"Conformance of a {options.mode}: {shlex.join(options.target)}"
-    if options.junit:
-        report.write_junit(options.junit, outcomes, f"conformance.{options.mode}")
-    if options.json:
-        report.write_json(options.json, outcomes, left_out)
-    if options.html:
-        report.write_html(options.html, outcomes, left_out, title)
     missing = report.missing_badges(outcomes, left_out, options.badge)
     if missing:
         print(f"ziggurat-conformance: not reached: {', '.join(missing)}", file=sys.stderr)

@@ -54,6 +54,25 @@ class Mistakes(unittest.TestCase):
         self.expect(r"ended at once, with exit code 7; it said:\nno libfoo", "server", "--", "sh", "-c",
                     "echo no libfoo >&2; exit 7")
 
+    def test_reports_that_would_replace_other_files(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            for content, kind in ((b"\x89MCAP0\r\n", "a recording"), (b"SQLite format 3\0", "a database"),
+                                  (b"<?xml version='1.0'?>\n<!-- mine -->\n<argos-configuration>", "a scene")):
+                (folder / "r.json").write_bytes(content)
+                self.expect(f"--json is '.*r.json', {kind}, which it would replace", "server", "--json",
+                            str(folder / "r.json"), "--", *TINY)
+                self.assertEqual(content, (folder / "r.json").read_bytes())
+            self.expect(r"--junit is '.*r.argos'; its name must end with \.xml", "client", "--junit",
+                        str(folder / "r.argos"), "--", "true")
+            self.expect("--html is '.*', a folder; name a file in it", "client", "--html", str(folder), "--", "true")
+            self.expect("--html is '.*r.html', whose folder is not there", "client", "--html",
+                        str(folder / "no" / "r.html"), "--", "true")
+
+    def test_a_report_that_finds_no_room(self):
+        self.expect("/dev/full can't be written: No space left on device", "server", "--only", "S9.stale",
+                    "--json", "/dev/full", "--", *TINY)
+
     def test_a_server_that_does_not_listen(self):
         self.expect(r"nothing listens at tcp://\S+, which takes the place of \{endpoint\} .*after 30 s; "
                     r"the server said nothing", "server", "--", "sleep", "1000")
