@@ -15,11 +15,14 @@ struct LinkIndex {
   int link = 0;
 };
 
+/// Slower impacts do not bounce, and where their surfaces are apart need not be known [m/s].
+inline constexpr double slow_impact = 0.05;
+
 /// A point where two links touch or may touch within the substep.
 struct Contact {
   LinkIndex a, b;
-  Vector3 point{0, 0, 0};   ///< in the world [m]
-  /// From the point on a to that on b, without the gap: what meets later in the substep is not opposite yet [m].
+  Vector3 point{0, 0, 0};   ///< in the world; on a, where both move and are apart [m]
+  /// From the point on a to that on b, where both move: what meets later in the substep is not there yet [m].
   Vector3 until_met{0, 0, 0};
   Vector3 normal{0, 0, 1};  ///< unit, from b to a
   double gap = 0;           ///< along the normal; negative = overlap [m]

@@ -49,10 +49,9 @@ bool System::foresee(std::span<Contact> contacts, std::span<Limit> limits, doubl
   const double fast = far / length_;
   const auto moves = [&](int tree) { return trees[tree].dofs > 0 && !asleep(tree); };
   disturbed_.clear();
-  for (std::size_t i = 0; i < watch_.size(); ++i) {
-    const int tree = static_cast<int>(i);
-    if ((watch_[i] & pushed) && moves(tree) && push_speed(trees[i], length_) > fast) disturbed_.push_back(tree);
-  }
+  each_that_takes_part([&](int tree) {
+    if ((watch_[tree] & pushed) && moves(tree) && push_speed(trees[tree], length_) > fast) disturbed_.push_back(tree);
+  });
   for (const Servo& servo : servos_) {
     const Tree& tree = trees[servo.tree];
     if (servo_change(servo, tree, fast) > fast && moves(servo.tree)) disturbed_.push_back(servo.tree);

@@ -1,30 +1,33 @@
 #include "dynamics/impact.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "dynamics/constraint.h"
+#include "dynamics/sequence.h"
 
 namespace ziggurat::dynamics {
 namespace {
 
-/// Slower impacts do not bounce [m/s].
-constexpr double slowest_bounce = 0.05;
 /// Larger trees and islands are not looked at for what they do not come to meet.
 constexpr int most_dofs = 32;
 constexpr std::size_t most_blocks = 300;
 
-using Impulse = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_dofs, 1>;
-using Mass = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, most_dofs, most_dofs>;
+/// Whether a contact held what is on it in the last substep, and does not part.
+bool may_carry(const Problem& problem, const Block& block) {
+  constexpr double resting = 1e-3;  // what parts faster does not carry any more [m/s]
+  if (block.kind != Block::Source::contact || block.impulse[0] == 0 || block.gap > problem.allowed_overlap) return false;
+  double u[Block::most_rows];
+  problem.speeds(block, u);
+  return u[0] <= resting;
+}
 
 /// Notes which trees what touches them from below carries.
 void find_carried(Problem& problem) {
-  constexpr double resting = 1e-3;  // what parts faster does not carry any more [m/s]
   problem.carried.assign(problem.trees.size(), 0.0);
   for (const Block& block : problem.blocks) {
-    if (block.kind != Block::Source::contact || block.impulse[0] == 0 || block.gap > problem.allowed_overlap) continue;
-    double u[Block::most_rows];
-    problem.speeds(block, u);
-    if (u[0] > resting) continue;
+    if (!may_carry(problem, block)) continue;
     Vector3 push = Vector3::Zero();
     for (int r = 0; r < std::min(block.rows, 3); ++r) push += block.impulse[r] * block.frame.col(r);
     if (block.a >= 0) problem.carried[block.a] -= push.dot(problem.trees[block.a]->gravity);
@@ -40,14 +43,19 @@ Vector3 fall_of(const Problem& problem, int place) {
   return problem.carried[place] > all / 2 ? Vector3(Vector3::Zero()) : gravity;
 }
 
+/// What free fall accelerates the surfaces of a contact apart by [m/s^2].
+double pull_of(const Problem& problem, const Block& block) {
+  return block.frame.col(0).dot(fall_of(problem, block.a) - fall_of(problem, block.b));
+}
+
 /// When in the substep surfaces meet, and with which speed and how far apart they are at its end.
 void aim(const Problem& problem, Block& block) {
   double before[Block::most_rows];
   problem.speeds(block, before);
-  const double pull = block.frame.col(0).dot(fall_of(problem, block.a) - fall_of(problem, block.b));  // apart: > 0
+  const double pull = pull_of(problem, block);
   const double gap = std::max(0.0, block.gap);
   const double square = before[0] * before[0] - 2 * pull * gap;  // of the speed of the impact
-  if (square < slowest_bounce * slowest_bounce) return;
+  if (square < slow_impact * slow_impact) return;
   const double impact = std::sqrt(square);
   if (impact <= before[0]) return;  // they part
   const double time = 2 * gap / (impact - before[0]), rest = problem.length - time;
@@ -65,29 +73,6 @@ void aim(const Problem& problem, Block& block) {
   block.seek[0] = block.restitution * impact + rest * pull;
 }
 
-/// The normal row of a block for a tree: zero if it is not a side of it.
-Impulse normal_row(const Problem& problem, const Block& block, int tree) {
-  Impulse row = Impulse::Zero(problem.trees[tree]->dofs);
-  const auto add = [&](int place, int first) {
-    for (int k = 0; place == tree && k < row.size(); ++k) row[k] += problem.jacobian[first + k * block.rows];
-  };
-  add(block.a, block.ja);
-  add(block.b, block.jb);
-  return row;
-}
-
-/// What a unit of an impact's impulse changes of another contact's speed [1/kg].
-double response(const Problem& problem, const Block& impact, const Block& other) {
-  double sum = 0;
-  for (const int tree : {impact.a, impact.b}) {
-    if (tree < 0 || (tree != other.a && tree != other.b)) continue;
-    const int dofs = problem.trees[tree]->dofs;
-    const Mass mass = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(problem.mass_of(tree), dofs, dofs);
-    sum += normal_row(problem, other, tree).dot(mass.llt().solve(normal_row(problem, impact, tree)));
-  }
-  return sum;
-}
-
 /// Whether a contact is still met when another one, which is met earlier, has rebounded: a ball on a plate does not reach the
 /// floor below that.
 bool is_met_after(const Problem& problem, const Block& later, const Block& earlier) {
@@ -102,11 +87,60 @@ bool is_met_after(const Problem& problem, const Block& later, const Block& earli
   return later.gap + earlier.met * now[0] + (problem.length - earlier.met) * (now[0] + change) < 0;
 }
 
+/// Whether a contact holds something up: what strikes that strikes all that is below it, too.
+bool holds_up(const Problem& problem, const Block& block) {
+  constexpr double level = 1e-3;  // cosine of a normal that is as good as horizontal
+  if (!may_carry(problem, block)) return false;
+  const auto is_on = [&](int place) {
+    return place >= 0 && std::abs(block.frame.col(0).dot(problem.trees[place]->gravity)) > level * problem.trees[place]->gravity.norm();
+  };
+  return is_on(block.a) || is_on(block.b);
+}
+
+/// Whether an impact pushes what another block holds.
+bool disturbs(const Problem& problem, const Block& impact, const Block& held) {
+  constexpr double slight = 1e-3;  // of what it does to itself
+  const double cross = std::abs(response(problem, impact, held));
+  return cross > (held.kind == Block::Source::contact ? slight * response(problem, impact, impact) : 0);
+}
+
+/// The impacts of an island whose bodies may strike each other in turn: single points of what nothing holds against them. None: it has
+/// others, too, or hardly any.
+std::vector<Impact> impacts_in_turn(Problem& problem) {
+  constexpr std::size_t most = 32;
+  std::vector<Impact> out;
+  std::vector<const Block*> others;
+  bool any = false;
+  for (Block& block : problem.blocks) {
+    const bool rebounds = block.kind == Block::Source::contact && block.restitution > 0;
+    if (!rebounds || holds_up(problem, block)) {
+      others.push_back(&block);
+      continue;
+    }
+    const auto is_of_the_same_face = [&](const Impact& other) {
+      return other.block->a == block.a && other.block->b == block.b && other.block->frame.col(0) == block.frame.col(0);
+    };
+    const auto is_large = [&](int place) { return place >= 0 && problem.trees[place]->dofs > most_dofs; };
+    if (out.size() == most || std::ranges::any_of(out, is_of_the_same_face) || is_large(block.a) || is_large(block.b)) return {};
+    out.push_back({&block, pull_of(problem, block)});
+    double u[Block::most_rows];
+    problem.speeds(block, u);
+    any |= block.gap + problem.length * (u[0] + problem.length * out.back().pull) < 0;
+  }
+  if (!any || out.size() < 2) return {};
+  for (const Impact& impact : out) {
+    if (std::ranges::any_of(others, [&](const Block* held) { return disturbs(problem, *impact.block, *held); })) return {};
+  }
+  return out;
+}
+
 /// Lets contacts with restitution seek the speeds with which they rebound, and end where they do.
 void aim_rebounds(Problem& problem) {
   const auto rebounds = [](const Block& block) { return block.restitution > 0; };
   if (std::ranges::none_of(problem.blocks, rebounds)) return;
   find_carried(problem);
+  const std::vector<Impact> impacts = impacts_in_turn(problem);
+  if (!impacts.empty() && take_in_turn(problem, impacts)) return;
   for (Block& block : problem.blocks) {
     if (rebounds(block)) aim(problem, block);
   }
@@ -127,7 +161,14 @@ void aim_rebounds(Problem& problem) {
 Outcome solve_velocities(Problem& problem, Solver& solver) {
   aim_rebounds(problem);
   problem.bound_depth();
-  return solver.solve(problem);
+  constexpr int most_turns = 3;  // of limits: what is set in motion within the substep may pass the bound that is farther away
+  Outcome outcome = solver.solve(problem);
+  for (int i = 0; i < most_turns && problem.turn_limits(); ++i) {
+    const int iterations = outcome.iterations;
+    outcome = solver.solve(problem);
+    outcome.iterations += iterations;
+  }
+  return outcome;
 }
 
 }  // namespace ziggurat::dynamics

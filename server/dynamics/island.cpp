@@ -166,6 +166,24 @@ void take_velocities(const Problem& problem, const std::vector<unsigned char>& f
   }
 }
 
+/// Friction between two that meet within the substep acts when they do. So what turns them, about the points that meet, and what moves
+/// them are one impulse, and angular momentum stays.
+void wait_for_friction(const Problem& problem, std::span<const Contact> contacts, std::vector<double>& step) {
+  constexpr double together = 1e-6;  // what is nearer touches from the beginning [m]
+  for (const Block& block : problem.blocks) {
+    if (block.kind != Block::Source::contact || block.rows < 3 || block.impulse[0] == 0) continue;
+    if (-contacts[block.source].until_met.dot(contacts[block.source].normal) < together) continue;
+    const Vector3 friction = block.frame.col(1) * block.impulse[1] + block.frame.col(2) * block.impulse[2];
+    const double time = block.bounces ? block.met : problem.length;
+    const auto shift = [&](int place, double sign) {
+      if (!free_to_drift(*problem.trees[place])) return;
+      for (int k = 0; k < 3; ++k) step[problem.offset[place] + 3 + k] -= sign * time * friction[k] / problem.total_mass[place];
+    };
+    shift(block.a, 1);
+    shift(block.b, -1);
+  }
+}
+
 /// Whether the world rubs the island.
 bool world_rubs(const Problem& problem) {
   return std::ranges::any_of(problem.blocks, [](const Block& b) {
@@ -293,6 +311,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   const double before = energy_if_passive(problem_);
   note_excesses(problem_, work_, excesses_);
   take_velocities(problem_, free_, step_);
+  wait_for_friction(problem_, contacts_, step_);
   const bool grounded = world_rubs(problem_), rests = world_carries(problem_) && !motors_move(problem_);
   if (problem_.turn_into_displacement()) {
     solver_.solve_displacement(problem_);

@@ -271,6 +271,7 @@ void Problem::add(const Limit& limit, int place, int source) {
   block.dofs_a = tree.dof_alone(dof);
   weigh(block);
   block.gap = at_lower ? q - limit.lower : limit.upper - q;
+  block.range = limit.upper - limit.lower;
   block.seek[0] = block.gap > 0 ? -block.gap / length : 0;
   block.upper = std::numeric_limits<double>::infinity();
   block.impulse[0] = std::max(0.0, at_lower ? limit.impulse : -limit.impulse);
@@ -302,6 +303,24 @@ void Problem::speeds(const Block& block, double* u, const double* v) const {
     if (block.a >= 0) add_speeds<rows()>(j + block.ja, block.dofs_a, v + offset[block.a], u);
     if (block.b >= 0) add_speeds<rows()>(j + block.jb, block.dofs_b, v + offset[block.b], u);
   });
+}
+
+bool Problem::turn_limits() {
+  constexpr double rounding = 1e-9;  // [m], [rad]
+  bool any = false;
+  for (Block& block : blocks) {
+    if (block.kind != Block::Source::limit) continue;
+    double speed = 0;
+    speeds(block, &speed);
+    if (block.gap + length * speed <= block.range + rounding) continue;
+    double& direction = jacobian[block.ja + block.dofs_a[0]];
+    direction = -direction;
+    block.gap = block.range - block.gap;
+    block.seek[0] = -std::max(0.0, block.gap) / length;
+    block.impulse[0] = 0;
+    any = true;
+  }
+  return any;
 }
 
 void Problem::bound_depth() {

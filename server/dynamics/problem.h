@@ -39,6 +39,7 @@ struct Block {
   std::array<double, most_rows> anchor{};  ///< of the softened law, see law.h [N s], [N m s]
 
   double gap = 0;                   ///< of contacts and limits [m] or [rad]
+  double range = 0;                 ///< of a limit: between its bounds [m] or [rad]
   double restitution = 0;           ///< of a contact
   bool bounces = false;             ///< a contact that is met within the substep and rebounds
   double rise = 0;                  ///< of one that bounces: the gap at the substep's end [m]
@@ -91,6 +92,9 @@ struct Problem {
   void speeds(const Block& block, double* u) const { speeds(block, u, velocity.data()); }
   /// For other velocities, of each dof.
   void speeds(const Block& block, double* u, const double* v) const;
+  /// Lets limits hold at that of their bounds which the present velocities pass.
+  /// @return  whether there is one that held at the other
+  bool turn_limits();
   /// Makes all surfaces as much harder as the last substep's impulses need so as not to press them in too far.
   void bound_depth();
   /// Makes all surfaces rigid.

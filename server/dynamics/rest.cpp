@@ -167,8 +167,9 @@ void System::note_commands() {
   }
 }
 
-bool System::wake_disturbed(double length, std::span<Contact> contacts, std::span<Servo> servos) {
+bool System::wake_disturbed(double length, std::span<Contact> contacts, std::span<Servo> servos, std::span<const int> chosen) {
   length_ = length;
+  chosen_ = chosen;
   contacts_ = contacts;
   servos_ = servos;
   if (sleepers_.size() > trees.size()) wake_all();

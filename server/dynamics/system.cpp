@@ -117,11 +117,10 @@ void System::fetch_after(std::size_t island) const {
 Report System::step(double length, std::span<Contact> contacts, std::span<Servo> servos,
                     std::span<Limit> limits, std::span<const int> chosen) {
   limits_ = limits;
-  chosen_ = chosen;
   report_ = {};
   left.islands.clear();
   left.trees.clear();
-  wake_disturbed(length, contacts, servos);
+  wake_disturbed(length, contacts, servos, chosen);
   find_awake();
   report_.awake = static_cast<int>(awake_.size());
   gather(contacts, servos, limits);

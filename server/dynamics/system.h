@@ -92,11 +92,12 @@ class System {
 
   /// Wakes what the coming substep would not leave at rest. step() does so, too; to be called
   /// before it where contacts of sleepers are told only if something wakes.
-  /// @return  whether something did
-  bool wake_disturbed(double length, std::span<Contact> contacts, std::span<Servo> servos);
+  /// @param chosen  see step()
+  /// @return        whether something did
+  bool wake_disturbed(double length, std::span<Contact> contacts, std::span<Servo> servos, std::span<const int> chosen = {});
 
   /// Which trees the coming substep sets in motion within it: by motors, pushes or blows, so that their speeds at its beginning do not
-  /// say what they meet. To be called after wake_disturbed(), whose servos it takes.
+  /// say what they meet. To be called after wake_disturbed(), whose servos and trees it takes.
   /// @param contacts  those, and perhaps more behind them
   /// @param far  what need not be known: how far such a tree comes in the substep [m]
   /// @return     whether there are some

@@ -1,6 +1,7 @@
 #include "physics/newton/contacts.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "dynamics/fetch.h"
 #include "physics/convert.h"
@@ -67,6 +68,9 @@ double farthest_that_may_touch(const Collider& a, const Collider& b, double leng
   return slack + length * speed;
 }
 
+/// What is nearer touches [m].
+constexpr double together = 1e-6;
+
 /// Half of it; the floor has none [m].
 double smallest_extent(const Collider& collider) {
   if (collider.entity == Collider::floor) return BT_LARGE_FLOAT;
@@ -82,15 +86,19 @@ bool tumbles(const Collider& a, const Collider& b, const Approach& approach, dou
          far;
 }
 
-/// See dynamics::Contact; 0 where one of the two stands.
+/// Where two colliders that move touch, see dynamics::Contact. What is apart meets later in the substep, each with its own point.
 /// @param on_a, on_b  in the colliders' frames [m]
-math::Vector3 until_met(const Collider& a, const math::Vector3& on_a, const Collider& b, const math::Vector3& on_b,
-                        const math::Vector3& normal) {
-  constexpr double rounding = 1e-12;  // [m]
-  if (!a.moves || !b.moves) return math::Vector3::Zero();
-  const math::Vector3 way = from_bullet(b.pose * to_bullet(on_b) - a.pose * to_bullet(on_a));
-  const math::Vector3 across = way - way.dot(normal) * normal;
-  return across.norm() > rounding ? across : math::Vector3::Zero();
+/// @param apart       closer surfaces count as together [m]
+void place_between(const Collider& a, const math::Vector3& on_a, const Collider& b, const math::Vector3& on_b,
+                   double apart, dynamics::Contact& contact) {
+  const math::Vector3 from = from_bullet(a.pose * to_bullet(on_a)), way = from_bullet(b.pose * to_bullet(on_b)) - from;
+  if (way.squaredNorm() < together * together) return;
+  if (contact.gap > apart) {
+    contact.point = from;
+    contact.until_met = way;
+  } else {
+    contact.until_met = way - way.dot(contact.normal) * contact.normal;
+  }
 }
 
 /// The points of two colliders that may touch within the substep.
@@ -108,6 +116,8 @@ contact::Contacts look(const Collider& a, const Collider& b, double length, int 
     found.count = 0;
   } else if (approach.least > slack) {
     found = first_meeting(a, b, length, slack / 2);
+  } else if (found.count <= 2 && approach.least > together && normal_turns(a, b)) {
+    found = first_meeting(a, b, length, slack);
   } else if (tumbling) {
     found = contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::all);
   }
@@ -137,6 +147,7 @@ dynamics::Contact law_of(const Collider& a, const Collider& b, const math::Vecto
 std::span<dynamics::Contact> Contacts::find(double length) {
   ++substep_;
   share_ = 1;
+  apart_ = dynamics::slow_impact * length;
   colliders_.find_near(near_);
   meet_all(length);
   const auto awake = std::ranges::count_if(met_, [&](int pair) { return !pairs_[pair].rests; });
@@ -147,6 +158,7 @@ std::span<dynamics::Contact> Contacts::find(double length) {
 
 std::span<dynamics::Contact> Contacts::find(double length, const TreeSet& chosen, double share) {
   share_ = share;
+  apart_ = HUGE_VAL;  // parts are short, and magnets' bonds ask for all of the angular momentum
   colliders_.find_near(near_, chosen);
   std::swap(met_, met_before_);
   meet_all(length);
@@ -287,7 +299,7 @@ void Contacts::emit(const Pair& pair) {
     dynamics::Contact& contact = contacts_.emplace_back(law);
     contact.point = pair.points[i].point;
     contact.gap = pair.points[i].gap;
-    contact.until_met = until_met(a, pair.points[i].on_a, b, pair.points[i].on_b, pair.normal);
+    if (a.moves && b.moves) place_between(a, pair.points[i].on_a, b, pair.points[i].on_b, apart_, contact);
     contact.impulse = share_ * pair.points[i].impulse;
     contact.angular_impulse = share_ * pair.points[i].angular_impulse;
     owner_.push_back(static_cast<int>(&pair - pairs_.data()));

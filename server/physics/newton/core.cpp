@@ -326,7 +326,7 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
   bool woke = stiff && wake_stiff(*stiff);
   woke |= system_.wake_disturbed(length, contacts, servos_);
   if (woke) contacts = contacts_.add_resting();
-  woke |= foresee(length, contacts, woke);
+  woke |= foresee(whole, contacts, woke);
   if (!stiff) {
     step(contacts, whole);
     return divide(bodies, whole);
@@ -349,19 +349,29 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
 /// beyond the reach that their speeds at its beginning give them. What they strike may be thrown, too.
 /// @param contacts  in and out;  @param woke  in: whether something woke; out: also by what is thrown
 /// @return          whether there are other contacts
-bool NewtonCore::foresee(double length, std::span<dynamics::Contact>& contacts, bool& woke) {
+bool NewtonCore::foresee(const Share& share, std::span<dynamics::Contact>& contacts, bool& woke) {
   constexpr int most_blows = 3;
   bool any = false;
-  for (int i = 0; i < most_blows && system_.foresee(contacts, limits_, least_reach(length), foresight_); ++i) {
+  for (int i = 0; i < most_blows && system_.foresee(contacts, limits_, least_reach(share.length), foresight_); ++i) {
     const SpeedsComeBack at_the_end{system_, foresight_};
     swap_speeds(system_.trees, foresight_);
-    if (!colliders_.widen(foresight_.trees, system_, length)) break;
+    if (!colliders_.widen(foresight_.trees, system_, share.length)) break;
     any = true;
-    contacts = contacts_.find(length);
-    woke |= system_.wake_disturbed(length, contacts, servos_);
-    if (woke) contacts = contacts_.add_resting();
+    contacts = share.chosen ? contacts_.find(share.length, *share.chosen, share.of_impulses) : contacts_.find(share.length);
+    woke |= system_.wake_disturbed(share.length, contacts, servos_, share.trees());
+    if (woke && !share.chosen) contacts = contacts_.add_resting();
   }
   return any;
+}
+
+/// Moves some trees on by a part of the substep. What they may touch is awake.
+void NewtonCore::take_part(std::span<Body> bodies, const Share& part) {
+  colliders_.follow(system_, part.length, *part.chosen);
+  prepare(bodies, part);
+  std::span<dynamics::Contact> contacts = contacts_.find(part.length, *part.chosen, part.of_impulses);
+  bool woke = system_.wake_disturbed(part.length, contacts, servos_, part.trees());
+  foresee(part, contacts, woke);
+  step(contacts, part);
 }
 
 /// What takes the substep in parts must be awake.
@@ -406,9 +416,7 @@ void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int spl
       push(system_, chosen, held_back_, kick);
       stiff.push_stiff(bodies, kick);
     }
-    colliders_.follow(system_, share.length, chosen);
-    prepare(bodies, share);
-    step(contacts_.find(share.length, chosen, share.of_impulses), share);
+    take_part(bodies, share);
   }
 }
 
@@ -435,9 +443,7 @@ void NewtonCore::take_parts(std::span<Body> bodies, const Share& whole, int coun
     part.parts_left = count - i;
     part.more = part.parts_left > 1;
     if (i > 0) push(system_, chosen_, held_back_, 1);
-    colliders_.follow(system_, part.length, chosen_);
-    prepare(bodies, part);
-    step(contacts_.find(part.length, chosen_, part.of_impulses), part);
+    take_part(bodies, part);
   }
 }
 

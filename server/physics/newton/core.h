@@ -74,7 +74,8 @@ class NewtonCore {
   void keep_servos_and_limits(const TreeSet& chosen);
   void step(std::span<dynamics::Contact> contacts, const Share& share);
   bool wake_stiff(const Plugin& stiff);
-  bool foresee(double length, std::span<dynamics::Contact>& contacts, bool& woke);
+  bool foresee(const Share& share, std::span<dynamics::Contact>& contacts, bool& woke);
+  void take_part(std::span<Body> bodies, const Share& part);
   void remember(const Share& share);
   void substep_in_parts(std::span<Body> bodies, double length, int splits, int count,
                         Plugin& stiff);

@@ -10,14 +10,17 @@
 namespace ziggurat::physics {
 namespace {
 
+bool is_round(const Collider& collider) {
+  return std::holds_alternative<contact::Sphere>(collider.shape) || std::holds_alternative<contact::Cylinder>(collider.shape) ||
+         std::holds_alternative<contact::Capsule>(collider.shape);
+}
+
 /// How its surface turns [rad/s]: what is round about an axis is the same however it turns about it. The
 /// points of a ball that turns would be carried back to its side or its top.
 btVector3 turning_of(const Collider& collider) {
   if (std::holds_alternative<contact::Sphere>(collider.shape)) return {0, 0, 0};
   const btVector3& turning = collider.angular_velocity;
-  const bool is_round = std::holds_alternative<contact::Cylinder>(collider.shape) ||
-                        std::holds_alternative<contact::Capsule>(collider.shape);
-  if (!is_round) return turning;
+  if (!is_round(collider)) return turning;
   const btVector3 axis = collider.pose.getBasis().getColumn(2);
   return turning - axis * axis.dot(turning);
 }
@@ -59,25 +62,36 @@ void carry_back(contact::Contacts& found, const Collider& a, const btTransform& 
 
 }  // namespace
 
+bool normal_turns(const Collider& a, const Collider& b) {
+  const auto is_plane = [](const Collider& c) { return std::holds_alternative<contact::HalfSpace>(c.shape); };
+  return (is_round(a) || is_round(b)) && !is_plane(a) && !is_plane(b);
+}
+
 contact::Contacts first_meeting(const Collider& a, const Collider& b, double length, double near) {
   constexpr int most_steps = 256;  // what turns much faster than it comes takes many
+  constexpr int most_near = 12;    // what is followed to the touch, nearer than `near`
+  constexpr double touch = 1e-7;   // [m]
+  int left = normal_turns(a, b) ? most_near : 0;
   double time = 0;
+  contact::Contacts met;
   for (int step = 0; step < most_steps; ++step) {
     const btTransform pose_a = pose_after(a, time), pose_b = pose_after(b, time);
     contact::Contacts found =
         contact::find(a.shape, pose_a, b.shape, pose_b, a.reach + b.reach, contact::Support::all);
     const double distance = least_distance(found);
-    if (found.count == 0) return found;  // out of reach
-    if (distance <= near) {
-      carry_back(found, a, pose_a, b, pose_b);
-      return found;
-    }
+    if (found.count == 0) return met;  // out of reach
     const double approach = fastest_approach(a, b, found.normal);
+    const double follow = left > 0 ? touch : near;
+    if (distance <= near) {
+      met = found;
+      carry_back(met, a, pose_a, b, pose_b);
+      if (distance <= touch || --left <= 0) break;
+    }
     if (approach <= 0) break;
-    time += (distance - near / 2) / approach;
+    time += (distance - follow / 2) / approach;
     if (time >= length) break;
   }
-  return {};
+  return met;
 }
 
 }  // namespace ziggurat::physics

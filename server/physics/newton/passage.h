@@ -8,7 +8,11 @@ namespace ziggurat::physics {
 /// The points where two colliders that are apart first meet within a substep, as they are at its
 /// beginning: each at its distance along the normal of the meeting. None if they pass each other.
 /// Conservative advancement (B. Mirtich, Impulse-based Dynamic Simulation, 1996, section 2.3).
+/// Round surfaces are followed to where they touch, or are nearest: there the normal turns with the way that is left.
 /// @param near  counts as met [m]
 contact::Contacts first_meeting(const Collider& a, const Collider& b, double length, double near);
+
+/// Whether the normal of such a contact turns while two colliders come together: one of them is round, and the other no plane.
+bool normal_turns(const Collider& a, const Collider& b);
 
 }  // namespace ziggurat::physics

@@ -1,0 +1,25 @@
+#pragma once
+// Impacts that follow one another within a substep: a ball that is struck strikes the next one.
+
+#include <span>
+
+#include "dynamics/problem.h"
+
+namespace ziggurat::dynamics {
+
+/// A contact with restitution that may be met within a substep.
+struct Impact {
+  Block* block = nullptr;
+  double pull = 0;  ///< what free fall accelerates its surfaces apart by [m/s^2]
+};
+
+/// What a unit of a block's first impulse changes of another block's first speed [1/kg].
+double response(const Problem& problem, const Block& impulse, const Block& speed);
+
+/// Lets impacts take place in the order of time, those of one moment together, and has their contacts seek the speeds and gaps that
+/// remain. Without friction.
+/// @param impacts  all contacts of the island that may be met; trees of at most 32 dofs, one impact per pair of trees
+/// @return         whether there was one
+bool take_in_turn(Problem& problem, std::span<const Impact> impacts);
+
+}  // namespace ziggurat::dynamics
