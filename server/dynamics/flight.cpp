@@ -10,7 +10,7 @@ namespace ziggurat::dynamics {
 namespace {
 
 constexpr double largest_turn = 0.1;  // of a Runge-Kutta step of a single body [rad]
-constexpr int most_steps = 4000;      // of one substep
+constexpr int most_steps = 4000;      // of one substep, of a single body
 constexpr double tolerance = 1e-7;    // of a Dormand-Prince step, relative
 constexpr double slow = 3e-3;         // relative change of speed that bias forces may make
 constexpr double slow_driven = 0.045; // its square, where servos hold a tree, over a second [1/s]
@@ -189,6 +189,12 @@ void kick(Tree& tree, Workspace& work, double length, const Drive& drive) {
   for (int i = 0; i < tree.dofs; ++i) tree.v[i] = drive.holds(i) ? drive.speed[i] : tree.v[i] + change[i];
 }
 
+/// Steps that a substep of a tree may take: as many links in all of them as some tenths of a second do.
+int most_steps_of(const Tree& tree) {
+  constexpr int all = 800'000;
+  return std::clamp(all / static_cast<int>(tree.links.size()), most_steps, 10 * most_steps);
+}
+
 int fly_tree(Tree& tree, Workspace& work, double length, const Drive& drive) {
   const int places = static_cast<int>(tree.q.size()), size = places + tree.dofs;
   work.stages.resize((stage_count + 1) * size);
@@ -208,14 +214,15 @@ int fly_tree(Tree& tree, Workspace& work, double length, const Drive& drive) {
   place_rates(tree, tree.q.data(), tree.v.data(), k);
   accelerations(tree, work, drive, {k + places, static_cast<std::size_t>(tree.dofs)});
   double done = 0, h = std::min(length, tree.flight_step > 0 ? tree.flight_step : length);
+  const int most = most_steps_of(tree);
   int steps = 0;
-  while (done < length && steps < most_steps) {
+  while (done < length && steps < most) {
     ++steps;
     const bool last = done + h >= length * (1 - 1e-12);
     if (last) h = length - done;
     const double error = try_step(tree, work, drive, start, k, h);
     const double factor = std::clamp(0.9 * std::pow(std::max(error, 1e-10), -0.2), 0.2, 4.0);
-    if (error > 1 && steps < most_steps / 2) {
+    if (error > 1 && steps < most / 2) {
       h *= factor;
       std::copy_n(start, places, tree.q.begin());
       std::copy_n(start + places, tree.dofs, tree.v.begin());
@@ -229,6 +236,7 @@ int fly_tree(Tree& tree, Workspace& work, double length, const Drive& drive) {
     done = last ? length : done + h;
     h *= factor;
   }
+  work.late |= done < length;
   place(tree);
   move(tree);
   return steps;

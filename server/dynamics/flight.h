@@ -12,6 +12,7 @@ namespace ziggurat::dynamics {
 /// the classical Runge-Kutta method of fourth order in steps of at most 0.1 rad, exactly where it
 /// keeps its axis. Other trees: the method of Dormand and Prince of order 5 (J. Comput. Appl.
 /// Math. 6, 1980, table 2) with steps chosen by its estimate of the error.
+/// A tree that would need more than some ten thousand steps is behind at the substep's end: work.late becomes true.
 /// Speeds that servos hold are so from the beginning on, where they become so by an impulse; all other pushes of servos last.
 /// @param length  [s]
 /// @param drive   what motors do; a single body has none

@@ -31,19 +31,45 @@ double servo_change(const Servo& servo, const Tree& tree, double least) {
   return change <= least || tree.axes[servo.dof].angular.isZero(0) ? change : lever * change;
 }
 
-/// How fast two trees part at a contact [m/s].
+/// How fast two trees, or a tree and the world, part at a contact [m/s].
 double parting(const std::vector<Tree>& trees, const Contact& contact) {
   const auto velocity = [&](const LinkIndex& side, const Vector3& point) -> Vector3 {
+    if (side.tree < 0) return Vector3::Zero();
     const Motion& motion = trees[side.tree].motion[side.link];
     return motion.linear + motion.angular.cross(point - trees[side.tree].origin);
   };
   return contact.normal.dot(velocity(contact.a, contact.point) - velocity(contact.b, contact.point + contact.until_met));
 }
 
+/// Whether a joint reaches a limit within the substep, so fast that it matters.
+bool strikes(const Limit& limit, const Tree& tree, double length, double least) {
+  const int dof = joint_dof(tree, limit.link);
+  const double q = tree.q[tree.first_place[limit.link]], speed = tree.v[dof], end = q + length * speed;
+  if (end >= limit.lower && end <= limit.upper) return false;
+  return std::abs(speed) * (tree.axes[dof].angular.isZero(0) ? 1 : lever) > least;
+}
+
+/// Notes which of the fast trees something strikes, or a joint's limit.
+/// @param fast   of each tree
+/// @param least  slower blows do not matter [m/s]
+void find_blows(const std::vector<Tree>& trees, const std::vector<unsigned char>& fast, std::span<const Contact> contacts,
+                std::span<const Limit> limits, double length, double least, std::vector<int>& out) {
+  const auto is_fast = [&](int tree) { return tree >= 0 && fast[tree]; };
+  for (const Contact& contact : contacts) {
+    if (!is_fast(contact.a.tree) && !is_fast(contact.b.tree)) continue;
+    const double apart = parting(trees, contact);
+    if (-apart > least && contact.gap + length * apart < 0) out.push_back(is_fast(contact.a.tree) ? contact.a.tree : contact.b.tree);
+  }
+  for (const Limit& limit : limits) {
+    if (is_fast(limit.tree) && strikes(limit, trees[limit.tree], length, least)) out.push_back(limit.tree);
+  }
+}
+
 }  // namespace
 
-bool System::foresee(std::span<Contact> contacts, std::span<Limit> limits, double far, Foresight& out) {
+bool System::foresee(std::span<Contact> contacts, std::span<Limit> limits, double far, std::span<const int> fast_trees, Foresight& out) {
   contacts_ = contacts;
+  limits_ = limits;
   out.trees.clear();
   out.speeds.clear();
   const double fast = far / length_;
@@ -62,8 +88,10 @@ bool System::foresee(std::span<Contact> contacts, std::span<Limit> limits, doubl
     const double apart = parting(trees, contact);
     if (-apart > fast && contact.gap + length_ * apart < 0) disturbed_.push_back(contact.a.tree);
   }
+  fast_.assign(fast_trees.empty() ? 0 : trees.size(), 0);
+  for (const int tree : fast_trees) fast_[tree] = trees[tree].links.size() > 1 && moves(tree);
+  if (!fast_.empty()) find_blows(trees, fast_, contacts_, limits_, length_, fast, disturbed_);
   if (disturbed_.empty()) return false;
-  limits_ = limits;
   find_awake();
   gather(contacts_, servos_, limits_);
   for (int& tree : disturbed_) tree = island_[tree];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "dynamics/excess.h"
 #include "dynamics/fetch.h"
@@ -132,6 +133,9 @@ Report System::step(double length, std::span<Contact> contacts, std::span<Servo>
     } else {
       solve_island(first, last, first_item_[i], first_item_[i + 1]);
     }
+    if (!std::exchange(work_.late, false)) continue;
+    ++report_.not_converged;
+    report_.islands = std::max(report_.islands, report_.not_converged);
   }
   forget_pushes();
   chosen_ = {};

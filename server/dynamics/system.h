@@ -99,9 +99,10 @@ class System {
   /// Which trees the coming substep sets in motion within it: by motors, pushes or blows, so that their speeds at its beginning do not
   /// say what they meet. To be called after wake_disturbed(), whose servos and trees it takes.
   /// @param contacts  those, and perhaps more behind them
-  /// @param far  what need not be known: how far such a tree comes in the substep [m]
-  /// @return     whether there are some
-  bool foresee(std::span<Contact> contacts, std::span<Limit> limits, double far, Foresight& out);
+  /// @param far   what need not be known: how far such a tree comes in the substep [m]
+  /// @param fast  trees that may come farther already: their blows and limits set other links of them in motion
+  /// @return      whether there are some
+  bool foresee(std::span<Contact> contacts, std::span<Limit> limits, double far, std::span<const int> fast, Foresight& out);
 
   /// Advances all trees that are awake by one substep. Their external wrenches must be set.
   /// @param length    [s]
@@ -167,6 +168,7 @@ class System {
   enum Watch : unsigned char { commanded = 1, held = 2, pushed = 4, waits = 8 };
   std::vector<unsigned char> watch_;
   std::vector<int> awake_, disturbed_;
+  std::vector<unsigned char> fast_;  ///< of each tree: what strikes it may set its other links in motion
   std::vector<int> between_;  // contacts of two trees
   double length_ = 0;
   std::span<Contact> contacts_;

@@ -375,9 +375,9 @@ void Run::print_first_miss() {
   if (solver.not_converged == 0) return;
   printed_miss_ = true;
   console_.notice(fmt::format(
-      "tick {}: the solver did not converge for bodies that touch: their speeds miss the laws of "
-      "contact by up to {:.2g} m/s or rad/s; more iterations in <dynamics3d> make that less; the "
-      "summary counts such cases",
+      "tick {}: the solver did not converge: bodies that touch miss the laws of contact by up to "
+      "{:.2g} m/s or rad/s, or light links carry more than a substep can follow; more iterations in "
+      "<dynamics3d> make substeps shorter; the summary counts such cases",
       world_.simulation.state().tick, solver.worst_residual));
 }
 

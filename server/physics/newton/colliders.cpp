@@ -247,6 +247,7 @@ void Colliders::follow(const dynamics::System& system, double length) {
   woke = false;
   followed_.clear();
   thrown_.clear();
+  fast.clear();
   for (ColliderGroup& group : groups) {
     if (!group.proxy) continue;
     group.rested = group.rests;
@@ -254,7 +255,9 @@ void Colliders::follow(const dynamics::System& system, double length) {
     woke |= group.rested && !group.rests;
     if (group.moves ? group.unchanged() : all[group.first].reach == least) continue;
     if (group.moves) followed_.push_back(static_cast<std::size_t>(&group - groups.data()));
-    keep_in_box(group, follow(group, system, length), true);
+    const double step = follow(group, system, length);
+    if (step > least) fast.push_back(static_cast<int>(group.entity));
+    keep_in_box(group, step, true);
   }
 }
 
@@ -262,11 +265,14 @@ void Colliders::follow(const dynamics::System& system, double length, const Tree
   settle();
   followed_.clear();
   thrown_.clear();
+  fast.clear();
   each_of(groups, chosen, [&](ColliderGroup& group) {
     if (!group.proxy || !group.moves) return;
     group.rests = false;
     followed_.push_back(static_cast<std::size_t>(&group - groups.data()));
-    keep_in_box(group, follow(group, system, length), false);
+    const double step = follow(group, system, length);
+    if (step > least_reach(length)) fast.push_back(static_cast<int>(group.entity));
+    keep_in_box(group, step, false);
   });
 }
 

@@ -80,6 +80,8 @@ class Colliders {
   std::vector<ColliderGroup> groups;
   std::optional<std::size_t> floor;  ///< into `all`
   bool woke = false;                 ///< one that rested in the substep before does no more
+  /// Entities that move farther in the substep than what does not move yet may come, see least_reach().
+  std::vector<int> fast;
 
   bool rests(const Collider& collider) const {
     return !collider.present || groups[collider.group].rests;

@@ -277,13 +277,6 @@ void NewtonCore::prepare(std::span<Body> bodies, const Share& share) {
   });
 }
 
-/// Leaves out those of all other trees.
-void NewtonCore::keep_servos_and_limits(const TreeSet& chosen) {
-  const auto is_other = [&](const auto& item) { return !chosen.holds[item.tree]; };
-  std::erase_if(servos_, is_other);
-  std::erase_if(limits_, is_other);
-}
-
 /// The impulses of this substep are where the next one begins. Those of a part without forces are
 /// not: the ones of the substep before are nearer to what comes.
 void NewtonCore::remember(const Share& share) {
@@ -336,7 +329,9 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
   }
   whole.chosen = &division_.with(0);
   if (!whole.chosen->trees.empty()) {
-    keep_servos_and_limits(*whole.chosen);
+    const auto is_other = [&](const auto& item) { return !whole.chosen->holds[item.tree]; };
+    std::erase_if(servos_, is_other);
+    std::erase_if(limits_, is_other);
     step(contacts_.keep(*whole.chosen), whole);
     divide(bodies, whole);
   }
@@ -352,7 +347,7 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
 bool NewtonCore::foresee(const Share& share, std::span<dynamics::Contact>& contacts, bool& woke) {
   constexpr int most_blows = 3;
   bool any = false;
-  for (int i = 0; i < most_blows && system_.foresee(contacts, limits_, least_reach(share.length), foresight_); ++i) {
+  for (int i = 0; i < most_blows && system_.foresee(contacts, limits_, least_reach(share.length), colliders_.fast, foresight_); ++i) {
     const SpeedsComeBack at_the_end{system_, foresight_};
     swap_speeds(system_.trees, foresight_);
     if (!colliders_.widen(foresight_.trees, system_, share.length)) break;

@@ -71,7 +71,6 @@ class NewtonCore {
     std::span<const int> trees() const { return chosen ? chosen->trees : std::span<const int>(); }
   };
   void prepare(std::span<Body> bodies, const Share& share);
-  void keep_servos_and_limits(const TreeSet& chosen);
   void step(std::span<dynamics::Contact> contacts, const Share& share);
   bool wake_stiff(const Plugin& stiff);
   bool foresee(const Share& share, std::span<dynamics::Contact>& contacts, bool& woke);

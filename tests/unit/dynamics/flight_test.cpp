@@ -165,5 +165,27 @@ TEST(Flight, ALightChainSwingsAHeavyLoad) {
   }
 }
 
+// It ended after 4 000 steps, 44 % of the substep, and fell in slow motion.
+TEST(Flight, AChainOfAMillionthOfItsLoadTakesAllOfItsSteps) {
+  Workspace work;
+  constexpr int count = long_runs::links_of_a_chain;
+  Tree coarse = testing::chain(count, 1.0 / count, 1e-3, 1000), fine = coarse;
+  for (Tree* tree : {&coarse, &fine}) {
+    testing::weigh(*tree);
+    const int steps = tree == &coarse ? 3 : 30;
+    for (int i = 0; i < steps; ++i) fly(*tree, work, 0.06 / steps);
+  }
+  EXPECT_FALSE(work.late);
+  EXPECT_LT((coarse.position[count] - fine.position[count]).norm(), 1e-5);
+}
+
+TEST(Flight, IsLateWhereAChainIsTooStiff) {
+  Workspace work;
+  Tree tree = testing::chain(5, 0.2, 1e-7, 1e5);
+  testing::weigh(tree);
+  fly(tree, work, 0.02);
+  EXPECT_TRUE(work.late);
+}
+
 }  // namespace
 }  // namespace ziggurat::dynamics

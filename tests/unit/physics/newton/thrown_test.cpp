@@ -135,6 +135,26 @@ TEST(NewtonThrown, WhatIsStruckStopsAtAWall) {
   }
 }
 
+// A foot rebounds from the floor, the body above it still falls, and the limit of the slide between them jerks the foot down: it was up to
+// 70 mm below the floor at the substep's end.
+TEST(NewtonThrown, WhatALimitJerksDownStopsAtTheFloor) {
+  for (const double hz : rates) {
+    for (const double height : {0.3, 0.4, 0.5}) {
+      World world(newton(true), 1 / hz);
+      scene::Entity hopper = prototype("hopper", at(0, 0, height), true,
+                                       {link("foot", scene::Box{{0.2, 0.2, 0.05}}, 0.2), link("body", scene::Box{{0.1, 0.1, 0.1}}, 1)});
+      hopper.joints.push_back(joint(scene::JointType::prismatic, Vector3::UnitZ(), at(0, 0, 0.3), {}));
+      hopper.joints[0].limit = {-0.005, 0.005};
+      hopper.links[0].surface.restitution = 0.8;
+      world.add(hopper);
+      for (int i = 0; i < 0.6 * hz; ++i) {
+        world.step();
+        ASSERT_GT(origin(world, 0).position.z(), -5e-4) << hz << ' ' << height << ' ' << i;
+      }
+    }
+  }
+}
+
 TEST(NewtonThrown, APushStopsAtAWall) {
   for (const double hz : rates) {
     World world(newton(false, 0), 1 / hz);
