@@ -246,7 +246,7 @@ void Colliders::follow(const dynamics::System& system, double length) {
   const double least = least_reach(length);
   woke = false;
   followed_.clear();
-  thrown_.clear();
+  thrown.clear();
   fast.clear();
   for (ColliderGroup& group : groups) {
     if (!group.proxy) continue;
@@ -264,7 +264,7 @@ void Colliders::follow(const dynamics::System& system, double length) {
 void Colliders::follow(const dynamics::System& system, double length, const TreeSet& chosen) {
   settle();
   followed_.clear();
-  thrown_.clear();
+  thrown.clear();
   fast.clear();
   each_of(groups, chosen, [&](ColliderGroup& group) {
     if (!group.proxy || !group.moves) return;
@@ -274,11 +274,6 @@ void Colliders::follow(const dynamics::System& system, double length, const Tree
     if (step > least_reach(length)) fast.push_back(static_cast<int>(group.entity));
     keep_in_box(group, step, false);
   });
-}
-
-const Collider& Colliders::thrown(std::size_t collider) const {
-  const auto found = std::ranges::find(thrown_, collider, &Thrown::index);
-  return found == thrown_.end() ? all[collider] : found->collider;
 }
 
 /// Takes the poses and motions of its colliders.
@@ -301,17 +296,25 @@ double Colliders::follow(ColliderGroup& group, const dynamics::System& system, d
 
 bool Colliders::widen(std::span<const int> trees, const dynamics::System& system, double length) {
   bool any = false;
+  const auto is_known = [&](std::size_t index, const Collider& moved) {
+    const auto moves_so = [&](const Collider& known) {
+      const double turns = (moved.angular_velocity - known.angular_velocity).length() * moved.radius;
+      return length * ((moved.velocity - known.velocity).length() + turns) <= least_reach(length);
+    };
+    return moves_so(all[index]) || std::ranges::any_of(thrown, [&](const Thrown& known) {
+      return known.index == index && moves_so(known.collider);
+    });
+  };
   for (const int tree : trees) {
     for (ColliderGroup& group : groups_of(static_cast<std::size_t>(tree))) {
       double fastest = 0;
       for (std::size_t i = group.first; i < group.first + group.count; ++i) {
         Collider moved = all[i];
         place(moved, system.trees[tree]);
+        if (is_known(i, moved)) continue;
         const double speed = speed_of(moved);
-        if (length * speed <= all[i].reach) continue;
-        all[i].reach = moved.reach = least_reach(length) + 1.3 * length * speed;
-        std::erase_if(thrown_, [&](const Thrown& before) { return before.index == i; });
-        thrown_.push_back({i, std::move(moved)});
+        all[i].reach = moved.reach = std::max(all[i].reach, btScalar(least_reach(length) + 1.3 * length * speed));
+        thrown.push_back({i, std::move(moved)});
         fastest = std::max(fastest, speed);
       }
       if (fastest == 0) continue;

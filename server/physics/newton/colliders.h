@@ -80,6 +80,12 @@ class Colliders {
   std::vector<ColliderGroup> groups;
   std::optional<std::size_t> floor;  ///< into `all`
   bool woke = false;                 ///< one that rested in the substep before does no more
+  /// As widen() found them, one after the other: few.
+  struct Thrown {
+    std::size_t index = 0;  ///< into `all`
+    Collider collider;
+  };
+  std::vector<Thrown> thrown;
   /// Entities that move farther in the substep than what does not move yet may come, see least_reach().
   std::vector<int> fast;
 
@@ -106,11 +112,9 @@ class Colliders {
   void follow(const dynamics::System& system, double length);
   /// Those of some trees that are awake, for a part of the substep.
   void follow(const dynamics::System& system, double length, const TreeSet& chosen);
-  /// Notes which colliders of some trees are faster now than their reach was made for, and widens that. Until the next follow().
+  /// Notes which colliders of some trees move otherwise now than is known of them, and widens their reach. Until the next follow().
   /// @return  whether there are such: then others may be near
   bool widen(std::span<const int> trees, const dynamics::System& system, double length);
-  /// A collider as widen() found it, or as it is.
-  const Collider& thrown(std::size_t collider) const;
   /// Groups that move and whose poses the last follow() took, ascending.
   std::span<const std::size_t> followed() const { return followed_; }
   /// X_WS of a collider now.
@@ -139,11 +143,6 @@ class Colliders {
   std::size_t settled_ = 0;  // groups that it knows
   std::vector<Bounds> bounds_;  // of a group's colliders
   std::vector<std::size_t> followed_, hits_;
-  struct Thrown {
-    std::size_t index = 0;  // into `all`
-    Collider collider;
-  };
-  std::vector<Thrown> thrown_;  // by widen(), in any order: few
 };
 
 /// How far a surface may come within a substep without moving yet [m].

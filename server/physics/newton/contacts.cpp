@@ -125,6 +125,26 @@ contact::Contacts look(const Collider& a, const Collider& b, double length, int 
   return found;
 }
 
+/// The points where two colliders may touch as something throws them within the substep.
+contact::Contacts look_at_thrown(const Colliders& colliders, std::size_t a, std::size_t b, double length, int most_points, bool& tumbling) {
+  const auto ways_of = [&](std::size_t index) {
+    std::vector<const Collider*> ways{&colliders.all[index]};
+    for (const Colliders::Thrown& thrown : colliders.thrown) {
+      if (thrown.index == index) ways.push_back(&thrown.collider);
+    }
+    return ways;
+  };
+  const auto of_a = ways_of(a), of_b = ways_of(b);
+  for (const Collider* way_a : of_a) {
+    for (const Collider* way_b : of_b) {
+      if (way_a == of_a[0] && way_b == of_b[0]) continue;
+      const contact::Contacts found = look(*way_a, *way_b, length, most_points, tumbling);
+      if (found.count > 0) return found;
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 dynamics::Contact law_of(const Collider& a, const Collider& b, const math::Vector3& normal,
@@ -239,9 +259,9 @@ void Contacts::meet(Pair& pair, double length) {
   resting_ += pair.rests;
   bool tumbling = false;
   contact::Contacts found = look(a, b, length, most_points, tumbling);
-  const Collider& thrown_a = colliders_.thrown(pair.a);
-  const Collider& thrown_b = colliders_.thrown(pair.b);
-  if (found.count == 0 && (&thrown_a != &a || &thrown_b != &b)) found = look(thrown_a, thrown_b, length, most_points, tumbling);
+  if (found.count == 0 && !colliders_.thrown.empty()) {
+    found = look_at_thrown(colliders_, pair.a, pair.b, length, most_points, tumbling);
+  }
   add(found, pair, length);
   if (tumbling && !(a.moves && b.moves)) turned_.push_back(&pair - pairs_.data());
 }
