@@ -156,6 +156,39 @@ void aim_rebounds(Problem& problem) {
   }
 }
 
+/// Lets contacts with restitution that something sets in motion towards each other within the substep rebound, too: as from the speed
+/// that they would have without each other, from the beginning on.
+/// @param problem  solved
+/// @return         whether there are such
+bool aim_what_is_thrown(Problem& problem, Solver& solver) {
+  std::vector<Block*> thrown;
+  for (Block& block : problem.blocks) {
+    const bool rebounds = block.kind == Block::Source::contact && block.restitution > 0 && !block.bounces;
+    if (rebounds && block.impulse[0] > 0 && block.gap > slow_impact * problem.length) thrown.push_back(&block);
+  }
+  if (thrown.empty()) return false;
+  for (Block* block : thrown) {
+    block->law = Block::Law::off;
+    block->impulse.fill(0);
+  }
+  solver.solve(problem);
+  bool any = false;
+  for (Block* block : thrown) {
+    block->law = Block::Law::contact;
+    double u[Block::most_rows];
+    problem.speeds(*block, u);
+    const double time = u[0] < -slow_impact ? -block->gap / u[0] : HUGE_VAL, rest = problem.length - time;
+    if (rest <= 0) continue;
+    block->bounces = any = true;
+    block->yield = 0;
+    block->met = time;
+    block->before = u[0];
+    block->seek[0] = -block->restitution * u[0];
+    block->rise = rest * block->seek[0];
+  }
+  return any;
+}
+
 }  // namespace
 
 Outcome solve_velocities(Problem& problem, Solver& solver) {
@@ -163,11 +196,13 @@ Outcome solve_velocities(Problem& problem, Solver& solver) {
   problem.bound_depth();
   constexpr int most_turns = 3;  // of limits: what is set in motion within the substep may pass the bound that is farther away
   Outcome outcome = solver.solve(problem);
-  for (int i = 0; i < most_turns && problem.turn_limits(); ++i) {
+  const auto solve_again = [&] {
     const int iterations = outcome.iterations;
     outcome = solver.solve(problem);
     outcome.iterations += iterations;
-  }
+  };
+  for (int i = 0; i < most_turns && problem.turn_limits(); ++i) solve_again();
+  if (aim_what_is_thrown(problem, solver)) solve_again();
   return outcome;
 }
 

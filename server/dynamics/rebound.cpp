@@ -26,15 +26,18 @@ double work_of_pushes(const Problem& problem, Workspace& work) {
   return sum;
 }
 
-/// What servos do in the substep, of which v is the solution.
-double work_of_servos(const Problem& problem) {
+/// What servos do in the substep, of which v is the solution. What they give for the rebounds they give in the impacts, at the speed that they
+/// have then.
+double work_of_servos(const Problem& problem, const Snapshot& without) {
   double sum = 0;
-  for (const Block& block : problem.blocks) {
+  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
+    const Block& block = problem.blocks[i];
     if (block.kind != Block::Source::servo || block.impulse[0] == 0) continue;
     const double* before = problem.trees[block.a]->v.data();
     const double* after = problem.velocity.data() + problem.offset[block.a];
+    const double usual = without.impulses[i][0], more = block.impulse[0] - usual;
     for (const int k : block.dofs_a) {
-      sum += block.impulse[0] * problem.jacobian[block.ja + k] * (before[k] + after[k]) / 2;
+      sum += problem.jacobian[block.ja + k] * (usual * (before[k] + after[k]) / 2 + more * after[k]);
     }
   }
   return sum;
@@ -159,7 +162,7 @@ void bound_impacts(Problem& problem, Solver& solver, Workspace& work, Rebound& o
   }
   const double share = share_without_gain(problem, out.without, out.start);
   if (share < 1) blend(problem, out.without, share);
-  out.most_energy = energy(problem.trees) + work_of_pushes(problem, work) + work_of_servos(problem);
+  out.most_energy = energy(problem.trees) + work_of_pushes(problem, work) + work_of_servos(problem, out.without);
 }
 
 bool lifts_too_much(const Problem& problem, Workspace& work, const Rebound& rebound,
