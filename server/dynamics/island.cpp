@@ -206,6 +206,16 @@ bool motors_move(const Problem& problem) {
   });
 }
 
+/// Into how many parts the step of an island should be divided for what swings in it.
+int parts_for_swings(std::span<const Swing> swings, std::span<const int> island) {
+  constexpr double most = 0.1;  // in a part [rad]
+  double angle = 0;
+  for (const Swing& swing : swings) {
+    if (std::ranges::find(island, swing.tree) != island.end()) angle = std::max(angle, swing.angle);
+  }
+  return static_cast<int>(std::ceil(std::min(angle / most, 1e6)));
+}
+
 }  // namespace
 
 /// Whether a joint of the island, or of a tree of it, is beyond a limit.
@@ -295,7 +305,8 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   std::size_t free = find_free(problem_, servos_, allowed_overlap, free_);
   const bool touched = free < free_.size();
   if (most_parts > 1) {
-    const int parts = std::max(touched ? parts_for_tension(problem_, contacts_, work_, tension_) : 1, parts_for_nutation(problem_, work_));
+    const int parts = std::max({touched ? parts_for_tension(problem_, contacts_, work_, tension_) : 1, parts_for_nutation(problem_, work_),
+                                parts_for_swings(swings, island)});
     if (parts > 1) {
       for (const int tree : island) watch_[tree] |= Watch::waits;
       report_.not_converged += parts > most_parts;

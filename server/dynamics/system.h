@@ -26,6 +26,12 @@ struct Report {
   int awake = 0;            ///< trees that moved
 };
 
+/// A tree that swings far until it meets something.
+struct Swing {
+  int tree = 0;
+  double angle = 0;  ///< [rad]
+};
+
 /// Islands that a step left as they were, because something in them swings or nutates too fast for it.
 struct LeftIslands {
   struct Island {
@@ -74,6 +80,8 @@ class System {
   int most_parts = 1;
   bool is_part = false;  ///< step() takes one of these parts
   LeftIslands left;      ///< by the last step()
+  /// Those whose islands take parts, too: a contact acts along lines of the step's beginning. To be set before step().
+  std::vector<Swing> swings;
 
   /// Whether a tree sleeps. Then a substep leaves it as it is; its contacts need not be told, and
   /// are ignored, until something wakes its island: a contact with a tree that is awake and comes

@@ -52,6 +52,7 @@ std::optional<Collider> make_collider(const Body& body, const scene::Entity& ent
   collider.in_part = to_bullet(placed.in_part);
   collider.centred = collider.in_part == btTransform::getIdentity();
   collider.moves = body.parts[placed.part].moves;
+  collider.swings = collider.moves && !entity.movable;
   collider.rolls = body.ground.has_value() && i == 0;
   collider.surface = link.surface;
   collider.half = to_bullet(placed.half_extents);

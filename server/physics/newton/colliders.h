@@ -44,6 +44,7 @@ struct alignas(64) Collider {
 
   std::size_t group = 0;  ///< into the broad phase's groups
   std::size_t link = 0;   ///< into Body::links
+  bool swings = false;    ///< on joints from something that stands: its centre moves on a circle
   scene::Surface surface;
   contact::Shape shape;
   btTransform in_part = btTransform::getIdentity();  ///< X_PS

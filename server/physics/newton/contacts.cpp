@@ -101,32 +101,42 @@ void place_between(const Collider& a, const math::Vector3& on_a, const Collider&
   }
 }
 
-/// The points of two colliders that may touch within the substep.
+/// What two colliders may do in a substep.
+struct Sight {
+  contact::Contacts found;  ///< points that may touch
+  bool tumbling = false;    ///< one may turn so far that other points do
+  double swing = 0;         ///< how far one swings until they meet [rad]
+};
+
 /// @param most_points  of those that tumble
-/// @param tumbling  out: whether one may turn so far that other points do
-contact::Contacts look(const Collider& a, const Collider& b, double length, int most_points, bool& tumbling) {
+Sight look(const Collider& a, const Collider& b, double length, int most_points) {
+  constexpr double far = 0.2;  // a swing whose way bends [rad]
   const double slack = least_reach(length);
   const double reach = a.reach + b.reach;
-  contact::Contacts found =
-      contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::face,
-                    farthest_that_may_touch(a, b, length, slack));
+  Sight out;
+  contact::Contacts& found = out.found;
+  found = contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::face,
+                        farthest_that_may_touch(a, b, length, slack));
   const Approach approach = approach_of(found, a, b, length, slack);
-  tumbling = approach.may_touch && tumbles(a, b, approach, length);
-  if (!approach.may_touch) {
+  out.tumbling = approach.may_touch && tumbles(a, b, approach, length);
+  const bool swings = found.count > 0 && std::max(swing_of(a, length), swing_of(b, length)) > far;
+  double time = 0;
+  if (approach.least > slack && (swings || approach.may_touch)) {
+    found = first_meeting(a, b, length, slack / 2, time);
+    if (found.count > 0 && swings) out.swing = std::max(swing_of(a, time), swing_of(b, time));
+  } else if (!approach.may_touch) {
     found.count = 0;
-  } else if (approach.least > slack) {
-    found = first_meeting(a, b, length, slack / 2);
   } else if (found.count <= 2 && approach.least > together && normal_turns(a, b)) {
-    found = first_meeting(a, b, length, slack);
-  } else if (tumbling) {
+    found = first_meeting(a, b, length, slack, time);
+  } else if (out.tumbling) {
     found = contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::all);
   }
-  if (!tumbling || found.count > most_points) contact::reduce(found, (a.moves ? a : b).pose);
-  return found;
+  if (!out.tumbling || found.count > most_points) contact::reduce(found, (a.moves ? a : b).pose);
+  return out;
 }
 
 /// The points where two colliders may touch as something throws them within the substep.
-contact::Contacts look_at_thrown(const Colliders& colliders, std::size_t a, std::size_t b, double length, int most_points, bool& tumbling) {
+Sight look_at_thrown(const Colliders& colliders, std::size_t a, std::size_t b, double length, int most_points) {
   const auto ways_of = [&](std::size_t index) {
     std::vector<const Collider*> ways{&colliders.all[index]};
     for (const Colliders::Thrown& thrown : colliders.thrown) {
@@ -138,8 +148,8 @@ contact::Contacts look_at_thrown(const Colliders& colliders, std::size_t a, std:
   for (const Collider* way_a : of_a) {
     for (const Collider* way_b : of_b) {
       if (way_a == of_a[0] && way_b == of_b[0]) continue;
-      const contact::Contacts found = look(*way_a, *way_b, length, most_points, tumbling);
-      if (found.count > 0) return found;
+      const Sight sight = look(*way_a, *way_b, length, most_points);
+      if (sight.found.count > 0) return sight;
     }
   }
   return {};
@@ -192,6 +202,7 @@ std::span<dynamics::Contact> Contacts::find(double length, const TreeSet& chosen
 /// All pairs that are near, and those with the floor.
 void Contacts::meet_all(double length) {
   ++part_;
+  swings.clear();
   contacts_.clear();
   owner_.clear();
   turned_.clear();
@@ -257,13 +268,13 @@ void Contacts::meet(Pair& pair, double length) {
   resting_ -= pair.rests;
   pair.rests = colliders_.rests(a) && colliders_.rests(b);
   resting_ += pair.rests;
-  bool tumbling = false;
-  contact::Contacts found = look(a, b, length, most_points, tumbling);
-  if (found.count == 0 && !colliders_.thrown.empty()) {
-    found = look_at_thrown(colliders_, pair.a, pair.b, length, most_points, tumbling);
+  Sight sight = look(a, b, length, most_points);
+  if (sight.found.count == 0 && !colliders_.thrown.empty()) {
+    sight = look_at_thrown(colliders_, pair.a, pair.b, length, most_points);
   }
-  add(found, pair, length);
-  if (tumbling && !(a.moves && b.moves)) turned_.push_back(&pair - pairs_.data());
+  if (sight.swing > 0) swings.push_back({static_cast<int>((a.swings ? a : b).entity), sight.swing});
+  add(sight.found, pair, length);
+  if (sight.tumbling && !(a.moves && b.moves)) turned_.push_back(&pair - pairs_.data());
 }
 
 /// Appends the pair's contacts, each with the impulse of the point of the last substep that is

@@ -26,6 +26,9 @@ class Contacts {
  public:
   explicit Contacts(Colliders& colliders) : colliders_(colliders) {}
 
+  /// Trees of the last find() that swing far until they meet something.
+  std::vector<dynamics::Swing> swings;
+
   /// Contacts of the coming substep, with the impulses of the last one; without those of pairs that
   /// both rest, which do nothing as long as both do.
   std::span<dynamics::Contact> find(double length);

@@ -295,6 +295,7 @@ void NewtonCore::remember(const Share& share) {
 }
 
 void NewtonCore::step(std::span<dynamics::Contact> contacts, const Share& share) {
+  system_.swings = contacts_.swings;
   const dynamics::Report report =
       system_.step(share.length, contacts, servos_, limits_, share.trees());
   if (!system_.left.trees.empty()) {

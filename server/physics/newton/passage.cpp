@@ -25,18 +25,26 @@ btVector3 turning_of(const Collider& collider) {
   return turning - axis * axis.dot(turning);
 }
 
-/// Where a collider's surface is after some time.
+/// Where a collider's surface is after some time. What swings goes on in the screw motion that it is in.
 btTransform pose_after(const Collider& collider, double time) {
   if (!collider.moves) return collider.pose;
   const math::Quaternion turn = dynamics::exponential(from_bullet(turning_of(collider)) * time);
-  return btTransform(btMatrix3x3(to_bullet(turn)) * collider.pose.getBasis(),
-                     collider.pose.getOrigin() + collider.velocity * time);
+  btVector3 way = collider.velocity * time;
+  const btVector3& w = collider.angular_velocity;
+  if (swing_of(collider, time) > 0) {
+    const btVector3 to_axis = w.cross(collider.velocity) / w.length2();
+    const btMatrix3x3 turned(to_bullet(dynamics::exponential(from_bullet(w) * time)));
+    way = to_axis - turned * to_axis + w * (w.dot(collider.velocity) / w.length2() * time);
+  }
+  return btTransform(btMatrix3x3(to_bullet(turn)) * collider.pose.getBasis(), collider.pose.getOrigin() + way);
 }
 
-/// The fastest that two surfaces can approach each other along a normal from b to a [m/s].
+/// The fastest that two surfaces can approach each other along a normal from b to a, also later where they swing [m/s].
 double fastest_approach(const Collider& a, const Collider& b, const btVector3& normal) {
-  return normal.dot(b.velocity - a.velocity) +
-         turning_of(a).cross(normal).length() * a.radius +
+  const auto centre = [](const Collider& collider, const btVector3& towards) {
+    return collider.swings ? collider.velocity.length() : towards.dot(collider.velocity);
+  };
+  return centre(b, normal) + centre(a, -normal) + turning_of(a).cross(normal).length() * a.radius +
          turning_of(b).cross(normal).length() * b.radius;
 }
 
@@ -67,15 +75,22 @@ bool normal_turns(const Collider& a, const Collider& b) {
   return (is_round(a) || is_round(b)) && !is_plane(a) && !is_plane(b);
 }
 
-contact::Contacts first_meeting(const Collider& a, const Collider& b, double length, double near) {
+double swing_of(const Collider& collider, double time) {
+  constexpr double on_axis = 1e-3;  // of its size: what is so near the axis only turns
+  if (!collider.swings) return 0;
+  const double turning = collider.angular_velocity.length();
+  return time * (collider.velocity.length() > on_axis * turning * collider.radius ? turning : double(turning_of(collider).length()));
+}
+
+contact::Contacts first_meeting(const Collider& a, const Collider& b, double length, double near, double& time) {
   constexpr int most_steps = 256;  // what turns much faster than it comes takes many
   constexpr int most_near = 12;    // what is followed to the touch, nearer than `near`
   constexpr double touch = 1e-7;   // [m]
   int left = normal_turns(a, b) ? most_near : 0;
-  double time = 0;
   contact::Contacts met;
+  double now = time = 0;
   for (int step = 0; step < most_steps; ++step) {
-    const btTransform pose_a = pose_after(a, time), pose_b = pose_after(b, time);
+    const btTransform pose_a = pose_after(a, now), pose_b = pose_after(b, now);
     contact::Contacts found =
         contact::find(a.shape, pose_a, b.shape, pose_b, a.reach + b.reach, contact::Support::all);
     const double distance = least_distance(found);
@@ -84,12 +99,13 @@ contact::Contacts first_meeting(const Collider& a, const Collider& b, double len
     const double follow = left > 0 ? touch : near;
     if (distance <= near) {
       met = found;
+      time = now;
       carry_back(met, a, pose_a, b, pose_b);
       if (distance <= touch || --left <= 0) break;
     }
     if (approach <= 0) break;
-    time += (distance - follow / 2) / approach;
-    if (time >= length) break;
+    now += (distance - follow / 2) / approach;
+    if (now >= length) break;
   }
   return met;
 }

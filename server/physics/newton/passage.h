@@ -10,7 +10,11 @@ namespace ziggurat::physics {
 /// Conservative advancement (B. Mirtich, Impulse-based Dynamic Simulation, 1996, section 2.3).
 /// Round surfaces are followed to where they touch, or are nearest: there the normal turns with the way that is left.
 /// @param near  counts as met [m]
-contact::Contacts first_meeting(const Collider& a, const Collider& b, double length, double near);
+/// @param time  out: when, from the substep's beginning [s]
+contact::Contacts first_meeting(const Collider& a, const Collider& b, double length, double near, double& time);
+
+/// How far a collider that swings turns in a time [rad]; 0 of others.
+double swing_of(const Collider& collider, double time);
 
 /// Whether the normal of such a contact turns while two colliders come together: one of them is round, and the other no plane.
 bool normal_turns(const Collider& a, const Collider& b);

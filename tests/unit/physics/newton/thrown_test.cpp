@@ -42,6 +42,29 @@ TEST(NewtonThrown, AMotorStopsAtAThinWall) {
   }
 }
 
+// An arm went through a post, because what it may touch was looked for along a straight way.
+TEST(NewtonThrown, AnArmStopsAtAPost) {
+  for (const double hz : rates) {
+    for (const double speed : {10, 60, 150}) {
+      for (const double angle : {0.6, 1.7, 2.9}) {
+        World world(newton(false, 0), 1 / hz);
+        scene::Entity arm = prototype("arm", at(0, 0, 0), false, {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1), link("arm", scene::Box{{0.2, 0.02, 0.02}}, 0.02)});
+        arm.joints.push_back(joint(scene::JointType::revolute, Vector3::UnitZ(), at(0, 0, 0), at(-0.1, 0, 0)));
+        world.add(arm);
+        world.add(standing(at(0.15 * std::cos(angle), 0.15 * std::sin(angle), -0.5), scene::Cylinder{0.01, 1}));
+        world.add_motor(world.joint(0, 0), scene::JointMode::velocity, 20 / hz);
+        world.set_target(world.joint(0, 0), speed);
+        const double touch = angle - std::asin(0.02 / 0.15);
+        for (int i = 0; i < hz; ++i) {
+          world.step();
+          ASSERT_LT(world.position(world.joint(0, 0)), touch + 1e-3) << hz << ' ' << speed << ' ' << angle;
+        }
+        EXPECT_NEAR(world.position(world.joint(0, 0)), touch, 1e-4) << hz << ' ' << speed << ' ' << angle;
+      }
+    }
+  }
+}
+
 // Only the bound that was nearer at the substep's beginning held: the head passed the other by up to metres.
 TEST(NewtonThrown, AMotorStopsAtItsLimit) {
   for (const double hz : rates) {
