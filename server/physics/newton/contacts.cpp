@@ -101,24 +101,23 @@ void place_between(const Collider& a, const math::Vector3& on_a, const Collider&
   }
 }
 
-/// What two colliders may do in a substep.
-struct Sight {
-  contact::Contacts found;  ///< points that may touch
-  bool tumbling = false;    ///< one may turn so far that other points do
-  double swing = 0;         ///< how far one swings until they meet [rad]
+/// How two colliders turn in a substep.
+struct Turning {
+  bool tumbles = false;  ///< one so far that other points may touch
+  double swing = 0;      ///< one that swings, until they meet [rad]
 };
 
+/// The points of two colliders that may touch within the substep.
 /// @param most_points  of those that tumble
-Sight look(const Collider& a, const Collider& b, double length, int most_points) {
+contact::Contacts look(const Collider& a, const Collider& b, double length, int most_points, Turning& out) {
   constexpr double far = 0.2;  // a swing whose way bends [rad]
   const double slack = least_reach(length);
   const double reach = a.reach + b.reach;
-  Sight out;
-  contact::Contacts& found = out.found;
-  found = contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::face,
-                        farthest_that_may_touch(a, b, length, slack));
+  contact::Contacts found =
+      contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::face,
+                    farthest_that_may_touch(a, b, length, slack));
   const Approach approach = approach_of(found, a, b, length, slack);
-  out.tumbling = approach.may_touch && tumbles(a, b, approach, length);
+  out.tumbles = approach.may_touch && tumbles(a, b, approach, length);
   const bool swings = found.count > 0 && std::max(swing_of(a, length), swing_of(b, length)) > far;
   double time = 0;
   if (approach.least > slack && (swings || approach.may_touch)) {
@@ -128,15 +127,15 @@ Sight look(const Collider& a, const Collider& b, double length, int most_points)
     found.count = 0;
   } else if (found.count <= 2 && approach.least > together && normal_turns(a, b)) {
     found = first_meeting(a, b, length, slack, time);
-  } else if (out.tumbling) {
+  } else if (out.tumbles) {
     found = contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::all);
   }
-  if (!out.tumbling || found.count > most_points) contact::reduce(found, (a.moves ? a : b).pose);
-  return out;
+  if (!out.tumbles || found.count > most_points) contact::reduce(found, (a.moves ? a : b).pose);
+  return found;
 }
 
 /// The points where two colliders may touch as something throws them within the substep.
-Sight look_at_thrown(const Colliders& colliders, std::size_t a, std::size_t b, double length, int most_points) {
+contact::Contacts look_at_thrown(const Colliders& colliders, std::size_t a, std::size_t b, double length, int most_points, Turning& out) {
   const auto ways_of = [&](std::size_t index) {
     std::vector<const Collider*> ways{&colliders.all[index]};
     for (const Colliders::Thrown& thrown : colliders.thrown) {
@@ -148,8 +147,8 @@ Sight look_at_thrown(const Colliders& colliders, std::size_t a, std::size_t b, d
   for (const Collider* way_a : of_a) {
     for (const Collider* way_b : of_b) {
       if (way_a == of_a[0] && way_b == of_b[0]) continue;
-      const Sight sight = look(*way_a, *way_b, length, most_points);
-      if (sight.found.count > 0) return sight;
+      const contact::Contacts found = look(*way_a, *way_b, length, most_points, out);
+      if (found.count > 0) return found;
     }
   }
   return {};
@@ -268,13 +267,14 @@ void Contacts::meet(Pair& pair, double length) {
   resting_ -= pair.rests;
   pair.rests = colliders_.rests(a) && colliders_.rests(b);
   resting_ += pair.rests;
-  Sight sight = look(a, b, length, most_points);
-  if (sight.found.count == 0 && !colliders_.thrown.empty()) {
-    sight = look_at_thrown(colliders_, pair.a, pair.b, length, most_points);
+  Turning turning;
+  contact::Contacts found = look(a, b, length, most_points, turning);
+  if (found.count == 0 && !colliders_.thrown.empty()) {
+    found = look_at_thrown(colliders_, pair.a, pair.b, length, most_points, turning);
   }
-  if (sight.swing > 0) swings.push_back({static_cast<int>((a.swings ? a : b).entity), sight.swing});
-  add(sight.found, pair, length);
-  if (sight.tumbling && !(a.moves && b.moves)) turned_.push_back(&pair - pairs_.data());
+  if (turning.swing > 0) swings.push_back({static_cast<int>((a.swings ? a : b).entity), turning.swing});
+  add(found, pair, length);
+  if (turning.tumbles && !(a.moves && b.moves)) turned_.push_back(&pair - pairs_.data());
 }
 
 /// Appends the pair's contacts, each with the impulse of the point of the last substep that is
