@@ -268,7 +268,8 @@ def _heard(peer: Peer, patience: float, heartbeats: bool):
     try:
         return peer.hear(patience, heartbeats)
     except ValueError as error:
-        raise Failed(f"{peer.name} was told {error}") from None
+        rules = "T2, T6" if peer.form == wire.JSON else "T2"
+        raise Failed(f"{peer.name} was told {error} ({rules})") from None
 
 
 def _complaint(step: Hear, pattern: dict, message) -> str:

@@ -48,6 +48,7 @@ MUTANTS = [
     _tiny("any-role", "K3.controller-as-supervisor"),
     _tiny("grants-stop", "K11.stop"),
     _bent("two-frames", "H1.at-once", "T2"),
+    _bent("nul-behind", "H1.at-once", "T2"),
     _bent("garbage-is-silent", "T2.session-garbage-ones"),
     _bent("reorders", "T3.order"),
     _bent("no-limit", "T4.limit-is-told"),

@@ -91,7 +91,7 @@ class Client:
 
     def encoded(self, message):
         if self.form != "json":
-            return message.SerializeToString()
+            return bugs.BYTES.get(self.bug, bytes)(message.SerializeToString())
         text = json_format.MessageToJson(message, indent=None)
         return bugs.TEXTS.get(self.bug, str.encode)(text)
 

@@ -7,6 +7,7 @@ import protocol_pb2 as protocol
 from .kinds import E, RAW, SAID, TOLD, clear_fields, drop, in_kind, recode, refill, said, set_fields, swap, told
 
 RAW["two-frames"] = lambda data: [(data, b"")]
+RAW["nul-behind"] = lambda data: [data if data[:1] == b"{" else data + b"\0"]
 RAW["other-form"] = lambda data: [data[1:] if data[:1] == b"{" else data]
 
 
