@@ -32,6 +32,14 @@ HELLOS = {
     "unknown-action": _policy(77),
 }
 
+def _resumes_as_observer(hello):
+    if hello.session_token:
+        hello.role = protocol.ROLE_OBSERVER
+        hello.ClearField("robots")
+
+
+HELLOS["resumes-as-observer"] = _resumes_as_observer
+
 LEAVES = {
     "leaves-without-reason": _set("reason", protocol.Leave.REASON_UNSPECIFIED),
     "leave-log-beyond": lambda leave: leave.log.add(robot=99, text="x"),

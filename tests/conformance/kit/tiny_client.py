@@ -183,7 +183,7 @@ class Client:
             self.say(command=protocol.Command(tick=0))
         if self.bug == "heartbeat-first":
             self.say(heartbeat=protocol.Heartbeat(sequence=1))
-        self.hello(self.token)
+        self.hello(self.token or (b"of another run" if self.bug in ("guesses-a-token", "tries-an-old-token") else b""))
         while True:
             message = self.hear()
             if message is None:
@@ -247,6 +247,8 @@ class Client:
         return 0 if self.bug == "displaced-is-fine" else 1
 
     def take_refusal(self, refusal):
+        if self.bug == "tries-an-old-token":
+            return self.hello()
         if self.bug in ("storm", "storms-with-token"):
             self.hello(self.token)
             return None
