@@ -238,7 +238,7 @@ class Session:
         faults = list(welcome_faults(self.hello, welcome)) if self.hello is not None else []
         self.welcome, self.state = welcome, State.READY
         self.tick, self.owes, self._is_new_world = None, False, True
-        self.left, self.missed, self._used = set(), set(), set()
+        self.left, self.missed, self._used = set(welcome.resumed.gone_robots), set(), set()
         self._must_repeat = False
         self._world = None
         return faults
@@ -299,6 +299,8 @@ class Session:
             faults.append(Fault("M0", "an Error outside of a Refusal is retryable (section 6)"))
         if error.code == _Error.ROBOTS_DROPPED:
             faults += self._take_dropped(error)
+        if error.code == _Error.NOT_YOURS and self.state is State.READY:  # not gone, but taken over (L4, H13)
+            self.left -= {i for i, robot in enumerate(self.welcome.robots) if robot.id == error.robot}
         if self.state in (State.NEW, State.HELLO) and error.severity != _Error.FATAL:
             faults.append(Fault("M0", "an Error without a session is not FATAL (section 6)"))
         if error.code == _Error.DEADLINE_MISSED:

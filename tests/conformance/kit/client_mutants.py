@@ -138,6 +138,8 @@ MUTANTS = [
     _should("begins-anew", "L4", "L4.lost"),
     Mutant("wrong-token", "L4", "L4.lost"),
     Mutant("resumes-as-observer", "L4", "L4.lost"),
+    Mutant("names-the-gone", "S7", "L13.gone"),
+    Mutant("leaves-the-gone", "L1", "L13.gone"),
     Mutant("guesses-a-token", "L4", "H1.hello-first"),
     _should("tries-an-old-token", "H10", "H1.hello-first"),
     _should("storms-with-token", "H10", "L4.no-such-session"),

@@ -204,6 +204,10 @@ class Client:
 
     def take_welcome(self, welcome):
         self.welcome, self.token = welcome, welcome.session_token
+        gone = set(welcome.resumed.gone_robots)
+        self.left |= set() if self.bug == "names-the-gone" else gone
+        if gone and self.bug == "leaves-the-gone":
+            self.say(leave=protocol.Leave(robots=gone, reason=protocol.Leave.DONE))
         if self.bug == "prints-its-token":
             print(f"resumed {self.token.hex()}", flush=True)
         if self.bug == "hello-twice":
