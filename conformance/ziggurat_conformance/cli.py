@@ -246,6 +246,7 @@ def _main(words: list, version: str) -> int:
 
 
 def main(arguments=None, version="of a source tree") -> int:
+    outputs.keep_descriptors()
     stdout = outputs.Stdout(sys.stdout)
     with contextlib.redirect_stdout(stdout):
         try:

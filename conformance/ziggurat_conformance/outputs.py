@@ -2,6 +2,7 @@
 
 import errno
 import os
+import time
 from pathlib import Path
 from typing import Callable, Optional, TextIO
 
@@ -11,6 +12,7 @@ _KINDS = {  # what a file begins with → what it is worth more than a report as
     b"<argos-configuration": "a scene",
 }
 _SPACE = b" \t\r\n"
+_READER_STARTS = 1.0  # [s] that a reader which was started beside this program may take
 
 
 class WrongOutput(Exception):
@@ -54,14 +56,18 @@ def _check_one(option: str, path: Path, ending: str) -> None:
 
 def _opened_pipe(option: str, path: Path) -> int:
     """Its reader waits until it is closed."""
-    try:
-        pipe = os.open(path, os.O_WRONLY | os.O_NONBLOCK)
-    except OSError as error:
-        if error.errno == errno.ENXIO:
-            raise WrongOutput(f"{option} is '{path}', a pipe that nobody reads; start its reader first") from None
-        raise
-    os.set_blocking(pipe, True)
-    return pipe
+    deadline = time.monotonic() + _READER_STARTS
+    while True:
+        try:
+            pipe = os.open(path, os.O_WRONLY | os.O_NONBLOCK)
+            os.set_blocking(pipe, True)
+            return pipe
+        except OSError as error:
+            if error.errno != errno.ENXIO:
+                raise
+        if time.monotonic() > deadline:
+            raise WrongOutput(f"{option} is '{path}', a pipe that nobody reads; start its reader first")
+        time.sleep(0.02)
 
 
 class Reports:
@@ -90,6 +96,13 @@ class Reports:
                 faults.append(f"{option} {path} can't be written: {error.strerror}")
         if faults:
             raise WrongOutput("; ".join(faults))
+
+
+def keep_descriptors() -> None:
+    """Nothing that is opened later takes the place of stdin, stdout or stderr where these are closed: libraries print there."""
+    while (descriptor := os.open(os.devnull, os.O_RDWR)) < 3:
+        pass
+    os.close(descriptor)
 
 
 class Stdout:

@@ -11,6 +11,7 @@ from .error import error_faults
 from .fault import Fault, musts
 from .hello import hello_faults
 from .observation import commanded_faults, observation_faults, welcome_faults
+from .requests import Requests
 from .versions import version_faults
 
 STRANGERS_LIMIT = 64 << 10  # [bytes] of a message without a session
@@ -67,7 +68,7 @@ class Session:
         self._metrics: set = set()  # (position, name) of this world
         self._must_repeat = False  # W6: the next Command should have them all
         self._heartbeats: list[int] = []  # sequences that the server sent
-        self._requests: list[int] = []  # ids that wait for their Response
+        self._requests = Requests()
 
     # ---- the client --------------------------------------------------------------------------------
 
@@ -78,7 +79,7 @@ class Session:
             return [Fault("T2", "a message holds nothing that protocol 1.0 knows", "MALFORMED")]
         faults = [*self._size_faults(kind, size), *_said[kind](self, getattr(message, kind))]
         if kind == "request":
-            self._requests.append(message.request.id)
+            self._requests.said(message.request)
         is_greeting = kind == "hello" and self.state in (State.NEW, State.CLOSED)  # Loading may answer it
         if is_greeting or not musts(faults):
             _after_said.get(kind, lambda *_: None)(self, getattr(message, kind))
@@ -343,16 +344,7 @@ class Session:
         self._heartbeats = [*self._heartbeats[-100:], heartbeat.sequence]
 
     def _take_response(self, response: protocol.Response) -> Iterator[Fault]:
-        if response.id not in self._requests:
-            yield Fault("V2", f"a Response to the request {response.id}, which was not made or is answered")
-        elif self._requests.index(response.id):
-            yield Fault("V2", f"the request {self._requests[0]} is passed over: {response.id} is answered")
-        if response.id in self._requests:
-            self._requests.remove(response.id)
-        if response.HasField("error"):
-            yield from error_faults(response.error)
-            if response.WhichOneof("result"):
-                yield Fault("V2", "a Response has an error and a result")
+        return self._requests.told(response)
 
     def _take_reset(self, reset: Union[protocol.Reset, protocol.Restored]) -> None:
         self._world = None

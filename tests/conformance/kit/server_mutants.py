@@ -165,6 +165,7 @@ MUTANTS = [
     _bent("refusal-not-fatal", "H5.unknown-id", "M0"),
     _bent("unknown-code", "S9.future"),
     _bent("wrong-error-tick", "S9.future", "M0"),
+    _bent("wrong-tick-of-refusals", "V5.none", "M0"),
     _bent("no-severity", "S9.future"),
     _bent("welcome-twice", "S3.command-releases", "M0"),
     _bent("too-many-is-silent", "M4.many-faults"),
