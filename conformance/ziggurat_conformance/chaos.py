@@ -6,7 +6,7 @@ import time
 from typing import Callable
 
 from . import wire
-from .case import Case, Failed, Level, Outcome, Verdict
+from .case import Case, Failed, Level, Outcome, Verdict, judge
 from . import client_messages as words
 from .client_stage import ClientStage, Options
 from .cases.client_core import UNKNOWN_KIND
@@ -25,15 +25,10 @@ def play_server(servers, seed: int, ticks: int, patience: float, forms: tuple,
         for form in forms:
             case = Case("S12.chaos", f"{ticks} ticks of chaos, seed {seed}", (), Level.RECONNECT)
             outcome = Outcome(f"{case.id}/{form}", case.title, case.level, Verdict.PASS)
-            start = time.monotonic()
             server = servers.server_for(case)
             with Stage(server.endpoint, form, patience, server) as stage:
-                try:
-                    _Crowd(stage, random.Random(seed)).live(ticks)
-                except Failed as reason:
-                    outcome.verdict, outcome.reason = Verdict.FAIL, str(reason)
-                    outcome.transcript = "\n".join(stage.transcript.text().splitlines()[-100:])
-            outcome.seconds = time.monotonic() - start
+                judge(outcome, lambda: _Crowd(stage, random.Random(seed)).live(ticks))
+            outcome.transcript = _end_of(stage, outcome)
             servers.done(case, outcome.verdict is Verdict.PASS)
             outcomes.append(outcome)
             on_outcome(outcome)
@@ -129,24 +124,29 @@ def play_client(command: list, seed: int, ticks: int, options: Options, on_outco
     """A server that pauses, resets, sends heartbeats and unknown messages, and takes its time."""
     draw = random.Random(seed)
     outcome = Outcome("S3.chaos", f"{ticks} ticks of chaos, seed {seed}", Level.RECONNECT, Verdict.PASS)
-    start = time.monotonic()
     with ClientStage(command, Case(outcome.id, outcome.title, ()), options) as stage:
-        try:
-            stage.play((words.HELLO, words.welcome()))
-            tick = 0
-            for _ in range(ticks):
-                stage.play((words.observation(tick),))
-                if draw.random() < 0.2:
-                    stage.tell(Tell({"heartbeat": {"sequence": draw.randrange(2**32)}}))
-                stage.play((words.answered(tick),))
-                tick = _disturb(stage, draw, tick) + 1
-            stage.play((words.end(tick - 1), words.LEFT))
-        except Failed as reason:
-            outcome.verdict, outcome.reason = Verdict.FAIL, str(reason)
-            outcome.transcript = "\n".join(stage.transcript.text().splitlines()[-60:])
-    outcome.seconds = time.monotonic() - start
+        judge(outcome, lambda: _unrest(stage, draw, ticks))
+    outcome.transcript = _end_of(stage, outcome)
     on_outcome(outcome)
     return [outcome]
+
+
+def _unrest(stage: ClientStage, draw: random.Random, ticks: int) -> None:
+    stage.play((words.HELLO, words.welcome()))
+    tick = 0
+    for _ in range(ticks):
+        stage.play((words.observation(tick),))
+        if draw.random() < 0.2:
+            stage.tell(Tell({"heartbeat": {"sequence": draw.randrange(2**32)}}))
+        stage.play((words.answered(tick),))
+        tick = _disturb(stage, draw, tick) + 1
+    stage.play((words.end(tick - 1), words.LEFT))
+
+
+def _end_of(stage, outcome: Outcome) -> str:
+    """Of the exchange, if something is wrong with it."""
+    lines = [] if outcome.verdict is Verdict.PASS else stage.transcript.text().splitlines()
+    return "\n".join(lines[-100:])
 
 
 def _disturb(stage: ClientStage, draw: random.Random, tick: int) -> int:

@@ -2,6 +2,7 @@
 
 import argparse
 import collections
+import contextlib
 import shlex
 import sys
 import time
@@ -33,8 +34,8 @@ examples:
   ziggurat-conformance server --only 'S9.*' --html report.html -- …
       some cases, and a page with the exchange of every failure
 
-Exit code: 0 if no case failed, also if some were not run; 1 if one did, or a --badge is not reached; 2 for a mistake on this line, or
-a program that does not start.
+Exit code: 0 if no case failed, also if some were not run; 1 if one did, or a --badge is not reached; 2 for a mistake on this line, a
+program that does not start, or reports or a stdout that can't be written.
 docs/conformance.md explains verdicts, levels, and how to add a case."""
 
 
@@ -87,6 +88,7 @@ def _parser(version: str) -> argparse.ArgumentParser:
     return parser
 
 
+_LONGEST_LIST = 1_000_000  # [bytes] of --known-failing
 _SERVER = "ziggurat serve {scene} --endpoint {endpoint}"
 
 
@@ -111,9 +113,17 @@ def _known(path) -> set:
     if path is None:
         return set()
     try:
-        text = path.read_text()
+        if path.exists() and not path.is_file():
+            raise _Mistake(f"--known-failing {path} is not a regular file")
+        with path.open("rb") as file:
+            data = file.read(_LONGEST_LIST + 1)
+        text = data.decode()
     except OSError as error:
         raise _Mistake(f"--known-failing {path}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise _Mistake(f"--known-failing {path} is not text in UTF-8") from None
+    if len(data) > _LONGEST_LIST:
+        raise _Mistake(f"--known-failing {path} has more than {_LONGEST_LIST} bytes; a list of cases has less")
     lines = (line.split("#")[0].strip() for line in text.splitlines())
     return {line for line in lines if line}
 
@@ -181,55 +191,32 @@ def _print_list(options) -> None:
     print(f"{len(chosen)} cases, {sum(len(case.forms) for case in chosen)} with their forms")
 
 
-def _outputs(options) -> list:
-    """(option, path, ending) of each report that is asked for."""
-    reports = [("--junit", options.junit, ".xml"), ("--json", options.json, ".json"),
-               ("--html", options.html, ".html")]
-    return [output for output in reports if output[1]]
+def _reports(options) -> outputs.Reports:
+    named = [("--junit", options.junit, ".xml"), ("--json", options.json, ".json"), ("--html", options.html, ".html")]
+    return outputs.Reports([report for report in named if report[1]])
 
 
-def _write_reports(options, outcomes: list, left_out: collections.Counter) -> None:
-    """Raises outputs.WrongOutput."""
+def _contents(options, outcomes: list, left_out: collections.Counter) -> dict:
+    """Of the reports."""
     title = f"Conformance of a {options.mode}: {shlex.join(options.target)}"
-    writers = {
-        "--junit": lambda path: report.write_junit(path, outcomes, f"conformance.{options.mode}"),
-        "--json": lambda path: report.write_json(path, outcomes, left_out),
-        "--html": lambda path: report.write_html(path, outcomes, left_out, title),
+    return {
+        "--junit": lambda: report.junit(outcomes, f"conformance.{options.mode}"),
+        "--json": lambda: report.json_of(outcomes, left_out),
+        "--html": lambda: report.page(outcomes, left_out, title),
     }
-    for option, path, _ in _outputs(options):
-        try:
-            writers[option](path)
-        except OSError as error:
-            raise outputs.WrongOutput(f"{option} {path} can't be written: {error.strerror}") from None
 
 
-def main(arguments=None, version="of a source tree") -> int:
-    parser = _parser(version)
-    words = sys.argv[1:] if arguments is None else list(arguments)
-    if words[:1] == ["help"]:
-        words = words[1:2] + ["--help"]
-    options = parser.parse_args(words)
-    if options.scene:
-        print(SCENE)
-        return 0
-    if options.mode is None:
-        parser.print_help()
-        return 2
-    if options.list:
-        _print_list(options)
-        return 0
-    if not options.target:
-        parser.error(f"{options.mode}: nothing to test; give a URL or -- COMMAND (see --help)")
+def _play(options) -> int:
     terminal = report.Terminal(options.verbose)
     start = time.monotonic()
     try:
         known = _known(options.known_failing)
-        outputs.check(_outputs(options))
+        reports = _reports(options)
         outcomes = (_server if options.mode == "server" else _client)(options, terminal)
         report.judge_known(outcomes, known)
         left_out = _left_out(options, outcomes)
         terminal.end(outcomes, left_out, time.monotonic() - start)
-        _write_reports(options, outcomes, left_out)
+        reports.write(_contents(options, outcomes, left_out))
     except (RuntimeError, _Mistake, outputs.WrongOutput) as error:
         print(f"ziggurat-conformance: {error}", file=sys.stderr)
         return 2
@@ -237,3 +224,37 @@ def main(arguments=None, version="of a source tree") -> int:
     if missing:
         print(f"ziggurat-conformance: not reached: {', '.join(missing)}", file=sys.stderr)
     return 0 if report.good(outcomes) and not missing else 1
+
+
+def _main(words: list, version: str) -> int:
+    parser = _parser(version)
+    if words[:1] == ["help"]:
+        words = words[1:2] + ["--help"]
+    options = parser.parse_args(words)
+    if options.scene:
+        print(SCENE)
+    elif options.mode is None:
+        parser.print_help()
+        return 2
+    elif options.list:
+        _print_list(options)
+    elif not options.target:
+        parser.error(f"{options.mode}: nothing to test; give a URL or -- COMMAND (see --help)")
+    else:
+        return _play(options)
+    return 0
+
+
+def main(arguments=None, version="of a source tree") -> int:
+    outputs.keep_descriptors()
+    stdout = outputs.Stdout(sys.stdout)
+    with contextlib.redirect_stdout(stdout):
+        try:
+            code = _main(sys.argv[1:] if arguments is None else list(arguments), version)
+        except SystemExit as end:  # after --help, or a mistake
+            code = end.code
+        stdout.flush()
+    if stdout.fault:
+        print(f"ziggurat-conformance: {stdout.fault}", file=sys.stderr)
+        return 2
+    return code

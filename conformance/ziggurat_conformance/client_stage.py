@@ -1,8 +1,5 @@
 """Where cases for clients are played: a server's socket, and a controller program that connects to it."""
 
-import os
-import subprocess
-import tempfile
 import time
 from dataclasses import dataclass
 from typing import Any, Optional
@@ -10,11 +7,13 @@ from typing import Any, Optional
 from . import wire
 from .case import Case, Failed, NonStrict, Unimplemented
 from .client_bytes import client_message, form_of
+from .client_messages import refusal
+from .client_program import ClientProgram
 from .client_robots import readings, robot
-from .client_socket import PlainGreeter, ServerSocket
 from .client_steps import (CheckClient, Cut, Ends, HearCorrection, HearFrom, HearLate, HearResume, Listen,
                            Mechanisms, Quiet, Refuse, Remove, SinceMinor, Tell, TellBytes, TellObservation, TellWelcome, Wait)
-from .keys import LATE_SERVER, MISLED, PLAIN_SERVER, RESTARTED, SPACED_FILE, UNLISTED, VARIANT, WRONG_FILE, Keys
+from .client_variants import TOKEN, environment_for, keys_for, socket_for
+from .keys import RESTARTED
 from .peer import Transcript
 from .rules.fault import Fault, musts
 from .rules.observation import time_of
@@ -26,7 +25,6 @@ from .wire import protocol
 _START = 10.0  # [s] until a program's first message
 _RULES = {"hello": "H1", "command": "S3", "leave": "L5"}  # that ask for these messages
 _LATE = 0.3  # [s] for a Command that need not come
-_TOKEN = b"token of the kit"
 _MOST_AT_ONCE, _MOST_A_SECOND = 2000, 1000  # M7
 
 
@@ -49,78 +47,46 @@ class ClientStage:
         self.form: Optional[str] = None  # of the session
         self.routing_id: Optional[bytes] = None
         self.key = ""  # of the client
-        self.keys: Optional[Keys] = None
+        self.keys = keys_for(case.variant)
         self._played: list = []  # robots of the scene that the client has
-        self._token = _TOKEN  # of the session, also after it was lost
+        self._token = TOKEN  # of the session, also after it was lost
+        self._knows_token = case.variant == RESTARTED  # the client does
+        self._strange_token = ""  # what it said about a token that it can't know
         self.last_commands: list = []  # at most two
         self._unkept: list[Fault] = []  # SHOULDs
         self._allowance = float(_MOST_AT_ONCE)  # of M7
         self._counted_at = self._observed_at = time.monotonic()
-        self._socket = self._open(case.variant)
-        self._output = tempfile.TemporaryFile()
+        self._socket = socket_for(case.variant, self.keys)
         try:
-            self.process = subprocess.Popen(command, env=self._environment(case.variant),
-                                            stdin=subprocess.DEVNULL, stdout=self._output,
-                                            stderr=subprocess.STDOUT)
-        except OSError as error:
+            self.program = ClientProgram(command, environment_for(
+                case.variant, self.keys, self._socket.endpoint, options.controller))
+        except RuntimeError:
             self._close()
-            raise RuntimeError(f"{command[0]}: the controller can't be started: "
-                               f"{error.strerror}") from None
+            raise
 
     def __enter__(self) -> "ClientStage":
         return self
 
     def __exit__(self, *_: Any) -> None:
-        if self.process.poll() is None:
-            self.process.kill()
-        self.process.wait()
-        size = self._output.seek(0, os.SEEK_END)
-        self._output.seek(max(0, size - 2000))
-        words = self._output.read().decode(errors="replace").strip()
+        words = self.program.end()
         if words:
             self.transcript.add("client", "───", f"printed: {words}")
         self._close()
 
-    def _open(self, variant: str):
-        if variant == PLAIN_SERVER:
-            self.keys = Keys()
-            return PlainGreeter()
-        if variant in (VARIANT, MISLED, UNLISTED, SPACED_FILE, WRONG_FILE, LATE_SERVER):
-            self.keys = Keys()
-            return ServerSocket(self.keys.server[1], is_open=variant != UNLISTED, listens=variant != LATE_SERVER)
-        return ServerSocket()
-
     def _close(self) -> None:
-        self._output.close()
         self._socket.destroy()
         if self.keys is not None:
             self.keys.close()
-
-    def _environment(self, variant: str) -> dict:
-        names = {"ZIGGURAT_ENDPOINT": self._socket.endpoint, "ZIGGURAT_CONTROLLER": self.options.controller}
-        others = {name: value for name, value in os.environ.items() if not name.startswith("ZIGGURAT_")}
-        if self.keys is not None:
-            server = self.keys.of(MISLED if variant == MISLED else "controller")[0]
-            names["ZIGGURAT_SERVER_KEY"] = server.decode()
-            names["ZIGGURAT_CURVE_SECRET"] = self.keys.client_file(variant)
-        if variant == RESTARTED:
-            names["ZIGGURAT_SESSION_TOKEN"] = _TOKEN.hex()
-        return {**others, **names}
 
     # ---- one function for each kind of step --------------------------------------------------------
 
     def play(self, steps: tuple) -> None:
         """Raises Failed, NonStrict or Unimplemented."""
         self._play(steps)
-        if self._prints_token():
+        if is_told(TOKEN, self.program.printed()):
             raise Failed("it prints the token of its session, which is a secret (T10)")
         if self._unkept:
             raise NonStrict("; ".join(map(str, self._unkept[:5])))
-
-    def _prints_token(self) -> bool:
-        self._output.seek(0)
-        printed = self._output.read(4 << 20)
-        return is_told(_TOKEN, printed)
 
     def _play(self, steps: tuple) -> None:
         for step in steps:
@@ -140,6 +106,7 @@ class ClientStage:
             "max_message_bytes": 64 << 20, "server_version": "kit", "role": "ROLE_CONTROLLER",
             **step.fields})
         welcome.robots.extend(robots or self._wanted_robots())
+        self._knows_token = True
         self._tell(protocol.ServerMessage(welcome=welcome))
 
     def tell_observation(self, step: TellObservation) -> None:
@@ -164,8 +131,8 @@ class ClientStage:
         late = time.monotonic() - self._observed_at - step.within
         expected = f"{step.kind} is expected ({_RULES[step.kind]})"
         if message is None:
-            complaint = f"the client said nothing; {expected}{self._gone()}"
-            if is_first:
+            complaint = f"the client said nothing; {expected}{self._gone()}{self._strange_token}"
+            if self.routing_id is None:
                 complaint += f": nothing came to {self._socket.endpoint}, its ZIGGURAT_ENDPOINT"
                 if self.keys is not None:
                     raise Unimplemented(f"{complaint}, with the keys that it was given (T10)")
@@ -201,9 +168,9 @@ class ClientStage:
 
     def hear_correction(self, step: HearCorrection) -> None:
         message = self._receive(self.patience)
-        if message is None and self.process.poll() is None:
+        if message is None and self.program.exit_code() is None:
             _judge(f"its Command for tick {step.tick} was refused, so it still owes one; it sends nothing", False)
-        elif message is None and self.process.poll() == 0:
+        elif message is None and self.program.exit_code() == 0:
             _judge("its Command was refused, and it ended with exit code 0", True)
         elif message is not None and wire.kind_of(message) not in ("command", "leave"):
             _judge(f"the client said {wire.text_of(message, 300)}; a Command or a Leave is expected", False)
@@ -235,6 +202,8 @@ class ClientStage:
             if message.HasField("hello"):
                 break
             self._tell_error("OUT_OF_STATE", "FATAL", 0)  # it can't know; M3 says what it means
+        if message.hello.role != protocol.ROLE_CONTROLLER:
+            _judge(f"its Hello has the role {message.hello.role}; it resumes a session of ROLE_CONTROLLER (L4)", False)
         token = message.hello.session_token
         if not token:
             _judge("its Hello begins a new session; one with the session's token resumes it (L4)", True)
@@ -249,9 +218,9 @@ class ClientStage:
     def ends(self, step: Ends) -> None:
         limit = step.within or self.patience
         deadline = time.monotonic() + limit
-        while self.process.poll() is None and time.monotonic() < deadline:
+        while self.program.exit_code() is None and time.monotonic() < deadline:
             self._receive(0.02)
-        code = self.process.poll()
+        code = self.program.exit_code()
         if code is None:
             _judge(f"the program still runs after {limit:g} s", step.should)
         elif step.good is not None and step.good != (code == 0):
@@ -302,18 +271,28 @@ class ClientStage:
                 raise Failed(f"the client said {wire.text_of(message, 300)}: "
                              + "; ".join(map(str, broken[:5])))
             self._count(message)
+            if self._refuses_token(message):
+                continue
             if message.HasField("command"):
                 self.last_commands = [*self.last_commands[-1:], message.command]
             if not message.HasField("heartbeat") or is_new and self.session.state is State.NEW:
                 return message
             self._tell(protocol.ServerMessage(heartbeat=message.heartbeat))
 
+    def _refuses_token(self, message: protocol.ClientMessage) -> bool:
+        """As a server does: there is no such session (L4)."""
+        if self._knows_token or not message.hello.session_token:
+            return False
+        self._strange_token = "; its Hello had a token of no session: NO_SUCH_SESSION was the answer (L4)"
+        self.tell(refusal("NO_SUCH_SESSION"))
+        return True
+
     def _arrival(self, deadline: float):
         while True:
             arrival = self._socket.receive(min(0.02, max(0.0, deadline - time.monotonic())))
             if arrival is not None:
                 return arrival
-            if time.monotonic() > deadline or self.process.poll() is not None:
+            if time.monotonic() > deadline or self.program.exit_code() is not None:
                 return self._socket.receive(0.02)
 
     def _message_of(self, arrival, is_new: bool) -> protocol.ClientMessage:
@@ -335,7 +314,7 @@ class ClientStage:
         data = arrival.frames[0].bytes
         message = self._decoded(data)
         self.transcript.add("client", "──▶", wire.text_of(message))
-        if is_sent_astray(_TOKEN, message, data):
+        if is_sent_astray(TOKEN, message, data):
             raise Failed(f"its {wire.kind_of(message) or 'message'} has the token of its session, which is a secret (T10)")
         return message
 
@@ -360,7 +339,8 @@ class ClientStage:
     def _tell(self, message: protocol.ServerMessage, is_of_later_version: bool = False) -> None:
         self.transcript.add("server", "──▶", wire.text_of(message))
         own_faults = musts(self.session.told(message))
-        assert not own_faults, f"the kit's own message breaks a rule: {'; '.join(map(str, own_faults))}"
+        if own_faults:
+            raise Failed("after what it said, the answer would break a rule: " + "; ".join(map(str, own_faults)))
         encode = wire.encode_as_later_version if is_of_later_version else wire.encode
         self._send(encode(message, self.form))
 
@@ -391,7 +371,7 @@ class ClientStage:
         return self._played
 
     def _gone(self) -> str:
-        code = self.process.poll()
+        code = self.program.exit_code()
         return "" if code is None else f" (the program ended with exit code {code})"
 
 

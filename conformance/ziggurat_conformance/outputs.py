@@ -1,6 +1,10 @@
-"""The files that reports are written to: checked before the first case is played, so that no run is lost."""
+"""What is written to: reports, checked before the first case is played, so that no run is lost; and stdout."""
 
+import errno
+import os
+import time
 from pathlib import Path
+from typing import Callable, Optional, TextIO
 
 _KINDS = {  # what a file begins with → what it is worth more than a report as
     b"\x89MCAP0": "a recording",
@@ -8,6 +12,7 @@ _KINDS = {  # what a file begins with → what it is worth more than a report as
     b"<argos-configuration": "a scene",
 }
 _SPACE = b" \t\r\n"
+_READER_STARTS = 1.0  # [s] that a reader which was started beside this program may take
 
 
 class WrongOutput(Exception):
@@ -27,6 +32,8 @@ def _without_prologue(head: bytes) -> bytes:
 
 def _kind_of(path: Path) -> str:
     """ "" if there is no file, or it may be replaced."""
+    if path.is_block_device():
+        return "a disk"
     if not path.is_file():
         return ""
     with path.open("rb") as file:
@@ -47,11 +54,84 @@ def _check_one(option: str, path: Path, ending: str) -> None:
         raise WrongOutput(f"{option} is '{path}', {kind}, which it would replace; name another file")
 
 
-def check(outputs: list) -> None:
-    """outputs: (option, path, ending) of each report that is asked for.
-    Raises WrongOutput."""
-    for option, path, ending in outputs:
+def _opened_pipe(option: str, path: Path) -> int:
+    """Its reader waits until it is closed."""
+    deadline = time.monotonic() + _READER_STARTS
+    while True:
         try:
-            _check_one(option, path, ending)
+            pipe = os.open(path, os.O_WRONLY | os.O_NONBLOCK)
+            os.set_blocking(pipe, True)
+            return pipe
         except OSError as error:
-            raise WrongOutput(f"{option} is '{path}': {error.strerror}") from None
+            if error.errno != errno.ENXIO:
+                raise
+        if time.monotonic() > deadline:
+            raise WrongOutput(f"{option} is '{path}', a pipe that nobody reads; start its reader first")
+        time.sleep(0.02)
+
+
+class Reports:
+    """The files of those that are asked for. All functions raise WrongOutput."""
+
+    def __init__(self, named: list):
+        """named: (option, path, ending) of each."""
+        self._paths = {option: path for option, path, _ in named}
+        self._pipes: dict[str, int] = {}  # option → descriptor
+        for option, path, ending in named:
+            try:
+                _check_one(option, path, ending)
+                if path.is_fifo():
+                    self._pipes[option] = _opened_pipe(option, path)
+            except OSError as error:
+                raise WrongOutput(f"{option} is '{path}': {error.strerror}") from None
+
+    def write(self, contents: dict) -> None:
+        """contents: option → function that makes the bytes. What can't be written keeps no other from its file."""
+        faults = []
+        for option, path in self._paths.items():
+            try:
+                with open(self._pipes.get(option, path), "wb") as file:
+                    file.write(contents[option]())
+            except OSError as error:
+                faults.append(f"{option} {path} can't be written: {error.strerror}")
+        if faults:
+            raise WrongOutput("; ".join(faults))
+
+
+def keep_descriptors() -> None:
+    """Nothing that is opened later takes the place of stdin, stdout or stderr where these are closed: libraries print there."""
+    while (descriptor := os.open(os.devnull, os.O_RDWR)) < 3:
+        pass
+    os.close(descriptor)
+
+
+class Stdout:
+    """Takes the place of sys.stdout. What can't be written is let go, so that the run goes on to its reports; `fault`
+    says why."""
+
+    def __init__(self, stream: Optional[TextIO]):
+        """stream: None if it is closed; then nobody wants to see it, which is no fault."""
+        self._stream = stream or open(os.devnull, "w")
+        self.fault = ""
+        if hasattr(self._stream, "reconfigure"):
+            self._stream.reconfigure(errors="replace")  # what its encoding does not have
+
+    def write(self, text: str) -> int:
+        self._attempt(lambda: self._stream.write(text))
+        return len(text)
+
+    def flush(self) -> None:
+        self._attempt(self._stream.flush)
+
+    def isatty(self) -> bool:
+        return self._stream.isatty()
+
+    def _attempt(self, act: Callable) -> None:
+        try:
+            act()
+        except OSError as error:
+            nothing = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nothing, self._stream.fileno())  # what is left in its buffer, too
+            os.close(nothing)
+            if not isinstance(error, BrokenPipeError):  # of a reader such as head
+                self.fault = f"stdout can't be written: {error.strerror}"

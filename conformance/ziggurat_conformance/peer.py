@@ -106,7 +106,7 @@ class Peer:
     def _receive(self) -> protocol.ServerMessage:
         frames = self.socket.recv_multipart()
         if len(frames) != 1:
-            raise ValueError(f"the server sent {len(frames)} frames; expected one (T2)")
+            raise ValueError(f"the server sent {len(frames)} frames; expected one")
         message = wire.decode(protocol.ServerMessage, frames[0], self.form)
         self.transcript.add(self.name, "◀──", wire.text_of(message))
         self._judge(message, frames[0])

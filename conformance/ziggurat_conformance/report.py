@@ -4,7 +4,6 @@ import collections
 import html
 import json
 import sys
-from pathlib import Path
 from xml.etree import ElementTree
 
 from .case import Level, Outcome, Verdict
@@ -122,7 +121,7 @@ class Terminal:
             print(f"  {level.value:<10} {_badge_text(outcomes, level, reached, left_out)}")
 
 
-def write_junit(path: Path, outcomes: list, suite: str) -> None:
+def junit(outcomes: list, suite: str) -> bytes:
     root = ElementTree.Element("testsuite", name=suite, tests=str(len(outcomes)))
     for outcome in outcomes:
         case = ElementTree.SubElement(
@@ -135,15 +134,20 @@ def write_junit(path: Path, outcomes: list, suite: str) -> None:
             ElementTree.SubElement(
                 case, "skipped", message=_plain(f"{outcome.verdict.value}: {outcome.reason}"))
     root.set("failures", str(sum(o.verdict is Verdict.FAIL for o in outcomes)))
-    ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+    return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
 
 
 def _plain(text: str) -> str:
     """Text that XML can hold."""
-    return "".join(c if c >= " " or c in "\n\t" else "?" for c in text)
+    return "".join(c if c >= " " or c in "\n\t" else "?" for c in _bytes(text).decode())
 
 
-def write_json(path: Path, outcomes: list, left_out: collections.Counter) -> None:
+def _bytes(text: str) -> bytes:
+    """Half pairs of surrogates stand for bytes of the command line that are no text."""
+    return text.encode(errors="replace")
+
+
+def json_of(outcomes: list, left_out: collections.Counter) -> bytes:
     document = {
         "badges": {level.value: reached for level, reached in badges(outcomes, left_out).items()},
         "cases": [
@@ -152,7 +156,7 @@ def write_json(path: Path, outcomes: list, left_out: collections.Counter) -> Non
             for o in outcomes
         ],
     }
-    path.write_text(json.dumps(document, indent=1, ensure_ascii=False) + "\n")
+    return _bytes(json.dumps(document, indent=1, ensure_ascii=False) + "\n")
 
 
 _PAGE = """<!doctype html>
@@ -185,7 +189,7 @@ def _why(outcome: Outcome) -> str:
     return f"<br><small>{html.escape(outcome.reason)}</small>"
 
 
-def write_html(path: Path, outcomes: list, left_out: collections.Counter, title: str) -> None:
+def page(outcomes: list, left_out: collections.Counter, title: str) -> bytes:
     """One page that needs nothing else: every verdict, and the exchange of every failure."""
     escape = html.escape
     rows = "\n".join(
@@ -200,6 +204,6 @@ def write_html(path: Path, outcomes: list, left_out: collections.Counter, title:
         f"{escape(_badge_text(outcomes, level, reached, left_out))}</span>"
         for level, reached in badges(outcomes, left_out).items())
     counts = collections.Counter(o.verdict.value for o in outcomes)
-    path.write_text(_PAGE.format(
+    return _bytes(_PAGE.format(
         title=escape(title), badges=shown, rows=rows, failures=failures,
         counts=", ".join(f"{count} {verdict}" for verdict, count in counts.items())))

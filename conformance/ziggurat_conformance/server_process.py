@@ -70,6 +70,13 @@ class ServerProcess:
     def runs(self) -> bool:
         return self._process.poll() is None
 
+    def exit_code(self, seconds: float) -> Optional[int]:
+        """When it has ended by itself, within so many seconds; None: it has not."""
+        try:
+            return self._process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            return None
+
     def last_words(self) -> str:
         """The end of what it printed."""
         self._output.seek(0)

@@ -13,6 +13,8 @@ from .peer import Peer, Transcript
 from .server_process import free_port
 from .wire import protocol
 
+_LONGEST_END = 5.0  # [s] beyond the usual patience, until a server has ended
+
 # ---- values that are known only in play ----------------------------------------------------------
 
 
@@ -106,6 +108,13 @@ class Pause:
 @dataclass(frozen=True)
 class Interrupt:
     """The server is told to stop, as by Ctrl-C."""
+
+
+@dataclass(frozen=True)
+class ServerEnds:
+    """The server's program ends by itself, with this exit code."""
+
+    code: int
 
 
 @dataclass(frozen=True)
@@ -215,6 +224,12 @@ class Stage:
         self.transcript.add("server", "───", "is interrupted")
         self.server.interrupt()
 
+    def server_ends(self, step: ServerEnds) -> None:
+        code = self.server.exit_code(self.patience + _LONGEST_END)
+        if code != step.code:
+            raise Failed("the server still runs" if code is None else
+                         f"the server ended with exit code {code}; {step.code} is expected")
+
     def refuses_to_listen(self, step: RefusesToListen) -> None:
         endpoint = step.endpoint.replace("{port}", str(free_port()))
         self.transcript.add("server", "───", f"another one is started at {endpoint}")
@@ -258,6 +273,7 @@ _players: dict = {
     Hang: Stage.hang,
     Pause: Stage.pause,
     Interrupt: Stage.interrupt,
+    ServerEnds: Stage.server_ends,
     RefusesToListen: Stage.refuses_to_listen,
     Join: Stage.join,
     Check: Stage.check,
@@ -268,7 +284,8 @@ def _heard(peer: Peer, patience: float, heartbeats: bool):
     try:
         return peer.hear(patience, heartbeats)
     except ValueError as error:
-        raise Failed(f"{peer.name} was told {error}") from None
+        rules = "T2, T6" if peer.form == wire.JSON else "T2"
+        raise Failed(f"{peer.name} was told {error} ({rules})") from None
 
 
 def _complaint(step: Hear, pattern: dict, message) -> str:

@@ -9,6 +9,8 @@ from google.protobuf.message import DecodeError, Message
 
 import protocol_pb2 as protocol
 
+from .rules.binary_form import is_whole
+
 BINARY = "binary"
 JSON = "json"
 FORMS = (BINARY, JSON)
@@ -45,11 +47,23 @@ def encode_as_later_version(message: Message, form: str) -> bytes:
 def decode(kind: type, data: bytes, form: str) -> Message:
     """The message of a type that bytes hold. Raises ValueError, saying what is wrong."""
     try:
-        if form == JSON:
-            return json_format.Parse(data.decode(), kind(), ignore_unknown_fields=True)
-        return kind.FromString(data)
-    except (DecodeError, json_format.ParseError, UnicodeDecodeError) as error:
+        return _of_text(kind, data) if form == JSON else _of_bytes(kind, data)
+    except (DecodeError, json_format.ParseError, RecursionError, ValueError) as error:
         raise ValueError(f"not a {kind.__name__} in {form} form: {error}") from None
+
+
+def _of_text(kind: type, data: bytes) -> Message:
+    """Of names that stand twice the last counts: the rules judge those that the protocol knows."""
+    tree = json.loads(data.decode())
+    if not isinstance(tree, dict):
+        raise ValueError("it is not an object")
+    return json_format.ParseDict(tree, kind(), ignore_unknown_fields=True)
+
+
+def _of_bytes(kind: type, data: bytes) -> Message:
+    if not is_whole(data):
+        raise ValueError("something else than a field stands in it or behind it")
+    return kind.FromString(data)
 
 
 def from_dict(kind: type, fields: dict) -> Message:

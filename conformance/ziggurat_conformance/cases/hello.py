@@ -1,6 +1,6 @@
 """Section 2: beginning a session."""
 
-from ..case import Case
+from ..case import Case, Level
 from ..messages import ALL, TWO, answer, hear_error, hear_refusal, hello, join, leave, observe, send_hello
 from ..server_scene import CROWDED
 from ..steps import Check, Hang, Hear, Join, Silence, Skip
@@ -29,6 +29,13 @@ def _holder_is_short(stage) -> str:
     holder = stage.peer("q").refusal.holder
     is_printable = all(" " <= letter != "\x7f" for letter in holder)
     return "" if is_printable and holder.count("x") <= 64 and holder.count("1") <= 64 else f"it is {holder!r}"
+
+
+def _one_run(stage) -> str:
+    first, second = (stage.peer(name).welcome for name in "pq")
+    others = [name for name in ("tick_ns", "ticks_per_second", "mode", "seed", "scene_hash")
+              if getattr(first, name) != getattr(second, name)]
+    return f"two sessions of one run are told another {', '.join(others)}" if others else ""
 
 
 def _robots_are(*ids: str) -> dict:
@@ -105,6 +112,8 @@ CASES = [
          (Join("p", hello("*"), {"tick_ns": 100000000, "ticks_per_second": 10, "seed": 7,
                                  "mode": "MODE_LOCK_STEP", "session_token": Some(),
                                  "scene_hash": Some(), "max_message_bytes": Some()}),)),
+    Case("H9.one-run", "All sessions are told of the same run",
+         (join("p", "arm0"), join("q", "arm1"), Check("run", _one_run))),
     Case("H9.devices", "Welcome describes the robots' devices",
          (join("p", "arm0"), Check("devices", _devices_are_described))),
     Case("H9.params", "Welcome carries the controller's parameters in order",
@@ -140,6 +149,8 @@ CASES = [
          (send_hello("p", *[f"*{n}" for n in range(5000)]),
           Hear("p", "refusal", {"error": {"code": OneOf(("TOO_MANY", "UNKNOWN_ROBOT")),
                                           "severity": "FATAL"}}))),
+    Case("K5.most-patterns", "A Hello may have 64 patterns of 256 bytes each",
+         (join("p", "*", *[f"x{n:02}{'x' * 252}*" for n in range(63)]), observe("p")), Level.SECURE),
     Case("H4.slow-glob", "A glob made to be slow is answered in time",
          (send_hello("p", "*a" * 15 + "b"), Hear("p", "refusal", {"error": {"severity": "FATAL"}},
                                                 within=1.0))),

@@ -34,6 +34,7 @@ _DROPPED = [_joins("x", "arm0", "arm1", deadline_policy=policy("DROP")),
 _SPAWNING = [ask("s", 1, pause={}), Silence("s", 0.1)]
 _SUPERVISOR = Join("s", hello(role="ROLE_SUPERVISOR"), {"robots": Count(0)})
 
+_KEPT = [0.1, 0.2, 0.3, 0.4]  # joint targets
 _V12 = {"major": 1, "minor": 2}
 
 
@@ -125,7 +126,7 @@ CASES = [
     Case("V15.told", "A session is told of a robot that was spawned with its controller, before the response",
          (_joins("p", "*"), *observe("p"), _SUPERVISOR, _SPAWNING, answer("p"), told("s", 1), Hear("p", "paused"),
           ask("s", 2, spawn={"xml": arm("arm9")}),
-          Hear("p", "robot_spawned", {"robot": "arm9", "controller": "steady"}), told("s", 2)),
+          Hear("p", "robot_spawned", {"robot": "arm9", "controller": "steady", "tick": Tick()}), told("s", 2), Silence("p")),
          Level.RECONNECT, fresh=True),
     Case("V15.not-others", "Sessions of other controllers are not told, nor is one of 1.0",
          (_joins("p", "arm3"), join("q", "arm0", "arm1", "arm2"), *observe("p", "q"), _SUPERVISOR, _SPAWNING,
@@ -146,12 +147,15 @@ CASES = [
     Case("S13.absent", "A Command without epoch answers the last Observation",
          (_joins_12("p", "*"), Hear("p", "observation"), answer("p"), Hear("p", "observation"))),
     Case("V11.snapshot", "The world can be kept, and restored: Restored, then the Observation of its tick",
-         (*_paused_12(can_restore=True), ask("s", 2, snapshot={"name": "here"}), told("s", 2),
-          ask("s", 3, step={"ticks": 3}), *[step for _ in range(3) for step in (Hear("p", "observation"), answer("p"))],
-          told("s", 3), Skip("p", "paused"),
-          ask("s", 4, restore={"name": "here"}), Hear("p", "restored", {"snapshot": "here"}),
-          Hear("p", "observation"), told("s", 4), answer("p"), Hear("p", "paused"), ask("s", 5, resume={}),
-          told("s", 5)), Level.RECONNECT, fresh=True),
+         (*_paused_12(can_restore=True), ask("s", 2, step={"ticks": 2}),
+          Hear("p", "observation"), answer("p", joint_targets=_KEPT), Hear("p", "observation"), answer("p"),
+          told("s", 2), Skip("p", "paused"), ask("s", 3, snapshot={"name": "here"}), told("s", 3, tick=2),
+          ask("s", 4, step={"ticks": 3}),
+          *[step for _ in range(3) for step in (Hear("p", "observation"), answer("p", joint_targets=[0.0] * 4))],
+          told("s", 4, tick=5), Skip("p", "paused"), ask("s", 5, restore={"name": "here"}),
+          Hear("p", "restored", {"snapshot": "here", "tick": 2, "epoch": 1, "commanded": {"joint_targets": _KEPT}}),
+          Hear("p", "observation", {"tick": 2, "epoch": 1}), told("s", 5, tick=2), answer("p"), Hear("p", "paused"),
+          ask("s", 6, resume={}), told("s", 6)), Level.RECONNECT, fresh=True),
     Case("V11.name", "The name of a snapshot is BAD_VALUE if it is no plain one",
          (*_paused_12(), *[step for number, name in enumerate(("", ".x", "a/b", "../a", "x" * 65), 2)
                            for step in (ask("s", number, snapshot={"name": name}), failed("s", number, "BAD_VALUE"))],

@@ -6,7 +6,7 @@ import re
 from ..case import Case, Level
 from ..messages import ALL, answer, hear_refusal, hello, join, leave, observe, send_hello
 from ..server_scene import SCENE
-from ..steps import Check, Hear, Join, Send, Silence, Skip, Tick
+from ..steps import Check, Hear, Join, Send, ServerEnds, Silence, Skip, Tick
 from ..wire import Count, OneOf, Some
 
 
@@ -34,7 +34,7 @@ def _pausing(id: int = 1) -> list:
 
 def _paused() -> list:
     """s has paused the world, of which p has all robots and has answered."""
-    return [*ALL, _comes(), *_pausing(), answer("p"), told("s", 1), Hear("p", "paused")]
+    return [*ALL, _comes(), *_pausing(), answer("p"), told("s", 1, tick=Tick(of="p")), Hear("p", "paused")]
 
 
 def _resumed(first: int = 90) -> list:
@@ -88,6 +88,15 @@ def _moved(stage) -> str:
     return "" if found == [1.0, 1.0, 0.0] else f"arm0 is at {found}; expected 1, 1, 0"
 
 
+def _still_turned(stage) -> str:
+    """arm0 was turned by a move, and then moved without an orientation."""
+    stage.play((ask("s", 8, read={"entities": ["arm0"]}),))
+    entity = stage.peer("s").hear(stage.patience).response.states.entities[0]
+    found = [round(v, 9) for v in (*entity.position, *entity.orientation)]
+    expected = [0.9, 1.0, 0.0, *_TURNED]
+    return "" if found == expected else f"arm0 is at {found}; expected {expected}"
+
+
 def _v(name: str, title: str, *steps, level: Level = Level.RECONNECT, **more) -> Case:
     return Case(name, title, tuple(steps), level, **more)
 
@@ -106,6 +115,7 @@ def _removed(id: int, entity: str) -> list:
     return [ask("s", id, remove={"entity": entity}), told("s", id)]
 
 
+_TURNED = [0.8, 0.0, 0.0, 0.6]  # a unit quaternion
 _BOX = '<box id="crate" size="0.1,0.1,0.1" movable="false"><body position="1.5,1.5,0"/></box>'
 
 CASES = [
@@ -122,6 +132,8 @@ CASES = [
        told("s", 2**63, status={"tick": Tick(of="p")})),
     _v("V2.order", "Responses come in the order of requests", *ALL, _comes(),
        *[ask("s", n, status={}) for n in range(1, 11)], *[told("s", n) for n in range(1, 11)]),
+    _v("V2.tick", "A response has the tick that it is true of", *ALL, answer("p"), *observe("p"), answer("p"), *observe("p"),
+       _comes(), ask("s", 1, status={}), told("s", 1, tick=Tick(of="p")), ask("s", 2, read={}), told("s", 2, tick=Tick(of="p"))),
     _v("V2.empty", "A Request without a request is BAD_VALUE", *ALL, _comes(), ask("s", 3),
        failed("s", 3, "BAD_VALUE")),
     _v("V3.status", "An observer may ask for the status", *ALL, _comes("o", "ROLE_OBSERVER"),
@@ -150,7 +162,7 @@ CASES = [
        *_pausing(), answer("p"), answer("q"), told("s", 1), Hear("p", "paused"),
        Hear("q", "paused"), ask("s", 2, resume={}), told("s", 2), *observe("p", "q")),
     _v("V5.step", "A step moves a paused world by its ticks", *_paused(), ask("s", 2, step={"ticks": 2}),
-       *observe("p"), answer("p"), *observe("p"), answer("p"), told("s", 2), Hear("p", "paused"),
+       *observe("p"), answer("p"), *observe("p"), answer("p"), told("s", 2, tick=Tick(of="p")), Hear("p", "paused"),
        Silence("p"), *_resumed()),
     _v("V5.running", "A step of a world that runs is OUT_OF_STATE", *ALL, _comes(),
        ask("s", 1, step={"ticks": 1}), failed("s", 1, "OUT_OF_STATE"), answer("p"), *observe("p")),
@@ -165,7 +177,7 @@ CASES = [
        answer("p"), Hear("p", "paused", {"tick": 0}), Silence("p"), ask("t", 2, resume={}), told("t", 2),
        Hear("p", "observation", {"tick": 1}), fresh=True),
     _v("V6.reset", "After a reset the world is at tick 0", *ALL, _comes(), ask("s", 1, reset={}),
-       Skip("p", "reset"), Hear("p", "observation", {"tick": 0}), told("s", 1), answer("p"),
+       Skip("p", "reset"), Hear("p", "observation", {"tick": 0}), told("s", 1, tick=0), answer("p"),
        Hear("p", "observation", {"tick": 1}), fresh=True),
     _v("V6.seed", "A reset may set the seed", *ALL, _comes(), ask("s", 1, reset={"seed": 99}),
        Hear("p", "reset", {"seed": 99}), Hear("p", "observation", {"tick": 0}), told("s", 1),
@@ -190,6 +202,10 @@ CASES = [
     _v("V8.move", "An entity may be moved", *_paused(),
        ask("s", 2, move={"entity": "arm0", "position": [1.0, 1.0, 0.0]}), told("s", 2),
        Check("moved", _moved), *_resumed(), fresh=True),
+    _v("V8.still-turned", "A move without an orientation leaves it as it is", *_paused(),
+       ask("s", 2, move={"entity": "arm0", "position": [1.0, 1.0, 0.0], "orientation": _TURNED}), told("s", 2),
+       ask("s", 3, move={"entity": "arm0", "position": [0.9, 1.0, 0.0]}), told("s", 3),
+       Check("turned", _still_turned), *_resumed(), fresh=True),
     _v("V8.unknown", "Moving what is not there is UNKNOWN_ENTITY", *ALL, _comes(),
        ask("s", 1, move={"entity": "nobody", "position": [0.0, 0.0, 0.0]}), answer("p"),
        failed("s", 1, "UNKNOWN_ENTITY"), *observe("p")),
@@ -255,6 +271,17 @@ CASES = [
        ask("s", 2, remove={"entity": "nobody"}), failed("s", 2, "UNKNOWN_ENTITY"), *_resumed()),
     _v("V10.shutdown", "Shutdown is answered, and the run ends", *ALL, _comes(),
        ask("s", 1, shutdown={}), told("s", 1), Skip("p", "end"), Skip("s", "end"), fresh=True),
+    _v("V10.reason", "Shutdown with a reason of up to 1 KiB is a planned end: FINISHED, and exit code 0", *ALL, _comes(),
+       ask("s", 1, shutdown={"reason": "x" * 1024}), told("s", 1),
+       Hear("p", "end", {"reason": "FINISHED", "message": Some()}), Hear("s", "end", {"reason": "FINISHED"}), leave("p"),
+       leave("s"), ServerEnds(0), fresh=True),
+    _v("V10.long-reason", "A longer reason is refused, and the run goes on", *ALL, _comes(),
+       ask("s", 1, shutdown={"reason": "x" * 1025}),
+       Hear("s", "response", {"id": 1, "error": {"code": OneOf(("TOO_LARGE", "BAD_VALUE"))}}), answer("p"), *observe("p"),
+       fresh=True),
+    _v("L1.exit-code", "A run in which a controller has failed ends with exit code 3", *ALL, _comes(),
+       leave("p", 0, reason="FAILED", message="x.lua:3: oh"), answer("p"), *observe("p"),
+       ask("s", 1, shutdown={"reason": "enough"}), told("s", 1), Skip("p", "end"), leave("p"), leave("s"), ServerEnds(3), fresh=True),
     _v("V12.who", "The status names the session that the world waits for", *ALL, _comes(),
        Check("status", _ask_status), Check("owing", _holds_up), answer("p"), *observe("p")),
     _v("V12.phase", "The status tells whether the world runs or is paused", *ALL, _comes(),

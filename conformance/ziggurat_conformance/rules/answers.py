@@ -9,7 +9,6 @@ from .session import Session, State
 _TICKS = {"STALE_TICK", "FUTURE_TICK", "DUPLICATE_TICK"}
 # What a server may answer a Hello that is faulty in other ways, too: by its keys, limits and phase.
 _ALWAYS = {"FORBIDDEN", "TOO_MANY", "OUT_OF_STATE"}
-_POLICIES_THAT_WAIT = (protocol.DeadlinePolicy.ACTION_UNSPECIFIED, protocol.DeadlinePolicy.WAIT)
 
 
 class Answers:
@@ -36,7 +35,7 @@ class Answers:
             yield from self._refusal_faults(message.error, self._refused.pop(0))
         elif kind in ("welcome", "refusal"):
             yield from self._hello_faults(message)
-        elif kind in ("observation", "world_state") and self._refused and session.owes and _waits(session):
+        elif kind in ("observation", "world_state") and self._refused and session.owes and session.is_waited_for():
             fault = self._refused.pop(0)[0]
             yield Fault(fault.rule, f"the tick went on with a message that must be refused: {fault.text}")
         elif kind in ("reset", "end", "displaced"):
@@ -62,12 +61,6 @@ class Answers:
         code = _name(message.refusal.error.code)
         if code not in {broken[0].code, *_ALWAYS}:
             yield Fault("H15", f"the Refusal is {code}; {broken[0].code} is expected: {broken[0].text}")
-
-
-def _waits(session: Session) -> bool:
-    """No deadline holds, so only a Command that is taken releases the session."""
-    policies = [robot.deadline_policy for robot in session.welcome.robots]
-    return all(policy.action in _POLICIES_THAT_WAIT for policy in [session.welcome.deadline_policy, *policies])
 
 
 def _name(code: int) -> str:

@@ -110,13 +110,21 @@ def _fits(field: FieldDescriptor, value: Any) -> bool:
         return _is_real(value)
     if field.type == FieldDescriptor.TYPE_ENUM and value in field.enum_type.values_by_name:
         return True
-    return bool(_INTEGER.fullmatch(value)) if isinstance(value, str) else float(value).is_integer()
+    is_integer = bool(_INTEGER.fullmatch(value)) if isinstance(value, str) else float(value).is_integer()
+    return is_integer and (field.type != FieldDescriptor.TYPE_ENUM or -2**31 <= int(value) < 2**31)
 
 
 def _is_real(value: Any) -> bool:
     if not isinstance(value, str):
         return math.isfinite(value)
-    return value in _CONSTANTS or bool(_REAL.fullmatch(value)) and math.isfinite(float(value))
+    if value in _CONSTANTS:
+        return True
+    return bool(_REAL.fullmatch(value)) and math.isfinite(float(value)) and not _vanishes(value)
+
+
+def _vanishes(text: str) -> bool:
+    """A number that is nearer to 0 than a double can be."""
+    return not float(text) and bool(re.search("[1-9]", re.split("[eE]", text)[0]))
 
 
 def _is_base64(text: str) -> bool:

@@ -105,11 +105,15 @@ def _resumed_faults(hello: protocol.Hello, welcome: protocol.Welcome) -> Iterato
     gone = list(welcome.resumed.gone_robots)
     if gone != sorted(set(gone)) or any(position >= len(welcome.robots) for position in gone):
         yield Fault("L13", f"gone_robots are {gone} of {len(welcome.robots)} robots")
-    commanded = welcome.resumed.commanded
+    yield from commanded_faults("L13", list(welcome.robots), welcome.resumed.commanded)
+
+
+def commanded_faults(rule: str, robots: list, commanded: protocol.Command) -> Iterator[Fault]:
+    """What is wrong with the values that were commanded, as the server tells them of all robots."""
     if commanded.tick or commanded.robots or commanded.log or commanded.radio_messages:
-        yield Fault("L13", "`commanded` has a tick, robots, log lines or radio messages")
-    yield from (Fault("L13", f"`commanded` is no legal Command: {fault}")
-                for fault in command_faults(list(welcome.robots), (), commanded))
+        yield Fault(rule, "`commanded` has a tick, robots, log lines or radio messages")
+    yield from (Fault(rule, f"`commanded` is no legal Command: {fault}")
+                for fault in command_faults(robots, (), commanded))
 
 
 def welcome_faults(hello: protocol.Hello, welcome: protocol.Welcome) -> Iterator[Fault]:

@@ -7,14 +7,18 @@ from typing import Iterator, Optional, Union
 from ..wire import protocol
 from .command import PER_ROBOT, command_faults, leave_faults, metric_faults
 from .directing import direction_faults, last_words_faults, world_state_faults
+from .error import error_faults
 from .fault import Fault, musts
 from .hello import hello_faults
-from .observation import observation_faults, welcome_faults
+from .observation import commanded_faults, observation_faults, welcome_faults
+from .requests import Requests
+from .versions import version_faults
 
 STRANGERS_LIMIT = 64 << 10  # [bytes] of a message without a session
 _MOST_METRICS = 100  # of a robot
 _Error = protocol.Error
 _PASSING = {_Error.ROBOT_TAKEN, _Error.TOO_MANY}  # reasons of a Refusal that may pass with time
+_THAT_WAIT = (protocol.DeadlinePolicy.ACTION_UNSPECIFIED, protocol.DeadlinePolicy.WAIT)
 
 
 class State(enum.Enum):
@@ -56,13 +60,15 @@ class Session:
         self.is_lost = False  # by a FATAL error: a Leave is no fault
         self.is_refused = False  # and no retry is promised to help
         self.is_certain = True  # False: bytes were sent that may have changed its state
-        self._is_new_world = True  # the next Observation may have any tick
+        self._is_new_world = True  # the next Observation may have another tick than a later one
+        self._due_tick: Optional[int] = None  # of that Observation; None: any
+        self._due_epoch: Optional[int] = None
         self._world: Optional[list] = None  # what a director was told of; None: nothing yet
         self._used: set = set()  # (field, position) that were commanded since the start or a reset
         self._metrics: set = set()  # (position, name) of this world
         self._must_repeat = False  # W6: the next Command should have them all
         self._heartbeats: list[int] = []  # sequences that the server sent
-        self._requests: list[int] = []  # ids that wait for their Response
+        self._requests = Requests()
 
     # ---- the client --------------------------------------------------------------------------------
 
@@ -73,7 +79,7 @@ class Session:
             return [Fault("T2", "a message holds nothing that protocol 1.0 knows", "MALFORMED")]
         faults = [*self._size_faults(kind, size), *_said[kind](self, getattr(message, kind))]
         if kind == "request":
-            self._requests.append(message.request.id)
+            self._requests.said(message.request)
         is_greeting = kind == "hello" and self.state in (State.NEW, State.CLOSED)  # Loading may answer it
         if is_greeting or not musts(faults):
             _after_said.get(kind, lambda *_: None)(self, getattr(message, kind))
@@ -216,6 +222,11 @@ class Session:
 
     # ---- the server --------------------------------------------------------------------------------
 
+    def is_waited_for(self) -> bool:
+        """No deadline holds, so that only a Command that is taken releases it from its tick."""
+        policies = [robot.deadline_policy for robot in self.welcome.robots]
+        return all(policy.action in _THAT_WAIT for policy in [self.welcome.deadline_policy, *policies])
+
     def told(self, message: protocol.ServerMessage) -> list:
         """Faults of a message of the server."""
         kind = message.WhichOneof("message")
@@ -225,12 +236,7 @@ class Session:
         if self.is_certain and self.state in _RECEIVED and kind not in _RECEIVED[self.state] | _ANY_STATE:
             faults.append(Fault("M0", f"{kind} in {self.state.value}"))
         welcome = message.welcome if kind == "welcome" else self.welcome
-        if _is_since_1_2(message) and welcome is not None and welcome.version.minor < 2:
-            faults.append(Fault("H2", f"{kind} has what version 1.2 brought, in a session of 1.{welcome.version.minor}"))
-        if _is_since_1_1(message) and welcome is not None and welcome.version.minor < 1:
-            faults.append(Fault("H2", f"{kind} has what version 1.1 brought, in a session of 1.0"))
-        if _is_since_1_4(message) and (welcome is None or welcome.version.minor < 4):
-            faults.append(Fault("H2", f"{kind} has what version 1.4 brought, in a session of an earlier one"))
+        faults += version_faults(message, welcome)
         faults += _told.get(kind, lambda *_: ())(self, getattr(message, kind)) or ()
         return faults
 
@@ -238,15 +244,15 @@ class Session:
         faults = list(welcome_faults(self.hello, welcome)) if self.hello is not None else []
         self.welcome, self.state = welcome, State.READY
         self.tick, self.owes, self._is_new_world = None, False, True
-        self.left, self.missed, self._used = set(), set(), set()
+        self.left, self.missed, self._used = set(welcome.resumed.gone_robots), set(), set()
         self._must_repeat = False
-        self._world = None
+        self._world = self._due_tick = self._due_epoch = None
         return faults
 
     def _take_refusal(self, refusal: protocol.Refusal) -> list:
         self.state = State.NEW
         self.is_refused = not refusal.error.retryable
-        faults = list(_error_faults(refusal.error))
+        faults = list(error_faults(refusal.error))
         if refusal.error.retryable != (refusal.error.code in _PASSING) and refusal.error.code != _Error.TOO_MANY:
             faults.append(Fault("H10", f"retryable is {refusal.error.retryable} (section 6)"))
         if refusal.error.severity != _Error.FATAL:
@@ -282,23 +288,33 @@ class Session:
     def _begin_tick(self, rule: str, told: Union[protocol.Observation, protocol.WorldState]) -> list:
         """Of an Observation or a WorldState; the rule says which tick may follow."""
         faults = []
+        kind = told.DESCRIPTOR.name
+        epoch = told.epoch if told.HasField("epoch") else None
         if not self._is_new_world and self.tick is not None and told.tick <= self.tick:
-            kind = told.DESCRIPTOR.name
             faults.append(Fault(rule, f"{kind} {told.tick} follows {kind} {self.tick}"))
+        if self._due_tick not in (None, told.tick) and self.is_waited_for():
+            faults.append(Fault("L6", f"{kind} {told.tick} follows a Reset or Restored to tick {self._due_tick}"))
+        if self._due_epoch not in (None, epoch):
+            faults.append(Fault("S13", f"{kind} has the epoch {epoch}; {self._due_epoch} has begun"))
         if self.owes and self.tick is not None:
             self.missed.add(self.tick)
         self.tick, self.owes, self._is_new_world = told.tick, True, False
-        self.epoch = told.epoch if told.HasField("epoch") else None
+        self.epoch = self._due_epoch = epoch
+        self._due_tick = None
         if self.state is not State.DRAINING:
             self.state = State.STEPPING
         return faults
 
     def _take_error(self, error: protocol.Error) -> list:
-        faults = list(_error_faults(error))
+        faults = list(error_faults(error))
+        if self.owes and self.is_certain and error.severity == _Error.DISCARD and error.tick != self.tick:
+            faults.append(Fault("M0", f"an Error has tick {error.tick}; the world is at {self.tick} (section 6)"))
         if error.retryable:
             faults.append(Fault("M0", "an Error outside of a Refusal is retryable (section 6)"))
         if error.code == _Error.ROBOTS_DROPPED:
             faults += self._take_dropped(error)
+        if error.code == _Error.NOT_YOURS and self.state is State.READY:  # not gone, but taken over (L4, H13)
+            self.left -= {i for i, robot in enumerate(self.welcome.robots) if robot.id == error.robot}
         if self.state in (State.NEW, State.HELLO) and error.severity != _Error.FATAL:
             faults.append(Fault("M0", "an Error without a session is not FATAL (section 6)"))
         if error.code == _Error.DEADLINE_MISSED:
@@ -328,23 +344,21 @@ class Session:
         self._heartbeats = [*self._heartbeats[-100:], heartbeat.sequence]
 
     def _take_response(self, response: protocol.Response) -> Iterator[Fault]:
-        if response.id not in self._requests:
-            yield Fault("V2", f"a Response to the request {response.id}, which was not made or is answered")
-        elif self._requests.index(response.id):
-            yield Fault("V2", f"the request {self._requests[0]} is passed over: {response.id} is answered")
-        if response.id in self._requests:
-            self._requests.remove(response.id)
-        if response.HasField("error"):
-            yield from _error_faults(response.error)
-            if response.WhichOneof("result"):
-                yield Fault("V2", "a Response has an error and a result")
+        return self._requests.told(response)
 
-    def _take_reset(self, _: protocol.Reset) -> None:
+    def _take_reset(self, reset: Union[protocol.Reset, protocol.Restored]) -> None:
         self._world = None
         self.owes, self._is_new_world = False, True
+        self._due_tick = reset.tick if isinstance(reset, protocol.Restored) else 0
+        self._due_epoch = reset.epoch if reset.HasField("epoch") else None
         self.missed.clear()
         self._used.clear()
         self._metrics.clear()
+
+    def _take_restored(self, restored: protocol.Restored) -> Iterator[Fault]:
+        self._take_reset(restored)
+        if self.welcome is not None:
+            yield from commanded_faults("L6", list(self.welcome.robots), restored.commanded)
 
     def _take_paused(self, paused: protocol.Paused) -> Iterator[Fault]:
         if paused.tick != self.tick:
@@ -362,30 +376,6 @@ class Session:
         self.state, self.is_displaced = State.CLOSED, True
 
 
-def _is_since_1_1(message: protocol.ServerMessage) -> bool:
-    return (message.HasField("robot_spawned") or message.welcome.HasField("resumed")
-            or message.error.code == _Error.ROBOTS_DROPPED)
-
-
-def _is_since_1_2(message: protocol.ServerMessage) -> bool:
-    return (message.HasField("restored") or message.observation.HasField("epoch")
-            or message.reset.HasField("epoch"))
-
-
-def _is_since_1_4(message: protocol.ServerMessage) -> bool:
-    return (message.HasField("world_layout") or message.HasField("world_state")
-            or message.welcome.HasField("director"))
-
-
-def _error_faults(error: protocol.Error) -> Iterator[Fault]:
-    if error.code not in _Error.Code.values() or not error.code:
-        yield Fault("M0", f"an Error has the code {error.code} (section 6)")
-    if error.severity not in (_Error.WARNING, _Error.DISCARD, _Error.FATAL):
-        yield Fault("M0", f"an Error has the severity {error.severity} (section 6)")
-    if not error.message:
-        yield Fault("M0", "an Error has no sentence (section 6)", should=True)
-
-
 _said = {
     "hello": Session._judge_hello, "command": Session._judge_command, "leave": Session._judge_leave,
     "heartbeat": Session._judge_heartbeat, "request": Session._judge_request,
@@ -397,7 +387,7 @@ _told = {
     "welcome": Session._take_welcome, "refusal": Session._take_refusal, "loading": Session._take_loading,
     "observation": Session._take_observation, "error": Session._take_error,
     "heartbeat": Session._take_heartbeat, "response": Session._take_response, "reset": Session._take_reset,
-    "restored": Session._take_reset, "paused": Session._take_paused, "end": Session._take_end,
+    "restored": Session._take_restored, "paused": Session._take_paused, "end": Session._take_end,
     "displaced": Session._take_displaced, "world_layout": Session._take_world_layout,
     "world_state": Session._take_world_state,
 }

@@ -32,11 +32,26 @@ HELLOS = {
     "unknown-action": _policy(77),
 }
 
+def _resumes_as_observer(hello):
+    if hello.session_token:
+        hello.role = protocol.ROLE_OBSERVER
+        hello.ClearField("robots")
+
+
+HELLOS["resumes-as-observer"] = _resumes_as_observer
+
 LEAVES = {
     "leaves-without-reason": _set("reason", protocol.Leave.REASON_UNSPECIFIED),
     "leave-log-beyond": lambda leave: leave.log.add(robot=99, text="x"),
     "leave-beyond": lambda leave: leave.robots.append(99),
     "leave-twice-in-one": lambda leave: leave.robots.extend([0, 0]),
+}
+
+# The bytes of a message → what is sent.
+BYTES = {
+    "nul-behind": lambda data: data + b"\0",
+    "end-of-a-group-behind": lambda data: data + b"\x0c",
+    "nul-before-junk": lambda data: data + b"\0\xff\xfe of the heap" if data[:1] == b"\x12" else data,
 }
 
 # The text of a message in JSON → what is sent.
@@ -53,6 +68,8 @@ TEXTS = {
     "true-target": lambda text: text.replace('"jointTargets": [0.5', '"jointTargets": [true').encode(),
     "spaced-number": lambda text: text.replace('"jointTargets": [0.5', '"jointTargets": [" 0.5"').encode(),
     "misspelt-mode": lambda text: text.replace("TURRET_SPEED", "TURRET_SPED").encode(),
+    "role-beyond-32-bits": lambda text: text.replace('"ROLE_CONTROLLER"', "4294967297").encode(),
+    "mode-beyond-32-bits": lambda text: text.replace('"TURRET_SPEED"', "4294967299").encode(),
     "utf-16": lambda text: text.encode("utf-16-le"),
     "space-first": lambda text: (" " + text).encode(),
     "text-for-a-list": lambda text: text.replace('"robots": ["*"]', '"robots": "*"').encode(),

@@ -4,6 +4,9 @@ import collections
 import contextlib
 import io
 import json
+import os
+import shlex
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -22,19 +25,16 @@ def run(*arguments):
     """Exit code, stdout, stderr."""
     out, err = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        try:
-            code = cli.main(list(arguments))
-        except SystemExit as exit:
-            code = exit.code
+        code = cli.main(list(arguments))
     return code, out.getvalue(), err.getvalue()
 
 
 class Version(unittest.TestCase):
     def test_is_told(self):
         out = io.StringIO()
-        with contextlib.redirect_stdout(out), self.assertRaises(SystemExit) as ended:
-            cli.main(["--version"], version="1.2.3")
-        self.assertEqual((0, "ziggurat-conformance 1.2.3\n"), (ended.exception.code, out.getvalue()))
+        with contextlib.redirect_stdout(out):
+            code = cli.main(["--version"], version="1.2.3")
+        self.assertEqual((0, "ziggurat-conformance 1.2.3\n"), (code, out.getvalue()))
 
 
 class Mistakes(unittest.TestCase):
@@ -73,6 +73,24 @@ class Mistakes(unittest.TestCase):
         self.expect("/dev/full can't be written: No space left on device", "server", "--only", "S9.stale",
                     "--json", "/dev/full", "--", *TINY)
 
+    def test_a_pipe_that_nobody_reads(self):
+        with tempfile.TemporaryDirectory() as folder:
+            os.mkfifo(f"{folder}/r.json")
+            self.expect("--json is '.*r.json', a pipe that nobody reads; start its reader first", "server", "--json",
+                        f"{folder}/r.json", "--", *TINY)
+
+    def test_lists_that_are_none(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            os.mkfifo(folder / "pipe")
+            (folder / "long").write_bytes(b"S9.stale\n" * 200_000)
+            (folder / "latin-1").write_bytes(b"\xe9")
+            for path, sentence in (("/dev/zero", "/dev/zero is not a regular file"), (folder, "is not a regular file"),
+                                   (folder / "pipe", "pipe is not a regular file"),
+                                   (folder / "long", "long has more than 1000000 bytes"),
+                                   (folder / "latin-1", "latin-1 is not text in UTF-8")):
+                self.expect(sentence, "server", "--known-failing", str(path), "--", *TINY)
+
     def test_a_server_that_does_not_listen(self):
         self.expect(r"nothing listens at tcp://\S+, which takes the place of \{endpoint\} .*after 30 s; "
                     r"the server said nothing", "server", "--", "sleep", "1000")
@@ -91,6 +109,44 @@ class Mistakes(unittest.TestCase):
         self.expect("--known-failing nowhere: No such file", "server", "--known-failing", "nowhere", "--",
                     *TINY)
         self.expect("nothing to test", "server")
+
+
+class Stdout(unittest.TestCase):
+    """Of the program as a shell starts it."""
+
+    def setUp(self):
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def play(self, redirection, *arguments, **environment):
+        """Exit code, stderr. r.json is written to the folder."""
+        words = shlex.join([sys.executable, "-B", "-m", "ziggurat_conformance", *arguments])
+        ended = subprocess.run(["bash", "-o", "pipefail", "-c", f"{words} {redirection}"], stderr=subprocess.PIPE, text=True,
+                               stdout=subprocess.DEVNULL, env={**os.environ, **environment}, timeout=60)
+        return ended.returncode, ended.stderr
+
+    def play_a_case(self, redirection, **environment):
+        found = self.play(redirection, "server", "--only", "S9.stale", "--form", "binary", "--json",
+                          str(self.folder / "r.json"), "--", *TINY, **environment)
+        self.assertEqual(["pass"], [case["verdict"] for case in json.loads((self.folder / "r.json").read_text())["cases"]])
+        return found
+
+    def test_that_is_closed(self):
+        self.assertEqual((0, ""), self.play_a_case(">&-"))
+        self.assertEqual((0, ""), self.play(">&-", "server", "--list"))
+
+    def test_that_has_no_room(self):
+        full = (2, "ziggurat-conformance: stdout can't be written: No space left on device\n")
+        self.assertEqual(full, self.play_a_case("> /dev/full"))
+        for arguments in (["server", "--list"], ["--help"], ["--version"], ["--scene"]):
+            self.assertEqual(full, self.play("> /dev/full", *arguments))
+
+    def test_whose_reader_ends(self):
+        self.assertEqual((0, ""), self.play_a_case("| true"))
+        self.assertEqual((0, ""), self.play("| head -1", "server", "--list"))
+
+    def test_in_another_encoding(self):
+        code, err = self.play("", "server", "--only", "S9.stale", "--", *TINY, "stale-counts", PYTHONIOENCODING="ascii:strict")
+        self.assertEqual((1, ""), (code, err))
 
 
 class Help(unittest.TestCase):
@@ -139,6 +195,23 @@ class Reports(unittest.TestCase):
         self.assertRegex(page, r"Core: open: \d+ not chosen")
         self.assertNotIn("<pre>", page)
         self.assertIn("not run<br><small>give the server&#x27;s command for it", page)
+
+    def test_through_a_pipe(self):
+        path = self.folder / "pipe"
+        os.mkfifo(path)
+        with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK)) as reader:  # what is written is less than a pipe holds
+            code, out, err = run("server", "--only", "S9.stale", "--form", "binary", "--json", str(path), "--",
+                                 *TINY)
+            self.assertEqual((0, ""), (code, err), out)
+            self.assertEqual("S9.stale", json.loads(reader.read())["cases"][0]["id"])
+
+    def test_that_can_t_be_written_keep_no_other_from_its_file(self):
+        path = self.folder / "r.html"
+        code, _, err = run("server", "--only", "S9.stale", "--form", "binary", "--junit", "/dev/full", "--html",
+                           str(path), "--", *TINY)
+        self.assertEqual(2, code)
+        self.assertEqual("ziggurat-conformance: --junit /dev/full can't be written: No space left on device\n", err)
+        self.assertIn("S9.stale", path.read_text())
 
     def test_of_a_server_that_is_wrong(self):
         self.server = [*TINY, "stale-counts"]

@@ -91,7 +91,7 @@ class Client:
 
     def encoded(self, message):
         if self.form != "json":
-            return message.SerializeToString()
+            return bugs.BYTES.get(self.bug, bytes)(message.SerializeToString())
         text = json_format.MessageToJson(message, indent=None)
         return bugs.TEXTS.get(self.bug, str.encode)(text)
 
@@ -183,7 +183,7 @@ class Client:
             self.say(command=protocol.Command(tick=0))
         if self.bug == "heartbeat-first":
             self.say(heartbeat=protocol.Heartbeat(sequence=1))
-        self.hello(self.token)
+        self.hello(self.token or (b"of another run" if self.bug in ("guesses-a-token", "tries-an-old-token") else b""))
         while True:
             message = self.hear()
             if message is None:
@@ -204,6 +204,10 @@ class Client:
 
     def take_welcome(self, welcome):
         self.welcome, self.token = welcome, welcome.session_token
+        gone = set(welcome.resumed.gone_robots)
+        self.left |= set() if self.bug == "names-the-gone" else gone
+        if gone and self.bug == "leaves-the-gone":
+            self.say(leave=protocol.Leave(robots=gone, reason=protocol.Leave.DONE))
         if self.bug == "prints-its-token":
             print(f"resumed {self.token.hex()}", flush=True)
         if self.bug == "hello-twice":
@@ -247,6 +251,8 @@ class Client:
         return 0 if self.bug == "displaced-is-fine" else 1
 
     def take_refusal(self, refusal):
+        if self.bug == "tries-an-old-token":
+            return self.hello()
         if self.bug in ("storm", "storms-with-token"):
             self.hello(self.token)
             return None

@@ -79,6 +79,7 @@ class Server:
             except Fault as fault:
                 if self.bug == "silent-on-garbage" and fault.error.code == E.MALFORMED:
                     continue
+                fault.error.tick = self.tick
                 if session is None:
                     fault.error.severity = E.FATAL
                 self.tell(peer, error=fault.error)

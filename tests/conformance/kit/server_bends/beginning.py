@@ -1,12 +1,14 @@
 """Bends of sections 1 and 2: transport, Hello."""
 
 import json
+import secrets
 
 import protocol_pb2 as protocol
 
 from .kinds import E, RAW, SAID, TOLD, clear_fields, drop, in_kind, recode, refill, said, set_fields, swap, told
 
 RAW["two-frames"] = lambda data: [(data, b"")]
+RAW["nul-behind"] = lambda data: [data if data[:1] == b"{" else data + b"\0"]
 RAW["other-form"] = lambda data: [data[1:] if data[:1] == b"{" else data]
 
 
@@ -114,6 +116,8 @@ TOLD["one-token"] = set_fields("welcome", session_token=b"the same for all")
 TOLD["new-token"] = in_kind("welcome", lambda connection, welcome: setattr(
     welcome, "session_token", welcome.session_token + b"x") if connection.hello.session_token else None)
 TOLD["no-hash"] = clear_fields("welcome", "scene_hash")
+TOLD["another-hash-each"] = in_kind("welcome", lambda _, welcome: setattr(
+    welcome, "scene_hash", secrets.token_hex(8)))
 TOLD["wrong-tick-length"] = set_fields("welcome", tick_ns=1)
 TOLD["no-mode"] = clear_fields("welcome", "mode")
 

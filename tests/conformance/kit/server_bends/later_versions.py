@@ -3,7 +3,7 @@
 import protocol_pb2 as protocol
 
 from .supervision import done_without
-from .kinds import E, SAID, TOLD, clear_fields, drop, in_kind, refill, said, told
+from .kinds import E, SAID, TOLD, clear_fields, drop, in_kind, refill, said, set_fields, told
 
 TOLD["dropped-not-told"] = drop("error", E.ROBOTS_DROPPED)
 TOLD["dropped-beyond"] = in_kind("error", lambda _, error: error.dropped.robots.append(9)
@@ -68,9 +68,25 @@ SAID["any-metric-name"] = _of_metrics(lambda metric: setattr(metric, "name", "x"
 SAID["infinite-metrics"] = _of_metrics(lambda metric: setattr(metric, "value", 0))
 SAID["metrics-of-any-robot"] = _of_metrics(lambda metric: setattr(metric, "robot", 0))
 SAID["no-metric-is-right"] = _of_metrics(lambda metric: setattr(metric, "name", "a b"))
+TOLD["restored-tick-plus-one"] = in_kind("restored", lambda _, restored: setattr(restored, "tick", restored.tick + 1))
+TOLD["restored-to-epoch-0"] = set_fields("restored", epoch=0)
+TOLD["restored-without-commanded"] = clear_fields("restored", "commanded")
+TOLD["ever-new-epochs"] = in_kind("observation", lambda _, told: setattr(told, "epoch", told.tick)
+                                  if told.HasField("epoch") else None)
+TOLD["spawned-told-twice"] = lambda _, message: [message, message] if message.HasField("robot_spawned") else None
 TOLD["restored-not-told"] = drop("restored")
 SAID["restore-not-done"] = done_without("restore")
 SAID["restores-all"] = in_kind("hello", lambda _, hello: setattr(hello, "can_restore", True))
+
+
+@told("reset-begins-at-1")
+def _(connection, message):
+    if message.HasField("reset"):
+        connection.notes["reset"] = True
+    elif message.HasField("observation") and connection.notes.pop("reset", False):
+        connection.say(command=protocol.Command(tick=0))
+        return []
+    return None
 
 
 @said("any-name")

@@ -7,6 +7,11 @@ from .supervision import done_without
 from .kinds import E, POLICY, SAID, TOLD, drop, in_kind, refill, said, told
 
 
+def _refused(connection, code):
+    connection.tell(refusal=protocol.Refusal(error=E(code=code, severity=E.FATAL, message="no")))
+    return []
+
+
 @told("begins-early")
 def _(connection, message):
     return [message, protocol.ServerMessage(observation={})] if message.HasField("welcome") else None
@@ -64,6 +69,10 @@ def _(connection, message):
     return None
 
 
+SAID["few-patterns"] = in_kind("hello", lambda connection, hello: _refused(connection, E.TOO_MANY)
+                               if len(hello.robots) > 32 else None)
+SAID["short-patterns"] = in_kind("hello", lambda connection, hello: _refused(connection, E.TOO_MANY)
+                                 if any(len(pattern) > 200 for pattern in hello.robots) else None)
 SAID["patterns-cut"] = in_kind("hello", lambda _, hello: refill(hello, "robots", hello.robots[:64]))
 
 SAID["wish-ignored-first"] = SAID["wish-ignored"]
@@ -97,7 +106,5 @@ def _(connection, message):
 @said("supervisors-need-keys")
 def _(connection, message):
     if message.HasField("hello") and message.hello.role == protocol.ROLE_SUPERVISOR:
-        error = E(code=E.FORBIDDEN, severity=E.FATAL, message="a supervisor needs a key")
-        connection.tell(refusal=protocol.Refusal(error=error))
-        return []
+        return _refused(connection, E.FORBIDDEN)
     return None

@@ -11,6 +11,9 @@ TOLD["nothing-is-fatal"] = in_kind("error", lambda _, error: setattr(error, "sev
                                if error.severity == E.FATAL else None)
 TOLD["refusal-not-fatal"] = in_kind("refusal", lambda _, refusal: setattr(refusal.error, "severity", E.DISCARD))
 TOLD["unknown-code"] = set_fields("error", code=99)
+TOLD["wrong-error-tick"] = in_kind("error", lambda _, error: setattr(error, "tick", error.tick + 7))
+TOLD["wrong-tick-of-refusals"] = in_kind("response", lambda _, response: setattr(response.error, "tick", response.tick + 7)
+                                         if response.HasField("error") else None)
 TOLD["no-severity"] = clear_fields("error", "severity")
 TOLD["too-many-is-silent"] = drop("error", E.TOO_MANY)
 TOLD["sequence-plus-one"] = in_kind("heartbeat", lambda _, beat: setattr(beat, "sequence", (beat.sequence + 1) % 2**64))
@@ -24,6 +27,7 @@ def _(connection, message):
 
 
 SAID["any-reason"] = in_kind("leave", lambda _, leave: setattr(leave, "reason", protocol.Leave.DONE))
+SAID["failed-is-done"] = in_kind("leave", lambda _, leave: setattr(leave, "reason", min(leave.reason, protocol.Leave.DONE)))
 SAID["some-is-all"] = in_kind("leave", lambda _, leave: leave.ClearField("robots"))
 SAID["leave-ignored"] = drop("leave")
 SAID["leave-beyond-dropped"] = in_kind("leave", lambda _, leave: refill(

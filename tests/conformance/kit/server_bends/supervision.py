@@ -7,6 +7,8 @@ from .kinds import E, SAID, TOLD, clear_fields, drop, finite, in_kind, refill, s
 SAID["supervisor-robots-ignored"] = in_kind("hello", lambda _, hello: hello.ClearField("robots")
                                         if hello.role == protocol.ROLE_SUPERVISOR else None)
 TOLD["id-plus-one"] = in_kind("response", lambda _, response: setattr(response, "id", (response.id + 1) % 2**64))
+TOLD["response-tick-plus-one"] = in_kind("response", lambda _, response: setattr(response, "tick", response.tick + 1))
+TOLD["response-tick-0"] = set_fields("response", tick=0)
 TOLD["responses-swapped"] = swap("response")
 TOLD["observer-may-all"] = clear_fields("response", "error")
 
@@ -67,6 +69,14 @@ def _(connection, message):
 def _(connection, message):
     if message.request.HasField("move"):
         refill(message.request.move, "position", (list(map(finite, message.request.move.position)) + [0.0] * 3)[:3])
+
+
+SAID["turns-back"] = in_kind("request", lambda _, request: refill(
+    request.move, "orientation", request.move.orientation or [1, 0, 0, 0]) if request.HasField("move") else None)
+SAID["reasons-lost"] = in_kind("request", lambda _, request: request.shutdown.ClearField("reason")
+                               if request.HasField("shutdown") else None)
+SAID["long-reasons-cut"] = in_kind("request", lambda _, request: setattr(
+    request.shutdown, "reason", request.shutdown.reason[:1024]) if request.HasField("shutdown") else None)
 
 
 def done_without(kind):
