@@ -55,8 +55,9 @@ bool strikes(const Limit& limit, const Tree& tree, double length, double least) 
 void find_blows(const std::vector<Tree>& trees, const std::vector<unsigned char>& fast, std::span<const Contact> contacts,
                 std::span<const Limit> limits, double length, double least, std::vector<int>& out) {
   const auto is_fast = [&](int tree) { return tree >= 0 && fast[tree]; };
+  const auto throws = [&](int tree, const Contact& contact) { return is_fast(tree) && (contact.restitution > 0 || trees[tree].links.size() > 1); };
   for (const Contact& contact : contacts) {
-    if (!is_fast(contact.a.tree) && !is_fast(contact.b.tree)) continue;
+    if (!throws(contact.a.tree, contact) && !throws(contact.b.tree, contact)) continue;
     const double apart = parting(trees, contact);
     if (-apart > least && contact.gap + length * apart < 0) out.push_back(is_fast(contact.a.tree) ? contact.a.tree : contact.b.tree);
   }
@@ -89,7 +90,7 @@ bool System::foresee(std::span<Contact> contacts, std::span<Limit> limits, doubl
     if (-apart > fast && contact.gap + length_ * apart < 0) disturbed_.push_back(contact.a.tree);
   }
   fast_.assign(fast_trees.empty() ? 0 : trees.size(), 0);
-  for (const int tree : fast_trees) fast_[tree] = trees[tree].links.size() > 1 && moves(tree);
+  for (const int tree : fast_trees) fast_[tree] = moves(tree);
   if (!fast_.empty()) find_blows(trees, fast_, contacts_, limits_, length_, fast, disturbed_);
   if (disturbed_.empty()) return false;
   find_awake();

@@ -48,19 +48,32 @@ double pull_of(const Problem& problem, const Block& block) {
   return block.frame.col(0).dot(fall_of(problem, block.a) - fall_of(problem, block.b));
 }
 
+/// What pushes give a tree at the substep's beginning [m/s].
+Vector3 push_of(const Problem& problem, int place) {
+  Vector3 sum = Vector3::Zero();
+  if (place < 0 || !problem.trees[place]->free_root) return sum;
+  for (const Wrench& wrench : problem.trees[place]->external) sum += wrench.force;
+  return problem.length / problem.total_mass[place] * sum;
+}
+
+/// How fast the surfaces of a contact part at the substep's beginning [m/s].
+double parting_of(const Problem& problem, const Block& block) {
+  double u[Block::most_rows];
+  problem.speeds(block, u);
+  return u[0] + block.frame.col(0).dot(push_of(problem, block.a) - push_of(problem, block.b));
+}
+
 /// When in the substep surfaces meet, and with which speed and how far apart they are at its end.
 void aim(const Problem& problem, Block& block) {
-  double before[Block::most_rows];
-  problem.speeds(block, before);
-  const double pull = pull_of(problem, block);
+  const double before = parting_of(problem, block), pull = pull_of(problem, block);
   const double gap = std::max(0.0, block.gap);
-  const double square = before[0] * before[0] - 2 * pull * gap;  // of the speed of the impact
+  const double square = before * before - 2 * pull * gap;  // of the speed of the impact
   if (square < slow_impact * slow_impact) return;
   const double impact = std::sqrt(square);
-  if (impact <= before[0]) return;  // they part
-  const double time = 2 * gap / (impact - before[0]), rest = problem.length - time;
+  if (impact <= before) return;  // they part
+  const double time = 2 * gap / (impact - before), rest = problem.length - time;
   if (rest <= 0) {  // not yet: nothing may hold it
-    block.seek[0] = std::min(block.seek[0], before[0] + problem.length * pull);
+    block.seek[0] = std::min(block.seek[0], before + problem.length * pull);
     return;
   }
   const double rise = rest * (block.restitution * impact + rest * pull / 2);
@@ -89,10 +102,13 @@ bool is_met_after(const Problem& problem, const Block& later, const Block& earli
 
 /// Whether a contact holds something up: what strikes that strikes all that is below it, too.
 bool holds_up(const Problem& problem, const Block& block) {
-  constexpr double level = 1e-3;  // cosine of a normal that is as good as horizontal
+  constexpr double share = 0.01;  // of the weight
   if (!may_carry(problem, block)) return false;
   const auto is_on = [&](int place) {
-    return place >= 0 && std::abs(block.frame.col(0).dot(problem.trees[place]->gravity)) > level * problem.trees[place]->gravity.norm();
+    if (place < 0) return false;
+    const Vector3& gravity = problem.trees[place]->gravity;
+    const double weight = problem.length * problem.total_mass[place] * gravity.squaredNorm();
+    return block.impulse[0] * std::abs(block.frame.col(0).dot(gravity)) > share * weight;
   };
   return is_on(block.a) || is_on(block.b);
 }
@@ -122,10 +138,8 @@ std::vector<Impact> impacts_in_turn(Problem& problem) {
     };
     const auto is_large = [&](int place) { return place >= 0 && problem.trees[place]->dofs > most_dofs; };
     if (out.size() == most || std::ranges::any_of(out, is_of_the_same_face) || is_large(block.a) || is_large(block.b)) return {};
-    out.push_back({&block, pull_of(problem, block)});
-    double u[Block::most_rows];
-    problem.speeds(block, u);
-    any |= block.gap + problem.length * (u[0] + problem.length * out.back().pull) < 0;
+    out.push_back({&block, parting_of(problem, block), pull_of(problem, block)});
+    any |= block.gap + problem.length * (out.back().speed + problem.length * out.back().pull) < 0;
   }
   if (!any || out.size() < 2) return {};
   for (const Impact& impact : out) {

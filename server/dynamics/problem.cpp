@@ -55,6 +55,7 @@ void Problem::clear() {
   inverse_mass.clear();
   total_mass.clear();
   weight = 0;
+  in_turn = false;
   bias.clear();
   first_bias.clear();
   velocity.clear();

@@ -12,6 +12,7 @@ namespace ziggurat::dynamics {
 namespace {
 
 constexpr int most_dofs = 32;
+constexpr double still = 1e-9;  // what is slower does not come nearer [m/s]
 
 using Row = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_dofs, 1>;
 using Mass = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, most_dofs, most_dofs>;
@@ -37,10 +38,9 @@ struct Sequence {
 
 /// When surfaces meet, from now on [s]; infinite: they part, or rest on each other.
 double time_to(const Sequence& s, std::size_t i) {
-  constexpr double rounding = 1e-9;  // [m/s]
   const double gap = s.gap[i], speed = s.speed[i], pull = s.pull[i];
   if (gap <= 0) {
-    if (speed < -rounding) return 0;
+    if (speed < -still) return 0;
     return speed > slow_impact && pull < 0 ? -2 * speed / pull : HUGE_VAL;
   }
   const double square = speed * speed - 2 * pull * gap;  // of the speed of the impact
@@ -91,10 +91,8 @@ Sequence begin(const Problem& problem, std::span<const Impact> impacts) {
   s.given.resize(count), s.worked.resize(count), s.met.resize(count);
   s.responses.resize(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count));
   for (std::size_t i = 0; i < count; ++i) {
-    double u[Block::most_rows];
-    problem.speeds(*impacts[i].block, u);
     s.gap.push_back(impacts[i].block->gap);
-    s.speed.push_back(u[0]);
+    s.speed.push_back(impacts[i].speed);
     s.pull.push_back(impacts[i].pull);
     for (std::size_t k = 0; k < count; ++k) s.responses(i, k) = response(problem, *impacts[k].block, *impacts[i].block);
   }
@@ -132,11 +130,12 @@ bool take_in_turn(Problem& problem, std::span<const Impact> impacts) {
     ++struck;
   }
   if (struck == 0) return false;
+  problem.in_turn = true;
   advance(s, s.length - s.time);
   for (std::size_t i = 0; i < impacts.size(); ++i) {
     Block& block = *impacts[i].block;
     if (s.given[i] == 0) {  // nothing may hold it
-      block.seek[0] = std::min(block.seek[0], s.speed[i]);
+      block.seek[0] = std::min(block.seek[0], s.speed[i] - still);
       continue;
     }
     block.bounces = true;

@@ -10,7 +10,8 @@ namespace ziggurat::dynamics {
 /// A contact with restitution that may be met within a substep.
 struct Impact {
   Block* block = nullptr;
-  double pull = 0;  ///< what free fall accelerates its surfaces apart by [m/s^2]
+  double speed = 0;  ///< with which its surfaces part at the substep's beginning [m/s]
+  double pull = 0;   ///< what free fall accelerates its surfaces apart by [m/s^2]
 };
 
 /// What a unit of a block's first impulse changes of another block's first speed [1/kg].

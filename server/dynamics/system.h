@@ -176,7 +176,7 @@ class System {
   enum Watch : unsigned char { commanded = 1, held = 2, pushed = 4, waits = 8 };
   std::vector<unsigned char> watch_;
   std::vector<int> awake_, disturbed_;
-  std::vector<unsigned char> fast_;  ///< of each tree: what strikes it may set its other links in motion
+  std::vector<unsigned char> fast_;  ///< of each tree: what strikes it may throw it elsewhere
   std::vector<int> between_;  // contacts of two trees
   double length_ = 0;
   std::span<Contact> contacts_;

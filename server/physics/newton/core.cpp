@@ -346,7 +346,7 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
 /// @param contacts  in and out;  @param woke  in: whether something woke; out: also by what is thrown
 /// @return          whether there are other contacts
 bool NewtonCore::foresee(const Share& share, std::span<dynamics::Contact>& contacts, bool& woke) {
-  constexpr int most_blows = 3;
+  constexpr int most_blows = 8;
   bool any = false;
   for (int i = 0; i < most_blows && system_.foresee(contacts, limits_, least_reach(share.length), colliders_.fast, foresight_); ++i) {
     const SpeedsComeBack at_the_end{system_, foresight_};
