@@ -216,7 +216,7 @@ Outcome solve_velocities(Problem& problem, Solver& solver) {
     outcome.iterations += iterations;
   };
   for (int i = 0; i < most_turns && problem.turn_limits(); ++i) solve_again();
-  if (aim_what_is_thrown(problem, solver)) solve_again();
+  if (!problem.in_turn && aim_what_is_thrown(problem, solver)) solve_again();
   return outcome;
 }
 

@@ -340,9 +340,7 @@ void Problem::harden() {
 }
 
 bool Problem::turn_into_displacement() {
-  const auto bounces = [](const Block& block) {
-    return block.kind == Block::Source::contact && block.bounces && block.impulse[0] > 0;
-  };
+  const auto bounces = [&](const Block& block) { return rebounded(block); };
   const auto needs_it = [&](const Block& block) {
     const bool overlaps = block.kind != Block::Source::servo && block.gap < -allowed_overlap;
     return overlaps || bounces(block);

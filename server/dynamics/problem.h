@@ -100,6 +100,8 @@ struct Problem {
   void bound_depth();
   /// Makes all surfaces rigid.
   void harden();
+  /// Of a solved problem: whether a contact was met and rebounded. Between two walls all that it was given may add up to nothing.
+  bool rebounded(const Block& block) const { return block.bounces && (in_turn || block.impulse[0] > 0); }
   /// Turns the problem into that of the smallest displacement that undoes overlaps: v in [m] and
   /// [rad], without momentum and friction.
   /// @return  false if there is nothing to undo

@@ -149,9 +149,7 @@ void blend(Problem& problem, const Snapshot& without, double share) {
 }  // namespace
 
 bool rebounds(const Problem& problem) {
-  return std::any_of(problem.blocks.begin(), problem.blocks.end(), [](const Block& block) {
-    return block.bounces && block.impulse[0] > 0;
-  });
+  return std::ranges::any_of(problem.blocks, [&](const Block& block) { return problem.rebounded(block); });
 }
 
 void bound_impacts(Problem& problem, Solver& solver, Workspace& work, Rebound& out) {

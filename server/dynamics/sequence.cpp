@@ -113,9 +113,10 @@ double response(const Problem& problem, const Block& impulse, const Block& speed
 }
 
 bool take_in_turn(Problem& problem, std::span<const Impact> impacts) {
+  constexpr double more_than_missed = 1e-6;  // by the solver [m/s]
   Sequence s = begin(problem, impacts);
   const double moment = 1e-9 * s.length;  // what is nearer takes place together
-  int left = 16 * static_cast<int>(impacts.size()), struck = 0;
+  int left = 64 * static_cast<int>(impacts.size()), struck = 0;
   std::vector<int> together;
   for (; left > 0; --left) {
     double next = HUGE_VAL;
@@ -129,13 +130,13 @@ bool take_in_turn(Problem& problem, std::span<const Impact> impacts) {
     strike(s, impacts, together);
     ++struck;
   }
-  if (struck == 0) return false;
+  if (struck == 0 || left == 0) return false;
   problem.in_turn = true;
   advance(s, s.length - s.time);
   for (std::size_t i = 0; i < impacts.size(); ++i) {
     Block& block = *impacts[i].block;
     if (s.given[i] == 0) {  // nothing may hold it
-      block.seek[0] = std::min(block.seek[0], s.speed[i] - still);
+      block.seek[0] = std::min(block.seek[0], s.speed[i] - more_than_missed);
       continue;
     }
     block.bounces = true;

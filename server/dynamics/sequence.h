@@ -20,7 +20,7 @@ double response(const Problem& problem, const Block& impulse, const Block& speed
 /// Lets impacts take place in the order of time, those of one moment together, and has their contacts seek the speeds and gaps that
 /// remain. Without friction.
 /// @param impacts  all contacts of the island that may be met; trees of at most 32 dofs, one impact per pair of trees
-/// @return         whether there was one
+/// @return         whether there was one, and no more than 64 for each contact
 bool take_in_turn(Problem& problem, std::span<const Impact> impacts);
 
 }  // namespace ziggurat::dynamics
