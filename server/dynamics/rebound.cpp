@@ -1,5 +1,6 @@
 #include "dynamics/rebound.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -11,17 +12,26 @@ namespace {
 constexpr double rounding = 1e-9;       // of the energy
 constexpr double more_than_moved = 1.02;  // the square of how much farther than its speeds say it may be moved
 
-/// What pushes the trees, without gravity, does in the substep, of which v is the solution.
+/// f^T M^-1 f of a tree.
+double work_on_mass(const Problem& problem, std::size_t tree, const Eigen::VectorXd& force) {
+  const auto n = force.size();
+  const Eigen::MatrixXd mass = Eigen::Map<const Eigen::MatrixXd>(problem.mass_of(tree), n, n);
+  return force.dot(mass.llt().solve(force));
+}
+
+/// What pushes the trees, without gravity, does in the substep, of which v is the solution. Where impacts were taken in turn, pushes act before
+/// them: a body may go another way at the end.
 double work_of_pushes(const Problem& problem, Workspace& work) {
   double sum = 0;
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];
     work.scratch.resize(tree.dofs);
     external_forces(tree, work, work.scratch, true, false);
-    const double* after = problem.velocity.data() + problem.offset[i];
-    for (int k = 0; k < tree.dofs; ++k) {
-      sum += problem.length * work.scratch[k] * (tree.v[k] + after[k]) / 2;
-    }
+    const Eigen::Map<const Eigen::VectorXd> force(work.scratch.data(), tree.dofs), before(tree.v.data(), tree.dofs);
+    const Eigen::Map<const Eigen::VectorXd> after(problem.velocity.data() + problem.offset[i], tree.dofs);
+    if (force.isZero(0)) continue;
+    const double mean = force.dot(before + after) / 2;
+    sum += problem.length * (problem.in_turn ? force.dot(before) + problem.length / 2 * work_on_mass(problem, i, force) : mean);
   }
   return sum;
 }
