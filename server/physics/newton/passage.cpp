@@ -97,7 +97,7 @@ contact::Contacts first_meeting(const Collider& a, const Collider& b, double len
     if (found.count == 0) return met;  // out of reach
     const double approach = fastest_approach(a, b, found.normal);
     const double follow = left > 0 ? touch : near;
-    if (distance <= near) {
+    if (distance <= near || met.count > 0) {  // also when they have passed each other: then the normal says so
       met = found;
       time = now;
       carry_back(met, a, pose_a, b, pose_b);
