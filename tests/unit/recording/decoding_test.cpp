@@ -75,7 +75,7 @@ TEST(Decoding, TheMemoryThatIsFoundOutIsEnough) {
     ASSERT_TRUE(message->ParseFromString(bytes)) << bomb.name;
     const std::size_t taken = allocated() - before;
     EXPECT_GE(counted, taken) << bomb.name;
-    if (std::string_view("maps") == bomb.name) continue;  // all have the same key
+    if (std::string_view("maps") == bomb.name || taken == 0) continue;  // the same key in all; sanitizers tell nothing
     EXPECT_LT(counted, 15 * taken + 1'000'000) << bomb.name;
   }
 }
