@@ -4,7 +4,8 @@
 #include <map>
 
 #include "mcap/messages.h"
-#include "recording/inputs.h"
+#include "recording/decoding.h"
+#include "ziggurat/v1/run.pb.h"
 
 namespace ziggurat::recorder {
 namespace {
@@ -33,8 +34,7 @@ Start to_start(const v1::RunStart& from) {
 
 void add_inputs(const mcap::Message& message, Overview& to) {
   v1::Inputs inputs;
-  if (message.data.size() > recording::longest_message) return;
-  if (!inputs.ParseFromArray(message.data.data(), static_cast<int>(message.data.size()))) return;
+  if (recording::decode(message.data, inputs)) return;
   ++to.states;
   to.epochs = std::max(to.epochs, inputs.epoch() + 1);
   to.last_tick = inputs.tick();
@@ -48,10 +48,7 @@ std::optional<Start> read_start(const mcap::Reader& reader) {
   mcap::Messages messages(reader, {{channel->id}});
   const auto message = messages.next();
   v1::RunStart start;
-  if (!message ||
-      !start.ParseFromArray(message->data.data(), static_cast<int>(message->data.size()))) {
-    return std::nullopt;
-  }
+  if (!message || recording::decode(message->data, start)) return std::nullopt;
   return to_start(start);
 }
 

@@ -2,7 +2,6 @@
 // What a step reads and what it makes of the world, exactly: the messages `Commands` and
 // `ExactState` of run.proto. Writers and readers of recordings share it.
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -18,10 +17,6 @@ class ExactState;
 }  // namespace ziggurat::v1
 
 namespace ziggurat::recording {
-
-/// The longest message of /inputs and /state that is read [bytes]: two bytes of one can take forty times as much
-/// memory.
-inline constexpr std::size_t longest_message = std::size_t{32} << 20;
 
 /// Packs the commands of one step after the other, all arrays at the first call. A new epoch takes a
 /// new one.

@@ -57,7 +57,7 @@ void Rays::write(const world::State& state) {
 }
 
 void Rays::write(const v1::RayLine& line) {
-  file_.buffer().append(to_json(line));
+  write_json(line, file_);
   file_.buffer().push_back('\n');
   file_.written();
 }

@@ -23,7 +23,7 @@ void Readings::write(const world::State& state, const world::Observations& obser
         (*reading.mutable_metrics())[std::string(name)] = value;
       }
     }
-    file_.buffer().append(to_json(reading));
+    write_json(reading, file_);
     file_.buffer().push_back('\n');
     file_.written();
   };

@@ -12,10 +12,7 @@ namespace ziggurat::recording {
 
 /// Of those that are new; of all when a world begins or goes back.
 void Trace::name_rows(const world::State& state) {
-  if (state.tick == 0 || state.tick < last_tick_) {
-    rows_.clear();
-    entities_ = 0;
-  }
+  if (state.tick == 0 || state.tick < last_tick_) name_anew();
   last_tick_ = state.tick;
   for (; entities_ < layout_.entities.size(); ++entities_) {
     const auto& entity = layout_.entities[entities_];
@@ -32,6 +29,11 @@ void Trace::name_rows(const world::State& state) {
 Trace::Trace(std::string path, const world::Layout& layout)
     : layout_(layout), file_(std::move(path)) {
   file_.buffer().append(std::string_view("tick,time_s,entity,link,x,y,z,qw,qx,qy,qz\n"));
+}
+
+void Trace::name_anew() {
+  rows_.clear();
+  entities_ = 0;
 }
 
 void Trace::write(const world::State& state) {

@@ -22,6 +22,8 @@ class Trace {
 
   /// Without rows of what is absent. @throws WriteError
   void write(const world::State& state);
+  /// The layout is of another world now: its rows are named again.
+  void name_anew();
   void flush() { file_.flush(); }  ///< @throws WriteError
   void close() { file_.close(); }
 

@@ -16,6 +16,7 @@
 #include "recording/json.h"
 #include "recording/output_file.h"
 #include "recording/trace.h"
+#include "replay/names.h"
 #include "replay/recording_error.h"
 #include "ziggurat/v1/channels.pb.h"
 
@@ -46,8 +47,9 @@ struct Inhabitants {
   std::vector<bool> absent;
 
   /// @throws RecordingError if links are not where they must be
-  void take(const v1::World& world) {
+  void take(const v1::World& world, const std::string& path) {
     using Kind = v1::World::Entity;
+    if (const auto fault = fault_of_names(world)) throw RecordingError(path + ": " + *fault);
     layout.entities.clear();
     layout.links.clear();
     origins.clear();
@@ -55,8 +57,11 @@ struct Inhabitants {
     const auto links = static_cast<std::size_t>(world.links_size());
     for (const auto& entity : world.entities()) {
       const world::Range range{entity.first_link(), entity.link_count()};
-      if (range.end() > links || entity.reference_link() >= links) {
-        throw RecordingError("a message of /world is damaged: it refers to links that it lacks");
+      const auto is_its_own = [&](const v1::World::Link& link) { return link.entity() == layout.entities.size(); };
+      if (range.end() > links || entity.reference_link() >= links ||
+          !std::all_of(world.links().begin() + entity.first_link(),
+                       world.links().begin() + entity.first_link() + entity.link_count(), is_its_own)) {
+        throw RecordingError(path + ": a message of /world is damaged: an entity refers to links that are not its own");
       }
       const bool lists_links = entity.kind() != Kind::BOX && entity.kind() != Kind::CYLINDER &&
                                entity.kind() != Kind::SPHERE;
@@ -82,8 +87,8 @@ struct Inhabitants {
 };
 
 /// As the simulation computes it [ns].
-std::int64_t time_of(std::uint64_t tick, const v1::World& world) {
-  const std::uint32_t rate = std::max(world.ticks_per_second(), 1u);
+std::int64_t time_of(std::uint64_t tick, std::uint32_t ticks_per_second) {
+  const std::uint32_t rate = std::max(ticks_per_second, 1u);
   return std::llround(static_cast<long double>(tick) * 1e9L / rate);
 }
 
@@ -91,6 +96,12 @@ struct Topic {
   std::string name;
   const google::protobuf::Descriptor* type = nullptr;  ///< null: this version does not know it
 };
+
+/// Of those that runs record. protobuf knows types of its own, for which there are no bounds.
+bool is_recorded(const google::protobuf::Descriptor& type) {
+  const std::string& package = type.file()->package();
+  return package == "ziggurat.v1" || package == "foxglove";
+}
 
 std::map<std::uint16_t, Topic> chosen_topics(
     const RecordingFile& file, const std::function<bool(const std::string&)>& is_wanted) {
@@ -100,7 +111,7 @@ std::map<std::uint16_t, Topic> chosen_topics(
     const auto schema = contents.schemas.find(channel.schema);
     if (!is_wanted(channel.topic) || schema == contents.schemas.end()) continue;
     const auto* type = DescriptorPool::generated_pool()->FindMessageTypeByName(schema->second.name);
-    if (type) chosen.emplace(id, Topic{channel.topic, type});
+    if (type && is_recorded(*type)) chosen.emplace(id, Topic{channel.topic, type});
   }
   if (!chosen.empty()) return chosen;
   throw RecordingError(fmt::format(
@@ -123,22 +134,21 @@ std::uint64_t export_csv(const RecordingFile& file, const std::string& out) {
   v1::ExactState exact;
   std::vector<world::LinkState> links;
   world::State state;
-  v1::World world;
+  std::uint32_t ticks_per_second = 0;
   std::uint64_t written = 0;
   while (const auto message = next(file, *messages)) {
     if (message->channel == of_world->id) {
-      if (world.ParseFromArray(message->data.data(), static_cast<int>(message->data.size()))) {
-        inhabitants.take(world);
-      }
+      v1::World world;
+      file.decode(*messages, *message, world);
+      inhabitants.take(world, file.path());
+      ticks_per_second = world.ticks_per_second();
+      trace.name_anew();
       continue;
     }
-    const bool is_read =
-        exact.ParseFromArray(message->data.data(), static_cast<int>(message->data.size()));
-    if (const auto fault = recording::unpack(exact, links); fault || !is_read) {
-      throw RecordingError(file.path() + ": " + fault.value_or("a message of /state is damaged"));
-    }
+    file.decode(*messages, *message, exact);
+    if (const auto fault = recording::unpack(exact, links)) throw RecordingError(file.path() + ": " + *fault);
     state.tick = exact.tick();
-    state.time_ns = time_of(exact.tick(), world);
+    state.time_ns = time_of(exact.tick(), ticks_per_second);
     if (!inhabitants.fill(links, state)) continue;
     trace.write(state);
     ++written;
@@ -160,13 +170,12 @@ std::uint64_t export_jsonl(const RecordingFile& file,
     const Topic& topic = topics.at(message->channel);
     const std::unique_ptr<google::protobuf::Message> content(
         MessageFactory::generated_factory()->GetPrototype(topic.type)->New());
-    if (!content->ParseFromArray(message->data.data(), static_cast<int>(message->data.size()))) {
-      throw RecordingError(fmt::format("{}: a message of {} is damaged", file.path(), topic.name));
-    }
-    output.buffer().append(fmt::format("{{\"topic\":{},\"time_s\":{},\"message\":{}}}\n",
+    file.decode(messages, *message, *content);
+    output.buffer().append(fmt::format("{{\"topic\":{},\"time_s\":{},\"message\":",
                                        nlohmann::json(topic.name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
-                                       static_cast<double>(message->log_time) / 1e9,
-                                       recording::to_json(*content)));
+                                       static_cast<double>(message->log_time) / 1e9));
+    recording::write_json(*content, output);
+    output.buffer().append(std::string_view("}\n"));
     output.written();
     ++written;
   }

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 #include <google/protobuf/descriptor.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 #include <google/protobuf/text_format.h>
 
 #include <algorithm>
 #include <memory>
 #include <vector>
 
+#include "recording/decoding.h"
 #include "ziggurat/v1/run.pb.h"
 
 namespace ziggurat::replay {
@@ -27,7 +29,15 @@ std::string text_of(const Message& message, const FieldDescriptor& field, int in
                                        : reflection.GetRepeatedDouble(message, &field, index));
   }
   std::string text;
-  google::protobuf::TextFormat::PrintFieldValueToString(message, &field, index, &text);
+  if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {  // whose text can be far longer than it is
+    text.resize(longest);
+    google::protobuf::io::ArrayOutputStream first(text.data(), static_cast<int>(text.size()));
+    google::protobuf::TextFormat::Print(
+        index < 0 ? reflection.GetMessage(message, &field) : reflection.GetRepeatedMessage(message, &field, index), &first);
+    text.resize(static_cast<std::size_t>(first.ByteCount()));
+  } else {
+    google::protobuf::TextFormat::PrintFieldValueToString(message, &field, index, &text);
+  }
   std::ranges::replace(text, '\n', ' ');
   return text.substr(0, longest);
 }
@@ -98,10 +108,7 @@ std::optional<FieldDifference> first_difference(const std::string& type, std::st
   const Message* prototype =
       google::protobuf::MessageFactory::generated_factory()->GetPrototype(known);
   const std::unique_ptr<Message> of_a(prototype->New()), of_b(prototype->New());
-  if (!of_a->ParseFromArray(a.data(), static_cast<int>(a.size())) ||
-      !of_b->ParseFromArray(b.data(), static_cast<int>(b.size()))) {
-    return std::nullopt;
-  }
+  if (recording::decode(a, *of_a) || recording::decode(b, *of_b)) return std::nullopt;
   return first_difference(*of_a, *of_b);
 }
 

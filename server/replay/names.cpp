@@ -4,9 +4,30 @@
 
 #include <cstdint>
 
+#include "replay/recording_error.h"
 #include "ziggurat/v1/channels.pb.h"
 
 namespace ziggurat::replay {
+
+namespace {
+
+/// Of the entity that a link names.
+const std::string& entity_of(const v1::World& world, const v1::World::Link& link) {
+  static const std::string unknown = "?";
+  const bool is_known = link.entity() < static_cast<std::uint32_t>(world.entities_size());
+  return is_known ? world.entities(static_cast<int>(link.entity())).id() : unknown;
+}
+
+}  // namespace
+
+std::optional<std::string> fault_of_names(const v1::World& world) {
+  std::size_t bytes = 0;
+  for (const auto& link : world.links()) bytes += entity_of(world, link).size() + link.id().size();
+  for (const auto& entity : world.entities()) bytes += entity.id().size();
+  if (bytes <= most_name_bytes) return std::nullopt;
+  return fmt::format("a message of /world is damaged: the names of its links have {} bytes; at most {} are read", bytes,
+                     most_name_bytes);
+}
 
 std::vector<std::string> link_names(const RecordingFile& file) {
   std::vector<std::string> names;
@@ -14,12 +35,12 @@ std::vector<std::string> link_names(const RecordingFile& file) {
   if (!messages) return names;
   v1::World world;
   while (const auto message = next(file, *messages)) {
-    if (!world.ParseFromArray(message->data.data(), static_cast<int>(message->data.size()))) continue;
+    file.decode(*messages, *message, world);
+    if (const auto fault = fault_of_names(world)) throw RecordingError(file.path() + ": " + *fault);
     if (static_cast<std::size_t>(world.links_size()) <= names.size()) continue;
     names.clear();
     for (const auto& link : world.links()) {
-      const bool is_known = link.entity() < static_cast<std::uint32_t>(world.entities_size());
-      const std::string id = is_known ? world.entities(static_cast<int>(link.entity())).id() : "?";
+      const std::string& id = entity_of(world, link);
       names.push_back(link.id().empty() ? fmt::format("'{}'", id)
                                         : fmt::format("'{}', link '{}'", id, link.id()));
     }

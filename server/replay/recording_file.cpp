@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "recording/decoding.h"
 #include "recording/inputs.h"
 #include "replay/recording_error.h"
 
@@ -49,9 +50,7 @@ RecordingFile::RecordingFile(std::string path, mcap::Source source) : path_(std:
                             path_)
               : fmt::format("{}: {}; it has no message of /run, with which a recording begins", path_, lacks));
     }
-    if (!run_.ParseFromArray(message->data.data(), static_cast<int>(message->data.size()))) {
-      throw RecordingError(fmt::format("{}: its message of /run is damaged", path_));
-    }
+    decode(*start, *message, run_);
     read_files();
   } catch (const mcap::Damaged& damage) {
     throw damaged(path_, damage);
@@ -111,6 +110,18 @@ std::optional<mcap::Messages> RecordingFile::messages(
   return std::optional<mcap::Messages>(std::in_place, *reader_, std::move(selection));
 }
 
+void RecordingFile::decode(const mcap::Messages& from, const mcap::Message& message,
+                           google::protobuf::Message& to) const {
+  const auto fault = recording::decode(message.data, to);
+  if (!fault) return;
+  const mcap::Contents& contents = reader_->contents();
+  const auto channel = contents.channels.find(message.channel);
+  throw RecordingError(fmt::format(
+      "{}: a message of {} at {} s, in the chunk at byte {}, {}; take another copy of the recording, or record the run again",
+      path_, channel == contents.channels.end() ? "no topic" : channel->second.topic,
+      static_cast<double>(message.log_time) / 1e9, contents.chunks[from.chunk()].offset, *fault));
+}
+
 std::optional<mcap::Message> next(const RecordingFile& file, mcap::Messages& messages) {
   try {
     return messages.next();
@@ -127,24 +138,16 @@ States::States(const RecordingFile& file)
 }
 
 const v1::Inputs* States::next() {
-  const auto parse = [&](const mcap::Message& message, auto& to, const char* topic) {
-    if (message.data.size() > recording::longest_message) {
-      throw RecordingError(fmt::format("{}: a message of {} has {} bytes; at most {} are read", file_.path(),
-                                       topic, message.data.size(), recording::longest_message));
-    }
-    if (to.ParseFromArray(message.data.data(), static_cast<int>(message.data.size()))) return;
-    throw RecordingError(fmt::format("{}: a message of {} is damaged", file_.path(), topic));
-  };
   while (const auto message = replay::next(file_, *messages_)) {
     if (message->channel == inputs_channel_) {
-      parse(*message, coming_, "/inputs");
+      file_.decode(*messages_, *message, coming_);
       std::swap(inputs_, coming_);
       log_time_ = message->log_time;
       has_links_ = state_.epoch() == inputs_.epoch() && state_.tick() == inputs_.tick() &&
                    !links_.empty();
       return &inputs_;
     }
-    parse(*message, state_, "/state");
+    file_.decode(*messages_, *message, state_);
     if (const auto fault = recording::unpack(state_, links_)) {
       throw RecordingError(fmt::format("{}: {}", file_.path(), *fault));
     }

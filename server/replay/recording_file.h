@@ -36,6 +36,9 @@ class RecordingFile {
   /// The messages of these topics, in the order of the file; topics that it lacks are skipped.
   /// Nothing: it has none of them.
   std::optional<mcap::Messages> messages(const std::vector<std::string>& topics) const;
+  /// Decodes one of them. @param from  the messages that it is the last one of
+  /// @throws RecordingError that names topic, time and place if it is damaged or beyond the bounds of recording/decoding.h
+  void decode(const mcap::Messages& from, const mcap::Message& message, google::protobuf::Message& to) const;
 
  private:
   void read_files();

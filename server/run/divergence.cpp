@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <string_view>
 #include <tuple>
 #include <unordered_map>
 
@@ -19,6 +20,7 @@ namespace {
 
 constexpr std::size_t most_rows = 20;      // of the table
 constexpr std::size_t most_points = 1000;  // of a curve
+constexpr std::size_t most_states = std::size_t{1} << 20;  // that are kept: a small file may have a hundred million
 
 using Links = std::vector<world::LinkState>;
 
@@ -27,7 +29,7 @@ std::vector<std::size_t> places(const std::vector<std::string>& to,
                                 const std::vector<std::string>& from) {
   const std::size_t both = std::min(to.size(), from.size());
   if (std::equal(to.begin(), to.begin() + static_cast<std::ptrdiff_t>(both), from.begin())) return {};
-  std::unordered_map<std::string, std::size_t> known;
+  std::unordered_map<std::string_view, std::size_t> known;
   for (std::size_t i = 0; i < from.size(); ++i) known.emplace(from[i], i);
   std::vector<std::size_t> found;
   for (const std::string& name : to) {
@@ -96,8 +98,19 @@ class Comparison {
     }
     if (!result_.first_inputs) compare_inputs(a, b, when);
     if (!a_.states.links() || !b_.states.links()) return;
-    result_.states.push_back({a.epoch(), a.tick(), static_cast<double>(a_.states.log_time()) / 1e9,
-                              replay::distance(*a_.states.links(), aligned())});
+    keep({a.epoch(), a.tick(), static_cast<double>(a_.states.log_time()) / 1e9,
+          replay::distance(*a_.states.links(), aligned())});
+  }
+
+  /// All of them; of very many each second, fourth, and so on.
+  void keep(const Divergence::State& state) {
+    auto& states = result_.states;
+    if (states.size() == most_states) {
+      for (std::size_t i = 0; i < states.size() / 2; ++i) states[i] = states[2 * i];
+      states.resize(states.size() / 2);
+      stride_ *= 2;
+    }
+    if (seen_++ % stride_ == 0) states.push_back(state);
   }
 
   void compare_inputs(const v1::Inputs& a, const v1::Inputs& b, const std::string& when) {
@@ -144,6 +157,7 @@ class Comparison {
   std::vector<std::string> names_b_;
   std::vector<std::size_t> places_;
   Links aligned_;
+  std::size_t seen_ = 0, stride_ = 1;  ///< of the states that are kept
   Divergence result_;
 };
 

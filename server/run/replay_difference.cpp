@@ -55,7 +55,7 @@ std::optional<std::string> difference_of(const replay::RecordingFile& file, std:
   const mcap::Channel* channel = contents.channel_of(topic);
   if (!channel || !contents.schemas.contains(channel->schema)) return std::nullopt;
   mcap::Messages messages(file.reader(), {{channel->id}, log_time, log_time});
-  const auto recorded = messages.next();
+  const auto recorded = replay::next(file, messages);
   if (!recorded || recorded->data == bytes) return std::nullopt;
   const std::string& type = contents.schemas.at(channel->schema).name;
   const auto found = replay::first_difference(type, recorded->data, bytes);

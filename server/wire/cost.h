@@ -1,8 +1,10 @@
 #pragma once
-// What decoding a message would cost, found out before it is decoded.
+// What decoding a message of a peer would cost, found out before it is decoded.
 
 #include <cstddef>
 #include <string_view>
+
+#include "ziggurat/v1/extent.h"
 
 namespace ziggurat::wire {
 
@@ -10,8 +12,7 @@ namespace ziggurat::wire {
 /// see CommandLimits.
 inline constexpr std::size_t most_fields = std::size_t{1} << 18;
 
-/// So many bytes of text, or numbers of a list that have no fixed size, count as one field.
-inline constexpr std::size_t bytes_per_field = 16;
+using v1::bytes_per_field;
 
 /// How many fields a ClientMessage in binary form has; it stops counting beyond `most_fields`.
 /// Decoding takes up to about 100 bytes of memory for each.

@@ -6,7 +6,10 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "mcap/writer.h"
 #include "recorded_run.h"
@@ -149,22 +152,149 @@ TEST_F(Disk, OtherFilesAreRefused) {
   EXPECT_THROW(RecordingFile(path("other.mcap")), RecordingError);
 }
 
-TEST_F(Disk, NamesLinksOfEntitiesThatAreNotThere) {
+/// A recording in memory with one message of each of these topics.
+struct Topic {
+  const char* name;
+  const char* type;
+  std::string bytes;
+};
+std::string recording_of(const std::vector<Topic>& topics) {
   std::string bytes;
   mcap::Writer writer([&](std::string_view more) { bytes += more; }, {"ziggurat", "test"},
-                      mcap::Compression::none);
-  const auto channel = [&](const char* topic, const char* type) {
-    return writer.add_channel(writer.add_schema(type, "protobuf", "x"), topic, "protobuf");
+                      mcap::Compression::zstd);
+  const auto add = [&](const Topic& topic) {
+    const auto schema = writer.add_schema(topic.type, "protobuf", "x");
+    writer.write(writer.add_channel(schema, topic.name, "protobuf"), 0, 0, topic.bytes);
   };
-  const auto run = channel("/run", "ziggurat.v1.RunStart"), world = channel("/world", "ziggurat.v1.World");
-  writer.write(run, 0, 0, testing::start().SerializeAsString());
+  add({"/run", "ziggurat.v1.RunStart", testing::start().SerializeAsString()});
+  for (const Topic& topic : topics) add(topic);
+  writer.close();
+  return bytes;
+}
+
+std::string repeated(std::string_view piece, std::size_t count) {
+  std::string all;
+  for (std::size_t i = 0; i < count; ++i) all += piece;
+  return all;
+}
+
+/// What is told of it; empty: nothing was.
+std::string fault_of(const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const RecordingError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST_F(Disk, NamesLinksOfEntitiesThatAreNotThere) {
   v1::World message;
   message.add_entities()->set_id("box");
   for (const std::uint32_t entity : {0U, 1U, 0x80000000U, 0xffffffffU}) message.add_links()->set_entity(entity);
-  writer.write(world, 0, 0, message.SerializeAsString());
-  writer.close();
+  const std::string bytes = recording_of({{"/world", "ziggurat.v1.World", message.SerializeAsString()}});
   const RecordingFile file("hostile", mcap::bytes_of(bytes));
   EXPECT_EQ(link_names(file), (std::vector<std::string>{"'box'", "'?'", "'?'", "'?'"}));
+}
+
+TEST_F(Disk, NamesThatEachLinkRepeatsAreBounded) {
+  v1::World message;
+  message.add_entities()->set_id(std::string(1'000'000, 'x'));
+  message.mutable_entities(0)->set_link_count(1000);
+  for (int i = 0; i < 1000; ++i) message.add_links();
+  const std::string bytes = recording_of({{"/world", "ziggurat.v1.World", message.SerializeAsString()},
+                                          {"/state", "ziggurat.v1.ExactState", {}}});
+  const RecordingFile file("hostile", mcap::bytes_of(bytes));
+  EXPECT_NE(fault_of([&] { link_names(file); }).find("the names of its links have"), std::string::npos);
+  EXPECT_NE(fault_of([&] { export_csv(file, path("out.csv")); }).find("the names of its links have"), std::string::npos);
+}
+
+TEST_F(Disk, LinksOfAnotherEntityAreNoRowsOfATable) {
+  v1::World message;
+  for (int i = 0; i < 2; ++i) message.add_entities()->set_link_count(2);
+  for (int i = 0; i < 2; ++i) message.add_links();
+  const std::string bytes = recording_of({{"/world", "ziggurat.v1.World", message.SerializeAsString()},
+                                          {"/state", "ziggurat.v1.ExactState", {}}});
+  const RecordingFile file("hostile", mcap::bytes_of(bytes));
+  EXPECT_NE(fault_of([&] { export_csv(file, path("out.csv")); }).find("not its own"), std::string::npos);
+}
+
+TEST_F(Disk, AMessageOfManySmallPartsIsToldAndNotDecoded) {
+  const std::string world = repeated({"\x62\0", 2}, 40'000'000);  // entities
+  const std::string bytes = recording_of({{"/world", "ziggurat.v1.World", world},
+                                          {"/state", "ziggurat.v1.ExactState", {}},
+                                          {"/inputs", "ziggurat.v1.Inputs", repeated("\x22\x02\x3a\x00", 1)}});
+  const RecordingFile file("hostile.mcap", mcap::bytes_of(bytes));
+  const std::function<void()> readers[] = {[&] { link_names(file); }, [&] { export_csv(file, path("out.csv")); },
+                                           [&] { export_jsonl(file, [](const auto&) { return true; }, path("out.jsonl")); }};
+  for (const auto& read : readers) {
+    const std::string told = fault_of(read);
+    EXPECT_TRUE(told.starts_with("hostile.mcap: a message of /world at 0 s, in the chunk at byte ")) << told;
+    EXPECT_NE(told.find("take another copy of the recording"), std::string::npos) << told;
+  }
+}
+
+TEST_F(Disk, InputsAndStatesOfManySmallPartsAreToldAndNotDecoded) {
+  const Topic topics[] = {{"/inputs", "ziggurat.v1.Inputs", repeated({"\x22\x02\x3a\0", 4}, 8'000'000)},
+                          {"/state", "ziggurat.v1.ExactState", repeated({"\x7a\0", 2}, 15'000'000)},
+                          {"/state", "ziggurat.v1.ExactState", std::string(33'554'433, '\0')}};
+  for (const Topic& topic : topics) {
+    const std::string bytes = recording_of({topic, {"/inputs", "ziggurat.v1.Inputs", {}}});
+    const RecordingFile file("hostile.mcap", mcap::bytes_of(bytes));
+    States states(file);
+    const std::string told = fault_of([&] { states.next(); });
+    EXPECT_NE(told.find(topic.name), std::string::npos) << told;
+  }
+}
+
+TEST_F(Disk, ARunThatIsTooLargeIsToldAndNotDecoded) {
+  std::string bytes;
+  mcap::Writer writer([&](std::string_view more) { bytes += more; }, {"ziggurat", "test"}, mcap::Compression::zstd);
+  const auto schema = writer.add_schema("ziggurat.v1.RunStart", "protobuf", "x");
+  writer.write(writer.add_channel(schema, "/run", "protobuf"), 0, 0, repeated({"\x3a\0", 2}, 20'000'000));
+  writer.close();
+  EXPECT_NE(fault_of([&] { const RecordingFile file("hostile.mcap", mcap::bytes_of(bytes)); }).find("/run"), std::string::npos);
+}
+
+/// Later rows must not refer to entities that a smaller world lacks.
+TEST_F(Disk, ASmallerWorldHasRowsOfItsOwn) {
+  std::string bytes;
+  mcap::Writer writer([&](std::string_view more) { bytes += more; }, {"ziggurat", "test"}, mcap::Compression::none);
+  const auto channel = [&](const char* topic, const char* type) {
+    return writer.add_channel(writer.add_schema(type, "protobuf", "x"), topic, "protobuf");
+  };
+  const auto run = channel("/run", "ziggurat.v1.RunStart"), world = channel("/world", "ziggurat.v1.World"),
+             state = channel("/state", "ziggurat.v1.ExactState");
+  writer.write(run, 0, 0, testing::start().SerializeAsString());
+  for (std::uint64_t tick = 0; tick < 2; ++tick) {
+    const std::uint32_t count = tick == 0 ? 1000 : 1;
+    v1::World message;
+    v1::ExactState exact;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      auto& entity = *message.add_entities();
+      entity.set_id("of" + std::to_string(tick));
+      entity.set_kind(v1::World::Entity::BOX);
+      entity.set_first_link(i);
+      entity.set_reference_link(i);
+      entity.set_link_count(1);
+      message.add_links()->set_entity(i);
+      for (int k = 0; k < 13; ++k) exact.add_values(k);
+    }
+    exact.set_tick(tick);
+    exact.set_is_complete(true);
+    writer.write(world, tick, tick, message.SerializeAsString());
+    writer.write(state, tick, tick, exact.SerializeAsString());
+  }
+  writer.close();
+  const RecordingFile file("hostile", mcap::bytes_of(bytes));
+  EXPECT_EQ(export_csv(file, path("out.csv")), 2u);
+  std::ifstream lines(path("out.csv"));
+  std::string line, last;
+  int count = 0;
+  for (; std::getline(lines, line); ++count) last = line;
+  EXPECT_EQ(count, 1 + 1000 + 1);
+  EXPECT_TRUE(last.starts_with("1,")) << last;
+  EXPECT_NE(last.find(",of1,"), std::string::npos) << last;
 }
 
 TEST_F(Disk, MessagesBecomeLines) {
