@@ -170,6 +170,17 @@ void aim_rebounds(Problem& problem) {
   }
 }
 
+/// Whether two contacts press a tree from opposite sides: it can't be where both would have it rebound to.
+bool squeeze(const Block& one, const Block& other) {
+  constexpr double opposite = -0.5;  // cosine of the angle between them
+  const auto side = [](const Block& block, int tree) { return block.a == tree ? 1.0 : block.b == tree ? -1.0 : 0.0; };
+  for (const int tree : {one.a, one.b}) {
+    if (tree < 0) continue;
+    if (side(one, tree) * side(other, tree) * one.frame.col(0).dot(other.frame.col(0)) < opposite) return true;
+  }
+  return false;
+}
+
 /// Lets contacts with restitution that something sets in motion towards each other within the substep rebound, too: as from the speed
 /// that they would have without each other, from the beginning on.
 /// @param problem  solved
@@ -178,7 +189,9 @@ bool aim_what_is_thrown(Problem& problem, Solver& solver) {
   std::vector<Block*> thrown;
   for (Block& block : problem.blocks) {
     const bool rebounds = block.kind == Block::Source::contact && block.restitution > 0 && !block.bounces;
-    if (rebounds && block.impulse[0] > 0 && block.gap > slow_impact * problem.length) thrown.push_back(&block);
+    if (!rebounds || block.impulse[0] == 0 || block.gap <= slow_impact * problem.length) continue;
+    const auto squeezes = [&](const Block& other) { return other.bounces && squeeze(block, other); };
+    if (std::ranges::none_of(problem.blocks, squeezes)) thrown.push_back(&block);
   }
   if (thrown.empty()) return false;
   for (Block* block : thrown) {
