@@ -2,10 +2,13 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -119,13 +122,13 @@ int run_and_report(const lua::ProgramOptions& options) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  text::open_standard_streams();
+  text::prepare_output();
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   try {
     const auto request = lua::read_arguments(count, arguments, ::isatty(STDOUT_FILENO) != 0);
     if (!request.text.empty()) {
-      std::fputs(request.text.c_str(), stdout);
-      return exit_finished;
+      if (std::fputs(request.text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return exit_finished;
+      throw std::runtime_error(std::string("stdout cannot be written: ") + std::strerror(errno));
     }
     lua::take_terminal(!request.options.trusts_scripts);
     lua::handle_signals();
