@@ -4,14 +4,15 @@
 #include <cstddef>
 #include <string_view>
 
+#include "ziggurat/v1/cost.h"
+
 namespace ziggurat::wire {
 
 /// Fields of a message, those of messages in it included; arrays count as one. A Command may have fewer:
 /// see CommandLimits.
 inline constexpr std::size_t most_fields = std::size_t{1} << 18;
 
-/// So many bytes of text, or numbers of a list that have no fixed size, count as one field.
-inline constexpr std::size_t bytes_per_field = 16;
+using v1::bytes_per_field;
 
 /// How many fields a ClientMessage in binary form has; it stops counting beyond `most_fields`.
 /// Decoding takes up to about 100 bytes of memory for each.

@@ -61,7 +61,8 @@ std::unique_ptr<Session> begin(Options wanted, bool has_list) {
       return std::make_unique<Session>(wanted);
     } catch (const ProtocolError& error) {
       const bool has_left = error.details().code == "NOT_YOURS";
-      if (!has_list || !has_left || std::erase(wanted.robots, error.details().robot) == 0) throw;
+      const auto is_it = [&](const std::string& id) { return text::printable_part(id) == error.details().robot; };
+      if (!has_list || !has_left || std::erase_if(wanted.robots, is_it) == 0) throw;
       if (wanted.robots.empty()) return nullptr;
     }
   }
@@ -94,7 +95,7 @@ int direct(const lua::ProgramOptions& options) {
   Director director(wanted);
   if (!options.quiet) {
     std::fprintf(stderr, "ziggurat-lua: directs as '%s' at %s, seed %llu\n",
-                 text::printable(director.id()).c_str(), options.endpoint.c_str(), static_cast<unsigned long long>(director.seed()));
+                 text::printable_part(director.id()).c_str(), options.endpoint.c_str(), static_cast<unsigned long long>(director.seed()));
   }
   const bool is_well = lua::run_director(director, options);
   return exit_code(director.ending(), !is_well, options);
@@ -105,7 +106,7 @@ int run(const lua::ProgramOptions& options) {
 }
 
 void report(const std::exception& error) {
-  std::fprintf(stderr, "ziggurat-lua: %s\n", text::printable(error.what()).c_str());
+  std::fprintf(stderr, "ziggurat-lua: %s\n", text::printable_part(error.what()).c_str());
 }
 
 /// The same for one of several robots.
