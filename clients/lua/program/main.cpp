@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "program/director_runner.h"
+#include "program/file_share.h"
 #include "program/host.h"
 #include "program/options.h"
 #include "program/runner.h"
@@ -133,6 +134,7 @@ int main(int count, char** arguments) {
     }
     lua::take_terminal(!request.options.trusts_scripts);
     lua::handle_signals();
+    lua::open_more_files();
     lua::watch_scripts();
     const auto& options = request.options;
     if (!options.place_file.empty()) lua::open_place_file(options.place_file);

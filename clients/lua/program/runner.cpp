@@ -3,6 +3,7 @@
 #include <new>
 
 #include "program/echo.h"
+#include "program/file_share.h"
 #include "program/find_script.h"
 #include "program/terminal.h"
 #include "program/turn.h"
@@ -50,6 +51,7 @@ void Runner::start(Seat& seat) {
         *seat.robot, ScriptOptions{script.path, session_.seed(), session_.tick(),
                                        options_.max_memory, options_.max_instructions, options_.max_computing,
                                        options_.trusts_scripts ? nullptr : &folders_,
+                                       share_of_files(seats_.size()),
                                        regions_[static_cast<std::size_t>(&seat - seats_.data())]});
   } catch (const std::bad_alloc&) {
     return fail(seat, "no memory for a Lua state");
