@@ -13,9 +13,9 @@ namespace ziggurat {
 namespace {
 
 // A message is decoded up to these: a hostile one of a few bytes for each field would take all memory. Welcomes of
-// ten thousand robots with a hundred fields each are a quarter of that.
+// ten thousand robots with a hundred fields each are half of that.
 constexpr std::size_t longest_welcome = std::size_t{64} << 20;  // and of all else that is sent once [bytes]
-constexpr std::size_t most_fields = std::size_t{1} << 22;
+constexpr std::size_t most_fields = std::size_t{1} << 21;
 constexpr std::size_t cheap = std::size_t{1} << 20;  // so few bytes have few fields
 
 /// What is wrong with the cost of a message; empty: nothing.

@@ -157,7 +157,7 @@ void Supervisor::State::open() {
       throw to_exception(connection.message().refusal().error());
     }
     if (kind == Connection::Kind::kWelcome) {
-      return check_version(connection.message().welcome(), options.endpoint);
+      return check_welcome(connection.message().welcome(), options.endpoint);
     }
   }
 }

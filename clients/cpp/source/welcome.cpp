@@ -56,7 +56,7 @@ void SessionCore::open() {
       continue;  // still loading, or a message of a later version
     }
     const v1::Welcome& welcome = connection.message().welcome();
-    check_version(welcome, options.endpoint);
+    check_welcome(welcome, options.endpoint);
     read(welcome);
     try {
       part.begin(welcome);
@@ -78,7 +78,12 @@ void SessionCore::read(const v1::Welcome& welcome) {
   connection.begin_session(longest_silence(welcome, options));
 }
 
-void check_version(const v1::Welcome& welcome, const std::string& endpoint) {
+void check_welcome(const v1::Welcome& welcome, const std::string& endpoint) {
+  constexpr int most_robots = 1 << 18;
+  if (welcome.robots_size() > most_robots) {
+    throw ConnectionError(endpoint + ": the server sent " + std::to_string(welcome.robots_size()) +
+                          " robots; this client takes " + std::to_string(most_robots) + " at most");
+  }
   const v1::Version& theirs = welcome.version();
   if (theirs.major() == version_major) return;
   throw ConnectionError(endpoint + ": the server speaks version " + std::to_string(theirs.major()) + "." +

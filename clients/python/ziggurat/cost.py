@@ -8,7 +8,8 @@ from . import protocol_pb2 as v1
 
 CHEAP = 1 << 20  # [bytes]; so few have few fields
 LONGEST_WELCOME = 64 << 20  # and of all else that is sent once [bytes]
-MOST_FIELDS = 1 << 22  # Welcomes of ten thousand robots with a hundred fields each have a quarter of that
+MOST_FIELDS = 1 << 21  # Welcomes of ten thousand robots with a hundred fields each have half of that
+MOST_ROBOTS = 1 << 18
 _OFTEN = tuple(bytes([v1.ServerMessage.DESCRIPTOR.fields_by_name[name].number << 3 | 2])
                for name in ("observation", "world_state"))  # a tag of one byte
 

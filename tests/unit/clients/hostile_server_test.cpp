@@ -91,8 +91,10 @@ TEST(HostileServer, DecodesNoWelcomeThatCouldTakeAllMemory) {
     }
     return bytes + welcome;
   };
-  for (int i = 0; i < (1 << 22); ++i) robots.append("\x52\x00", 2);
-  expect_no_session(message(robots), "more than 4194304 fields");
+  for (int i = 0; i < (1 << 18); ++i) robots.append("\x52\x00", 2);
+  expect_no_session(message(robots), "this client takes 262144 at most");
+  for (int i = 0; i < (1 << 21); ++i) robots.append("\x52\x00", 2);
+  expect_no_session(message(robots), "more than 2097152 fields");
   expect_no_session(message(std::string(65 << 20, '\x52')), "bytes, more than 67108864");
 }
 

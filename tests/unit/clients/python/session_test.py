@@ -150,11 +150,15 @@ class Lies(SessionCase):
 
     def test_a_welcome_that_could_take_all_memory_is_not_decoded(self):
         other = welcome(equipped("a")).SerializeToString()
-        robots = other + b"\x52\x00" * ((1 << 22) + 1)
-        length = len(robots)
-        header = b"\x0a" + bytes(length >> shift & 0x7F | (0x80 if length >> shift + 7 else 0)
-                                 for shift in (0, 7, 14, 21) if length >> shift)
-        self.assertIn("more than 4194304 fields", self.refused(header + robots))
+
+        def with_robots(count):
+            robots = other + b"\x52\x00" * count
+            length = len(robots)
+            return b"\x0a" + bytes(length >> shift & 0x7F | (0x80 if length >> shift + 7 else 0)
+                                   for shift in (0, 7, 14, 21) if length >> shift) + robots
+
+        self.assertIn("this client takes 262144 at most", self.refused(with_robots(1 << 18)))
+        self.assertIn("more than 2097152 fields", self.refused(with_robots(1 << 21)))
         self.assertIn("bytes, more than 67108864", self.refused(b"\x0a" * (65 << 20)))
 
     def test_the_json_client_ends_with_a_sentence(self):
