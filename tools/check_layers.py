@@ -45,7 +45,7 @@ MODULES = {
     "cli": ["sweep", "run", "replay", "recorder", "mcap", "recording", "reports", "processes", "network", "simulation", "physics",
             "magnetism", "scene",
             "text", "clients/cpp"],
-    "clients/cpp": ["protocol"],
+    "clients/cpp": ["protocol", "text"],
     "clients/lua": ["text", "clients/cpp"],
 }
 

@@ -29,7 +29,7 @@ class Lost(Exception):
 
 def tell(text):
     """A text of the server, without characters that a terminal would obey."""
-    print("".join(c if c.isprintable() else f"\\u{ord(c):04x}" for c in text), file=sys.stderr)
+    print("".join(c if c.isprintable() else f"\\u{ord(c):04x}" for c in text[:1000]), file=sys.stderr)
 
 
 class Connection:
@@ -112,6 +112,9 @@ class Controller:
         return code
 
     def take_welcome(self, welcome):
+        if welcome["version"]["major"] != 1:
+            tell(f"the server speaks version {welcome['version']['major']} of the protocol, this client 1")
+            return 1
         self.token = welcome["sessionToken"]
         beat = welcome["wallHeartbeatMs"] / 1000
         # The end of a local connection is always told: a server that is silent there is slow.
@@ -119,6 +122,7 @@ class Controller:
         self.silence = max(3.0, 3 * beat) if is_watched else float("inf")
         self.targets = [1.0 if motor["mode"] == "VELOCITY" else 0.0
                         for robot in welcome["robots"] for motor in robot["jointActuators"]]
+        return None
 
     def take_observation(self, observation):
         is_same = all(self.command.get(name) == observation.get(name) for name in ("tick", "epoch"))

@@ -8,6 +8,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/html_export.h"
+#include "cli/whole_file.h"
 #include "network/glob.h"
 #include "recording/output_name.h"
 #include "replay/export.h"
@@ -33,11 +34,17 @@ bool is_wanted(const Order& order, const std::string& topic) {
 }
 
 std::string to_csv(const Order& order) {
-  return fmt::format("{} states", replay::export_csv(order.file, order.out));
+  WholeFile out(order.out);
+  const auto states = replay::export_csv(order.file, out.path());
+  out.keep();
+  return fmt::format("{} states", states);
 }
 std::string to_jsonl(const Order& order) {
   const auto wanted = [&](const std::string& topic) { return is_wanted(order, topic); };
-  return fmt::format("{} messages", replay::export_jsonl(order.file, wanted, order.out));
+  WholeFile out(order.out);
+  const auto messages = replay::export_jsonl(order.file, wanted, out.path());
+  out.keep();
+  return fmt::format("{} messages", messages);
 }
 std::string to_html(const Order& order) {
   const auto size = export_html(run::page_folder() + "/player.html", order.file.path(), order.out);

@@ -7,6 +7,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/whole_file.h"
 #include "mcap/repair.h"
 #include "mcap/scan.h"
 #include "recorder/disk.h"
@@ -183,10 +184,12 @@ Examined examine(const std::string& path, const mcap::Source& source, const mcap
 
 void write_repaired(const std::string& path, const mcap::Reader& reader, const std::string& out,
                     reports::Console& console) {
-  recorder::Disk disk(out);
+  WholeFile whole(out);
+  recorder::Disk disk(whole.path());
   const mcap::Repaired repaired =
       mcap::repair(reader, [&](std::string_view bytes) { disk.write(bytes); });
   disk.close();
+  whole.keep();
   for (const auto& fault : repaired.lost) {
     console.warning(fmt::format("{}: byte {}: {}; it is left out", shown(path), fault.offset,
                                 shown(fault.text)));

@@ -11,6 +11,8 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "cli/whole_file.h"
+
 namespace ziggurat::cli {
 namespace {
 
@@ -137,21 +139,12 @@ std::uint64_t export_html(const std::string& player, const std::string& recordin
     if (!std::cout.flush()) fail(fmt::format("stdout can't be written: {}", std::strerror(errno)));
     return size;
   }
-  std::error_code error;
-  // A pipe or a device, as behind /dev/stdout, is written to; another file would take the place of its name.
-  const bool is_file = !fs::exists(out, error) || fs::is_regular_file(out, error);
-  const std::string target = fs::is_symlink(out, error) ? fs::weakly_canonical(out, error).string() : out;
-  const std::string part = is_file ? target + ".part" : out;
-  std::ofstream file(part, std::ios::binary | std::ios::trunc);
+  WholeFile whole(out);
+  std::ofstream file(whole.path(), std::ios::binary | std::ios::trunc);
   const std::uint64_t size = write_page(page, name, bytes, file);
   file.close();
-  if (!file || bytes.bad()) {
-    const std::string reason = std::strerror(errno);
-    if (is_file) fs::remove(part, error);
-    fail(fmt::format("{} can't be written: {}", out, reason));
-  }
-  if (is_file) fs::rename(part, target, error);
-  if (error) fail(fmt::format("{} can't be written: {}", out, error.message()));
+  if (!file || bytes.bad()) fail(fmt::format("{} can't be written: {}", out, std::strerror(errno)));
+  whole.keep();
   return size;
 }
 

@@ -31,7 +31,16 @@ bool asks_for_help(const Arguments& arguments) {
                      [](const auto& each) { return each == "--help" || each == "-h"; });
 }
 
+/// Over a console of its own, as commands do: that of main() then can tell that stdout takes nothing.
+int tell_version() {
+  reports::Console console;
+  console.result(std::string("ziggurat ") + run::version);
+  console.flush();
+  return exit_code::finished;
+}
+
 int execute(const Command& command, const Arguments& arguments, std::span<char*> texts) {
+  processes::check_stack();
   if (const auto* plain = std::get_if<Execute>(&command.execute)) return (*plain)(arguments);
   processes::check_limits();
   processes::Guardian guardian(texts);
@@ -47,11 +56,7 @@ int dispatch(Arguments arguments, std::span<char*> texts, reports::Console& cons
   }
   const std::string name = arguments.front();
   arguments.erase(arguments.begin());
-  if (name == "--version") {
-    console.result(std::string("ziggurat ") + run::version);
-    console.flush();
-    return exit_code::finished;
-  }
+  if (name == "--version") return tell_version();
   if (name == "--help" || name == "-h") return execute_help({});
   const Command& command = command_named(name);
   if (asks_for_help(arguments)) return execute_help({name});
@@ -63,7 +68,7 @@ int dispatch(Arguments arguments, std::span<char*> texts, reports::Console& cons
 
 int main(int count, char** texts) {
   using namespace ziggurat;
-  text::open_standard_streams();
+  text::prepare_output();
   const cli::Arguments arguments(texts + std::min(count, 1), texts + count);
   reports::Console::Style style;
   style.json = std::ranges::find(arguments, "--json") != arguments.end();

@@ -181,10 +181,18 @@ bool squeeze(const Block& one, const Block& other) {
   return false;
 }
 
+/// Whether a servo of a solved problem gives all that it has, or a limit holds: then what moves fast is not so for the whole substep.
+bool is_strained(const Problem& problem) {
+  return std::ranges::any_of(problem.blocks, [](const Block& block) {
+    return (block.kind == Block::Source::servo && block.impulse[0] != 0 && !block.is_obeyed()) ||
+           (block.kind == Block::Source::limit && block.impulse[0] > 0);
+  });
+}
+
 /// Lets contacts with restitution that something sets in motion towards each other within the substep rebound, too: as from the speed
 /// that they would have without each other, from the beginning on.
 /// @param problem  solved
-/// @return         whether there are such
+/// @return         whether it must be solved again
 bool aim_what_is_thrown(Problem& problem, Solver& solver) {
   std::vector<Block*> thrown;
   for (Block& block : problem.blocks) {
@@ -193,27 +201,28 @@ bool aim_what_is_thrown(Problem& problem, Solver& solver) {
     const auto squeezes = [&](const Block& other) { return other.bounces && squeeze(block, other); };
     if (std::ranges::none_of(problem.blocks, squeezes)) thrown.push_back(&block);
   }
-  if (thrown.empty()) return false;
+  if (thrown.empty() || is_strained(problem)) return false;
   for (Block* block : thrown) {
     block->law = Block::Law::off;
     block->impulse.fill(0);
   }
   solver.solve(problem);
-  bool any = false;
+  const bool is_known = !is_strained(problem);
   for (Block* block : thrown) {
     block->law = Block::Law::contact;
+    if (!is_known) continue;
     double u[Block::most_rows];
     problem.speeds(*block, u);
     const double time = u[0] < -slow_impact ? -block->gap / u[0] : HUGE_VAL, rest = problem.length - time;
     if (rest <= 0) continue;
-    block->bounces = any = true;
+    block->bounces = true;
     block->yield = 0;
     block->met = time;
     block->before = u[0];
     block->seek[0] = -block->restitution * u[0];
     block->rise = rest * block->seek[0];
   }
-  return any;
+  return true;
 }
 
 }  // namespace

@@ -47,7 +47,8 @@ double work_of_servos(const Problem& problem, const Snapshot& without) {
     const double* after = problem.velocity.data() + problem.offset[block.a];
     const double usual = without.impulses[i][0], more = block.impulse[0] - usual;
     for (const int k : block.dofs_a) {
-      sum += problem.jacobian[block.ja + k] * (usual * (before[k] + after[k]) / 2 + more * after[k]);
+      const double along = problem.jacobian[block.ja + k], most = usual * along * after[k];  // it may be stopped at once, as by a limit
+      sum += std::min(usual * along * (before[k] + after[k]) / 2, most) + more * along * after[k];
     }
   }
   return sum;

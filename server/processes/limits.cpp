@@ -1,7 +1,6 @@
 #include "processes/limits.h"
 
 #include <fmt/format.h>
-#include <signal.h>
 #include <sys/resource.h>
 
 #include <stdexcept>
@@ -21,8 +20,17 @@ constexpr rlim_t kibibyte = 1024;
 constexpr Need needs[] = {
     {RLIMIT_NOFILE, 64, 1, "open files", "-n"},
     {RLIMIT_AS, rlim_t{512} << 20, kibibyte, "KiB of address space", "-v"},
-    {RLIMIT_STACK, rlim_t{1} << 20, kibibyte, "KiB of stack", "-s"},
 };
+constexpr Need stack{RLIMIT_STACK, rlim_t{1} << 20, kibibyte, "KiB of stack", "-s"};
+
+void check(const Need& need) {
+  rlimit limit;
+  if (::getrlimit(need.resource, &limit) != 0 || limit.rlim_cur >= need.least) return;
+  throw std::runtime_error(fmt::format(
+      "the system allows this program {} {}; it needs {} or more; write: ulimit {} {}",
+      limit.rlim_cur / need.unit, need.name, need.least / need.unit, need.option,
+      need.least / need.unit));
+}
 
 }  // namespace
 
@@ -33,16 +41,11 @@ void allow_many_files() {
   (void)::setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+void check_stack() { check(stack); }
+
 void check_limits() {
-  ::signal(SIGXFSZ, SIG_IGN);
-  for (const Need& need : needs) {
-    rlimit limit;
-    if (::getrlimit(need.resource, &limit) != 0 || limit.rlim_cur >= need.least) continue;
-    throw std::runtime_error(fmt::format(
-        "the system allows this program {} {}; it needs {} or more; write: ulimit {} {}",
-        limit.rlim_cur / need.unit, need.name, need.least / need.unit, need.option,
-        need.least / need.unit));
-  }
+  check_stack();
+  for (const Need& need : needs) check(need);
 }
 
 }  // namespace ziggurat::processes

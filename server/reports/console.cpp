@@ -78,7 +78,7 @@ void Console::notice(std::string_view text) {
 
 void Console::message(std::string_view severity, std::string_view text) {
   const bool fault = severity == "fault";
-  if (style_.json) return to_stderr(json_text({{"severity", severity}, {"text", text}}), fault);
+  if (style_.json) return to_stderr(text::printable_json(json_text({{"severity", severity}, {"text", text}})), fault);
   to_stderr(fmt::format("{}ziggurat: {}{}{}", color_error_ && fault ? red : "",
                         fault ? "" : fmt::format("{}: ", severity), text::printable(text),
                         color_error_ && fault ? plain : ""),
@@ -89,11 +89,11 @@ void Console::problem(const scene::Problem& problem) {
   const bool fault = problem.severity == scene::Problem::Severity::fault;
   if (!fault && style_.quiet) return;
   if (style_.json) {
-    return to_stderr(json_text({{"severity", scene::to_text(problem.severity)},
-                           {"file", problem.file},
-                           {"line", problem.where.line},
-                           {"column", problem.where.column},
-                           {"text", scene::text_of(problem)}}));
+    return to_stderr(text::printable_json(json_text({{"severity", scene::to_text(problem.severity)},
+                                                     {"file", problem.file},
+                                                     {"line", problem.where.line},
+                                                     {"column", problem.where.column},
+                                                     {"text", scene::text_of(problem)}})));
   }
   const std::string kind = fault ? "" : fmt::format("{}: ", scene::to_text(problem.severity));
   to_stderr(text::printable(kind + to_string(problem)));

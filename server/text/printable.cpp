@@ -1,11 +1,9 @@
 #include "text/printable.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
+#include <cstdio>
 
 namespace ziggurat::text {
 namespace {
@@ -65,6 +63,36 @@ bool is_unseen(char32_t code) {
   return std::ranges::any_of(unseen, [=](Range range) { return range.first <= code && code <= range.last; });
 }
 
+/// A character that is not plain; empty: a byte that is none.
+std::string shown(std::string_view character, bool is_json = false) {
+  if (character.empty()) return "\xef\xbf\xbd";
+  const char32_t code = code_of(character);
+  if (character.size() > 1 && !is_unseen(code)) return std::string(character);
+  std::array<char, 16> escaped;
+  if (is_json && code > 0xffff) {  // half of it each
+    const unsigned rest = code - 0x10000;
+    std::snprintf(escaped.data(), escaped.size(), "\\u%04x\\u%04x", 0xd800 | rest >> 10, 0xdc00 | (rest & 0x3ff));
+  } else {
+    std::snprintf(escaped.data(), escaped.size(), "\\u%04x", static_cast<unsigned>(code));
+  }
+  return escaped.data();
+}
+
+std::string all_shown(std::string_view text, bool is_json) {
+  std::string result;
+  result.reserve(text.size());
+  while (!text.empty()) {
+    const auto plain = std::ranges::find_if_not(text, is_plain) - text.begin();
+    result.append(text.substr(0, static_cast<std::size_t>(plain)));
+    text.remove_prefix(static_cast<std::size_t>(plain));
+    if (text.empty()) break;
+    const std::size_t length = length_of_character(text);
+    result += shown(text.substr(0, length), is_json);
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return result;
+}
+
 }  // namespace
 
 bool is_utf8(std::string_view text) {
@@ -85,26 +113,22 @@ std::string indented(std::string_view text) {
   return result;
 }
 
-std::string printable(std::string_view text) {
-  std::string result;
-  result.reserve(text.size());
-  while (!text.empty()) {
-    const auto plain = std::ranges::find_if_not(text, is_plain) - text.begin();
-    result.append(text.substr(0, static_cast<std::size_t>(plain)));
-    text.remove_prefix(static_cast<std::size_t>(plain));
-    if (text.empty()) break;
+std::string printable(std::string_view text) { return all_shown(text, false); }
+
+std::string printable_json(std::string_view json) { return all_shown(json, true); }
+
+std::string printable_part(std::string_view text, std::size_t most) {
+  constexpr std::string_view more = "\u2026";
+  std::string result = printable(text.substr(0, most + 1));  // a character that is cut is beyond the part
+  if (result.size() <= most) return result;
+  result.clear();
+  for (;;) {
     const std::size_t length = length_of_character(text);
-    const char32_t code = code_of(text.substr(0, length));
-    if (length == 0) {
-      result += "\xef\xbf\xbd";
-    } else if (length == 1 || is_unseen(code)) {
-      result += fmt::format("\\u{:04x}", static_cast<std::uint32_t>(code));
-    } else {
-      result.append(text.substr(0, length));
-    }
+    const std::string next = is_plain(text[0]) ? std::string(1, text[0]) : shown(text.substr(0, length));
+    if (result.size() + next.size() + more.size() > most) return result.append(more);
+    result += next;
     text.remove_prefix(std::max<std::size_t>(length, 1));
   }
-  return result;
 }
 
 }  // namespace ziggurat::text

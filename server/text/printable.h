@@ -1,6 +1,7 @@
 #pragma once
 // Texts of peers, for a terminal.
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -10,6 +11,13 @@ namespace ziggurat::text {
 /// the order of what follows or are not seen: escape sequences have no effect on a terminal, and two names
 /// that differ look different. Bytes that are not UTF-8 become U+FFFD.
 std::string printable(std::string_view text);
+
+/// The same for JSON, in which a character beyond U+FFFF is written as two numbers.
+std::string printable_json(std::string_view json);
+
+/// Of a longer text its beginning, and "…": what a peer may make a program print.
+/// @param most  bytes of the result
+std::string printable_part(std::string_view text, std::size_t most = 4096);
 
 /// The text with four spaces before each line but the first: none of them looks like one of the program's own.
 std::string indented(std::string_view text);

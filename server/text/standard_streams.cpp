@@ -1,9 +1,15 @@
 #include "text/standard_streams.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <unistd.h>
 
 namespace ziggurat::text {
+
+void prepare_output() {
+  open_standard_streams();
+  ::signal(SIGXFSZ, SIG_IGN);
+}
 
 void open_standard_streams() {
   int file = 0;

@@ -279,6 +279,33 @@ class BrokenArguments(SceneTest):
         self.assertEqual(outcome.code, FAULT, outcome.err)
         self.assert_is_sentence(outcome, r"t\.csv: cannot be written: File too large")
 
+    def limited(self, option, value, *arguments, stdout=subprocess.PIPE):
+        return self.finish(subprocess.Popen(
+            ["sh", "-c", f'ulimit {option} {value} && exec "$@"', "sh", ZIGGURAT, *arguments], cwd=self.folder,
+            env=self.environment, text=True, stdout=stdout, stderr=subprocess.PIPE))
+
+    def test_a_limit_of_file_sizes_is_an_error_of_writing_for_every_command(self):
+        self.assertEqual(self.ziggurat("run", self.scene, "--ticks", 20, "--record", "r.mcap", "--quiet").code, FINISHED)
+        for arguments in (("info", "r.mcap", "--repair", "s.mcap"), ("export", "r.mcap", "--csv", "c.csv"),
+                          ("export", "r.mcap", "--jsonl", "c.jsonl")):
+            with self.subTest(arguments):
+                outcome = self.limited("-f", 0, *arguments)
+                self.assertEqual(outcome.code, FAULT, outcome.err)
+                self.assertIn("File too large", outcome.err)
+        for arguments in (("info", "r.mcap"), ("help",), ("--version",), ("check", self.scene, "--json"),
+                          ("diff", "r.mcap", "r.mcap", "--json"), ("export", "r.mcap", "--csv", "-")):
+            with self.subTest(arguments), open(self.folder / "out", "w") as out:
+                outcome = self.limited("-f", 0, *arguments, stdout=out)
+                self.assertEqual(outcome.code, FAULT, outcome.err)
+                self.assertIn("File too large", outcome.err)
+        self.assertEqual([each.name for each in self.folder.glob("[cs].*")], [])
+
+    def test_a_limit_of_the_stack_is_told_by_every_command(self):
+        for arguments in (("check", self.scene), ("info", "r.mcap"), ("diff", "r.mcap", "s.mcap")):
+            outcome = self.limited("-s", 64, *arguments)
+            self.assertEqual(outcome.code, FAULT, outcome.err)
+            self.assert_is_sentence(outcome, r"64 KiB of stack; it needs 1024 or more; write: ulimit -s")
+
     def test_full_disk(self):
         for option in ("--trace", "--readings", "--hash-file", "--summary"):
             self.refuses(r"/dev/full.*No space left", "run", self.scene, option, "/dev/full")

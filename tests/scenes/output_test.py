@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import pathlib
 import pty
 import re
 import subprocess
@@ -279,6 +280,16 @@ side_length="0.05" payload="hello"/></tags></devices>
                 outcome = self.ziggurat(*arguments)
                 self.assertEqual(outcome.code, FINISHED)
                 self.assertIn("usage: ziggurat", outcome.out)
+
+
+    def test_version_and_help_to_a_full_disk(self):
+        lua = pathlib.Path(ZIGGURAT).with_name("ziggurat-lua")
+        for command in ([ZIGGURAT, "--version"], [ZIGGURAT, "--help"], [ZIGGURAT, "help"], [ZIGGURAT, "help", "run"],
+                        [lua, "--version"], [lua, "--help"]):
+            with self.subTest(command), open("/dev/full", "w") as full:
+                ended = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, timeout=20)
+                self.assertEqual(ended.returncode, FAULT)
+                self.assertRegex(ended.stderr, r"^ziggurat(-lua)?: stdout cannot be written: No space left on device\n$")
 
 
 class Progress(SceneTest):

@@ -1,12 +1,35 @@
 // Parsing of the frames from the server; no sockets.
 
 #include <limits>
+#include <string>
 
 #include "connection.h"
 #include "ziggurat/error.h"
+#include "ziggurat/v1/extent.h"
 #include "ziggurat/v1/envelope.h"
 
 namespace ziggurat {
+
+namespace {
+
+// A message is decoded up to these: a hostile one of a few bytes for each field would take all memory. Welcomes of
+// ten thousand robots with a hundred fields each are half of that.
+constexpr std::size_t longest_welcome = std::size_t{64} << 20;  // and of all else that is sent once [bytes]
+constexpr std::size_t most_fields = std::size_t{1} << 21;
+constexpr std::size_t cheap = std::size_t{1} << 20;  // so few bytes have few fields
+
+/// What is wrong with the cost of a message; empty: nothing.
+std::string excess(std::string_view content, const google::protobuf::Message& message) {
+  if (content.size() <= cheap) return {};
+  const auto& type = *message.GetDescriptor();
+  if (&type == v1::ServerMessage::descriptor() && content.size() > longest_welcome) {
+    return "a message of " + std::to_string(content.size()) + " bytes, more than " + std::to_string(longest_welcome);
+  }
+  if (v1::count_fields(content, type, most_fields) <= most_fields) return {};
+  return "a message of more than " + std::to_string(most_fields) + " fields";
+}
+
+}  // namespace
 
 /// Protobuf keeps memory for the largest value that each part ever had: after many bytes the
 /// long-lived messages release it.
@@ -23,7 +46,7 @@ Connection::Kind Connection::parse() {
   silence_ = std::chrono::milliseconds{0};
   const std::string_view bytes = transport_->content();
   std::string_view content = bytes;
-  google::protobuf::MessageLite* message = &message_;
+  google::protobuf::Message* message = &message_;
   Kind kind = Kind::MESSAGE_NOT_SET;
   if (const auto observation = v1::sole_field(bytes, v1::ServerMessage::kObservationFieldNumber)) {
     content = *observation;
@@ -35,6 +58,9 @@ Connection::Kind Connection::parse() {
     kind = Kind::kWorldState;
   }
   if (message != &message_) forget(content.size());
+  if (const std::string fault = excess(content, *message); !fault.empty()) {
+    throw ConnectionError(options_.endpoint + ": the server sent " + fault + ", which this client does not decode");
+  }
   constexpr std::size_t longest = std::numeric_limits<int>::max();
   if (transport_->has_more() || content.size() > longest ||
       !message->ParseFromArray(content.data(), static_cast<int>(content.size()))) {

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "metric.h"
+#include "text/printable.h"
 #include "ziggurat/error.h"
 #include "ziggurat/v1/envelope.h"
 
@@ -93,7 +94,8 @@ void Directing::move_metrics_to(google::protobuf::RepeatedPtrField<v1::Metric>& 
 void Directing::warn(const v1::Error& error) {
   constexpr std::size_t most = 1000;  // a client that does not ask for them keeps no more
   if (warnings_.size() == most) return;
-  warnings_.push_back(error.field().empty() ? error.message() : error.field() + ": " + error.message());
+  const std::string where = error.field().empty() ? "" : error.field() + ": ";
+  warnings_.push_back(text::printable_part(where + error.message()));
 }
 
 /// What was asked for and not yet sent was for the world before.

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "text/printable.h"
+
 namespace ziggurat {
 
 /// The device of that id among those of a robot.
@@ -22,7 +24,7 @@ auto& find(Devices& devices, std::string_view id, const std::string& robot,
   for (const auto& device : devices) {
     message += (&device == devices.data() ? "'" : ", '") + device.id() + "'";
   }
-  throw std::out_of_range(message);
+  throw std::out_of_range(text::printable_part(message));
 }
 
 }  // namespace ziggurat

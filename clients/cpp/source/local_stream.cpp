@@ -19,7 +19,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds between_tries{50};
 constexpr milliseconds longest_linger{1000};
 constexpr std::size_t least_free = 4096;    // of the input before a read [bytes]
-constexpr unsigned most_commands = 1000;    // one after the other, before a look at the time
+constexpr unsigned most_commands = 1000;    // or parts of a message, one after the other, before a look at the time
 constexpr std::size_t most_kept = 1 << 20;  // of a buffer that is empty [bytes]
 
 }  // namespace
@@ -211,13 +211,14 @@ bool LocalStream::wait(Clock::time_point end) {
 
 bool LocalStream::receive(milliseconds timeout) {
   const auto end = Clock::now() + timeout;
-  unsigned commands = 0;
+  unsigned commands = 0, reads = 0;
   for (;;) {
     while (stage_ != Stage::closed) {
       const Step step = take();
       if (step == Step::message) return true;
       if (step == Step::passed && ++commands > most_commands && Clock::now() > end) return false;
       if (step == Step::incomplete && (stage_ == Stage::closed || !fill())) break;
+      if (step == Step::incomplete && ++reads > most_commands && Clock::now() > end) return false;
     }
     if (stage_ == Stage::closed) {
       if (was_open_) return false;

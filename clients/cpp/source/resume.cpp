@@ -70,6 +70,7 @@ bool SessionCore::hear_welcome(Clock::time_point end) {
 }
 
 void SessionCore::go_on(const v1::Welcome& welcome) {
+  check_welcome(welcome, options.endpoint);
   try {
     part.go_on(welcome, failures);
   } catch (const ProtocolError&) {

@@ -4,6 +4,7 @@
 
 #include "controlling.h"
 #include "session_core.h"
+#include "text/printable.h"
 
 namespace ziggurat {
 
@@ -54,7 +55,7 @@ Robot& Session::robot(std::string_view id) {
   for (const Robot& robot : robots()) {
     message += (&robot == robots().data() ? "'" : ", '") + robot.id() + "'";
   }
-  throw std::out_of_range(message);
+  throw std::out_of_range(text::printable_part(message));
 }
 
 }  // namespace ziggurat

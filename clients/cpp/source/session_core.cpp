@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <stdexcept>
+
+#include "text/printable.h"
 #include "ziggurat/v1/envelope.h"
 
 namespace ziggurat {
@@ -154,7 +156,7 @@ void SessionCore::read(const v1::End& end) {
   Ending::Reason reason = Ending::Reason::failed;
   if (end.reason() == v1::End::FINISHED) reason = Ending::Reason::finished;
   if (end.reason() == v1::End::INTERRUPTED) reason = Ending::Reason::interrupted;
-  ending = Ending{reason, end.message(), end.tick()};
+  ending = Ending{reason, text::printable_part(end.message()), end.tick()};
 }
 
 void SessionCore::read(const v1::Reset& reset) {

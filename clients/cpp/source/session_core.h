@@ -82,6 +82,9 @@ struct SessionCore {
   bool is_resumed = false;       // the next message may be the last one again
 };
 
+/// @throws ConnectionError if the server speaks another major version of the protocol (H2), or names more robots than
+/// there can be handles for
+void check_welcome(const v1::Welcome& welcome, const std::string& endpoint);
 /// @throws ProtocolError if the message is a Refusal or an Error
 void check_not_refused(Connection::Kind kind, const v1::ServerMessage& message);
 

@@ -156,7 +156,9 @@ void Supervisor::State::open() {
     if (kind == Connection::Kind::kRefusal) {
       throw to_exception(connection.message().refusal().error());
     }
-    if (kind == Connection::Kind::kWelcome) break;
+    if (kind == Connection::Kind::kWelcome) {
+      return check_welcome(connection.message().welcome(), options.endpoint);
+    }
   }
 }
 

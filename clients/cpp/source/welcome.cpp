@@ -56,6 +56,7 @@ void SessionCore::open() {
       continue;  // still loading, or a message of a later version
     }
     const v1::Welcome& welcome = connection.message().welcome();
+    check_welcome(welcome, options.endpoint);
     read(welcome);
     try {
       part.begin(welcome);
@@ -75,6 +76,19 @@ void SessionCore::read(const v1::Welcome& welcome) {
   token = welcome.session_token();
   lease = std::chrono::milliseconds(welcome.wall_lease_ms());
   connection.begin_session(longest_silence(welcome, options));
+}
+
+void check_welcome(const v1::Welcome& welcome, const std::string& endpoint) {
+  constexpr int most_robots = 1 << 18;
+  if (welcome.robots_size() > most_robots) {
+    throw ConnectionError(endpoint + ": the server sent " + std::to_string(welcome.robots_size()) +
+                          " robots; this client takes " + std::to_string(most_robots) + " at most");
+  }
+  const v1::Version& theirs = welcome.version();
+  if (theirs.major() == version_major) return;
+  throw ConnectionError(endpoint + ": the server speaks version " + std::to_string(theirs.major()) + "." +
+                        std::to_string(theirs.minor()) + " of the protocol, this client " +
+                        std::to_string(version_major) + "." + std::to_string(version_minor));
 }
 
 void check_not_refused(Connection::Kind kind, const v1::ServerMessage& message) {

@@ -2,14 +2,18 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "program/director_runner.h"
+#include "program/file_share.h"
 #include "program/host.h"
 #include "program/options.h"
 #include "program/runner.h"
@@ -58,7 +62,8 @@ std::unique_ptr<Session> begin(Options wanted, bool has_list) {
       return std::make_unique<Session>(wanted);
     } catch (const ProtocolError& error) {
       const bool has_left = error.details().code == "NOT_YOURS";
-      if (!has_list || !has_left || std::erase(wanted.robots, error.details().robot) == 0) throw;
+      const auto is_it = [&](const std::string& id) { return text::printable_part(id) == error.details().robot; };
+      if (!has_list || !has_left || std::erase_if(wanted.robots, is_it) == 0) throw;
       if (wanted.robots.empty()) return nullptr;
     }
   }
@@ -91,7 +96,7 @@ int direct(const lua::ProgramOptions& options) {
   Director director(wanted);
   if (!options.quiet) {
     std::fprintf(stderr, "ziggurat-lua: directs as '%s' at %s, seed %llu\n",
-                 text::printable(director.id()).c_str(), options.endpoint.c_str(), static_cast<unsigned long long>(director.seed()));
+                 text::printable_part(director.id()).c_str(), options.endpoint.c_str(), static_cast<unsigned long long>(director.seed()));
   }
   const bool is_well = lua::run_director(director, options);
   return exit_code(director.ending(), !is_well, options);
@@ -102,7 +107,7 @@ int run(const lua::ProgramOptions& options) {
 }
 
 void report(const std::exception& error) {
-  std::fprintf(stderr, "ziggurat-lua: %s\n", text::printable(error.what()).c_str());
+  std::fprintf(stderr, "ziggurat-lua: %s\n", text::printable_part(error.what()).c_str());
 }
 
 /// The same for one of several robots.
@@ -119,16 +124,17 @@ int run_and_report(const lua::ProgramOptions& options) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  text::open_standard_streams();
+  text::prepare_output();
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   try {
     const auto request = lua::read_arguments(count, arguments, ::isatty(STDOUT_FILENO) != 0);
     if (!request.text.empty()) {
-      std::fputs(request.text.c_str(), stdout);
-      return exit_finished;
+      if (std::fputs(request.text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return exit_finished;
+      throw std::runtime_error(std::string("stdout cannot be written: ") + std::strerror(errno));
     }
     lua::take_terminal(!request.options.trusts_scripts);
     lua::handle_signals();
+    lua::open_more_files();
     lua::watch_scripts();
     const auto& options = request.options;
     if (!options.place_file.empty()) lua::open_place_file(options.place_file);

@@ -3,6 +3,7 @@
 #include <new>
 
 #include "program/echo.h"
+#include "program/file_share.h"
 #include "program/find_script.h"
 #include "program/terminal.h"
 #include "program/turn.h"
@@ -10,6 +11,13 @@
 #include "text/printable.h"
 
 namespace ziggurat::lua {
+namespace {
+
+// A server names the robots, and how many there are.
+constexpr std::size_t most_told = 100;
+constexpr std::size_t longest_id = 1024;
+
+}  // namespace
 
 Runner::Runner(ziggurat::Session& session, const ProgramOptions& options)
     : session_(session), options_(options), folders_(options.folders, options.exceptions), regions_(session.robots().size()) {
@@ -43,6 +51,7 @@ void Runner::start(Seat& seat) {
         *seat.robot, ScriptOptions{script.path, session_.seed(), session_.tick(),
                                        options_.max_memory, options_.max_instructions, options_.max_computing,
                                        options_.trusts_scripts ? nullptr : &folders_,
+                                       share_of_files(seats_.size()),
                                        regions_[static_cast<std::size_t>(&seat - seats_.data())]});
   } catch (const std::bad_alloc&) {
     return fail(seat, "no memory for a Lua state");
@@ -86,9 +95,13 @@ void Runner::fail(Seat& seat, const std::string& message) {
   if (are_scripts_interrupted()) return;
   ++failures_;
   seat.robot->fail(message);
-  if (options_.quiet) return;  // the server prints it
-  std::fprintf(stderr, "robot '%s': %s\n", text::printable(seat.robot->id()).c_str(),
-               text::printable(message).c_str());
+  if (options_.quiet || failures_ > most_told + 1) return;  // the server prints it
+  if (failures_ > most_told) {
+    std::fprintf(stderr, "ziggurat-lua: more robots fail; their messages are not printed here\n");
+    return;
+  }
+  std::fprintf(stderr, "robot '%s': %s\n", text::printable_part(seat.robot->id(), longest_id).c_str(),
+               text::printable_part(message).c_str());
 }
 
 }  // namespace ziggurat::lua

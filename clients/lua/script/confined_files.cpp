@@ -7,6 +7,7 @@
 
 #include "script/data_files.h"
 #include "script/guarded.h"
+#include "script/open_files.h"
 
 namespace ziggurat::lua {
 namespace {
@@ -44,11 +45,11 @@ void push_refusal_to_write(lua_State* state, const char* file) {
 }
 
 /// nil, a message and a number, as Lua returns them for a file that cannot be opened.
-template <void (*push)(lua_State*, const char*)>
+template <void (*push)(lua_State*, const char*), int number = EACCES>
 int refuse(lua_State* state, const char* file) {
   lua_pushnil(state);
   push(state, file);
-  lua_pushinteger(state, EACCES);
+  lua_pushinteger(state, number);
   return 3;
 }
 
@@ -64,8 +65,12 @@ int open(lua_State* state) {
   const char* const file = luaL_checkstring(state, 1);
   const char* const mode = luaL_optstring(state, 2, "r");
   const bool reads_only = std::strpbrk(mode, "wa+") == nullptr;
-  if (reads_only) return may_read(folders_of(state), file) ? call_original(state) : refuse<push_refusal>(state, file);
-  return may_write(folders_of(state), file) ? call_original(state) : refuse<push_refusal_to_write>(state, file);
+  if (reads_only && !may_read(folders_of(state), file)) return refuse<push_refusal>(state, file);
+  if (!reads_only && !may_write(folders_of(state), file)) return refuse<push_refusal_to_write>(state, file);
+  if (!may_open_file(state)) return refuse<push_too_many_files, EMFILE>(state, file);
+  const int results = call_original(state);
+  count_open_file(state, -results);
+  return results;
 }
 
 /// io.lines, io.input and io.output: a file, its name, or nothing.
@@ -74,8 +79,19 @@ int open_by_name(lua_State* state) {
   if (lua_isstring(state, 1)) {
     const char* const file = lua_tostring(state, 1);
     if (!may(folders_of(state), file)) return raise_refusal<push>(state, file);
+    if (!may_open_file(state)) return raise_refusal<push_too_many_files>(state, file);
   }
-  return call_original(state);
+  const bool opens = lua_isstring(state, 1) != 0;
+  const int results = call_original(state);
+  if (opens && lua_isfunction(state, -1)) {  // of io.lines: its file is its first value
+    if (lua_getupvalue(state, -1, 1) != nullptr) {
+      count_open_file(state, -1);
+      lua_pop(state, 1);
+    }
+  } else if (opens) {
+    count_open_file(state, -1);
+  }
+  return results;
 }
 
 /// os.remove and os.rename, of regular files only: a link that is moved could lead elsewhere.
@@ -130,7 +146,8 @@ void push_refusal(lua_State* state, const char* file) {
       file);
 }
 
-void confine_files(lua_State* state, const Folders& folders) {
+void confine_files(lua_State* state, const Folders& folders, std::size_t most_files) {
+  limit_open_files(state, most_files);
   lua_getglobal(state, LUA_IOLIBNAME);
   replace<open>(state, "open", folders);
   replace<open_by_name<may_read, push_refusal>>(state, "lines", folders);

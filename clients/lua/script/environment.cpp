@@ -57,7 +57,7 @@ void prepend_to_package_path(lua_State* state, const std::string& folder) {
 void open_libraries(lua_State* state, const Environment& environment) {
   luaL_openlibs(state);
   confine_libraries(state, environment.random.math_random);
-  if (environment.files != nullptr) confine(state, *environment.files);
+  if (environment.files != nullptr) confine(state, *environment.files, environment.most_files);
   prepend_to_package_path(state, environment.folder);
   lua_pushglobaltable(state);
   set_log_functions(state, environment.log);

@@ -1,6 +1,7 @@
 #pragma once
 // The globals of each script: the standard libraries, log, logerr.
 
+#include <cstddef>
 #include <cstdint>
 #include <lua.hpp>
 #include <string>
@@ -27,6 +28,7 @@ struct Environment {
   RandomStreams& random;
   const std::string& folder;  ///< of the script; the first place to search for modules
   const Folders* files;       ///< those that the script may use; null: it is trusted
+  std::size_t most_files;     ///< that it may have open at once, unless it is trusted
 };
 
 /// Opens the libraries, and sets log and logerr. May raise a Lua error.

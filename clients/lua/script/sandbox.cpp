@@ -73,7 +73,7 @@ int set_metatable(lua_State* state) {
 
 }  // namespace
 
-void confine(lua_State* state, const Folders& folders) {
+void confine(lua_State* state, const Folders& folders, std::size_t most_files) {
   forbid(state, LUA_OSLIBNAME, {"execute", "tmpname"});
   forbid(state, LUA_IOLIBNAME, {"popen", "tmpfile"});
   forbid(state, LUA_LOADLIBNAME, {"loadlib"});
@@ -92,7 +92,7 @@ void confine(lua_State* state, const Folders& folders) {
   lua_pushcfunction(state, hide_variable);
   lua_setfield(state, -2, "getenv");
   lua_pop(state, 1);
-  confine_files(state, folders);
+  confine_files(state, folders, most_files);
   confine_code(state, folders);
 }
 

@@ -2,6 +2,7 @@
 // What a script that is not trusted can do: it starts no program, loads no byte code and no C
 // library, and uses only files below some folders (docs/lua-api.md has the whole list).
 
+#include <cstddef>
 #include <lua.hpp>
 
 #include "script/folders.h"
@@ -9,7 +10,7 @@
 namespace ziggurat::lua {
 
 /// Replaces what would reach further, in a state whose libraries are open. May raise a Lua error.
-/// @param folders  outlive the state
-void confine(lua_State* state, const Folders& folders);
+/// @param folders  outlive the state; @param most_files  that it may have open at once
+void confine(lua_State* state, const Folders& folders, std::size_t most_files);
 
 }  // namespace ziggurat::lua

@@ -55,6 +55,7 @@ Script::Script(std::string name, const ScriptOptions& options)
       max_instructions_(options.max_instructions),
       max_computing_(options.max_computing),
       folders_(options.folders),
+      most_files_(options.most_files),
       script_(shown(options.script).string()),
       folder_(shown(options.script).parent_path().string()),
       state_(options.max_memory, options.region) {
@@ -123,7 +124,7 @@ void Script::push_protected(int (*function)(lua_State*)) {
 int Script::build(lua_State* state) {
   auto& self = *static_cast<Script*>(lua_touserdata(state, 1));
   prepare_error_messages(state);
-  open_libraries(state, {self.log_, self.random_, self.folder_, self.folders_});
+  open_libraries(state, {self.log_, self.random_, self.folder_, self.folders_, self.most_files_});
   self.set_up(state);
   return 0;
 }

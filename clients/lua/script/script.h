@@ -13,6 +13,7 @@
 #include "script/interrupt.h"
 #include "script/log_lines.h"
 #include "script/memory.h"
+#include "script/open_files.h"
 
 namespace ziggurat::lua {
 
@@ -26,6 +27,7 @@ struct ScriptOptions {
   /// The files that the script may use; they outlive it. Null: the script is trusted, and may use
   /// all of Lua.
   const Folders* folders = nullptr;
+  std::size_t most_files = most_open_files;  ///< that a script that is not trusted may have open at once
   std::span<std::byte> region{};  ///< for the script's Lua state; outlives it. Empty: it has none of its own
 };
 
@@ -89,6 +91,7 @@ class Script {
   std::uint64_t max_instructions_;
   std::uint64_t max_computing_;
   const Folders* folders_;
+  std::size_t most_files_;
   std::string script_;  // path for messages
   std::string folder_;  // of the script
   Wanted wanted_;       // by prepare()

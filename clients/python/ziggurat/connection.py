@@ -12,6 +12,7 @@ import zmq.utils.monitor
 from google.protobuf.message import DecodeError
 
 from . import protocol_pb2 as v1
+from .cost import MOST_ROBOTS, excess
 from .errors import ConnectionLost, ProtocolError, Refused, Timeout
 from .find_server import find_server
 
@@ -66,6 +67,7 @@ class Connection:
         self._failed_handshakes = 0
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
         self.socket.setsockopt(zmq.IPV6, endpoint.startswith("tcp://["))
+        self.socket.setsockopt(zmq.LINGER, LINGER_MS)  # also of a program that ends without close(), as by Ctrl-C
         self.socket.setsockopt(zmq.SNDTIMEO, int(1000 * SLICE))
         if curve is not None:
             self.socket.curve_serverkey = curve.server_key.encode()
@@ -137,13 +139,31 @@ class Connection:
                 raise Timeout(f"{self.endpoint}: no message for {timeout:g} s")
 
     def _decoded(self, data: bytes) -> v1.ServerMessage:
-        try:
-            return v1.ServerMessage.FromString(data)
-        except DecodeError:
-            self.close()
+        fault = excess(data)
+        if not fault:
+            try:
+                return v1.ServerMessage.FromString(data)
+            except DecodeError:
+                fault = "what is no message of the protocol; is it a Ziggurat server?"
+        self.close()
+        raise ProtocolError(v1.Error(code=v1.Error.MALFORMED, severity=v1.Error.FATAL,
+                                     message=f"{self.endpoint} sent {fault}"))
+
+    def _check(self, welcome: v1.Welcome) -> None:
+        """H2: the major version is the same. And there are not more robots than there can be handles for."""
+        if len(welcome.robots) > MOST_ROBOTS:
+            self.close(linger_ms=0)
             raise ProtocolError(v1.Error(
                 code=v1.Error.MALFORMED, severity=v1.Error.FATAL,
-                message=f"{self.endpoint} sent what is no message of the protocol; is it a Ziggurat server?")) from None
+                message=f"{self.endpoint} sent {len(welcome.robots)} robots; this client takes {MOST_ROBOTS} at most"))
+        theirs = welcome.version
+        if theirs.major == VERSION.major:
+            return
+        self.close(linger_ms=0)
+        raise ProtocolError(v1.Error(
+            code=v1.Error.VERSION_MISMATCH, severity=v1.Error.FATAL,
+            message=f"{self.endpoint}: the server speaks version {theirs.major}.{theirs.minor} of the protocol, "
+                    f"this client {VERSION.major}.{VERSION.minor}"))
 
     def _next_reason(self) -> Optional[str]:
         """Takes the monitor's events up to the first by which the connection is lost, and says why it is."""
@@ -194,6 +214,7 @@ class Connection:
                     f"no welcome at {self.endpoint} within {connect_timeout:g} s") from None
             kind = message.WhichOneof("message")
             if kind == "welcome":
+                self._check(message.welcome)
                 return message.welcome
             if kind == "refusal":
                 raise Refused(message.refusal)

@@ -7,17 +7,25 @@ from typing import Any
 from . import protocol_pb2 as v1
 
 
+LONGEST_TEXT = 4096  # of a server, in exceptions and endings [characters]
+
+
 def name_of(enum: Any, number: int) -> str:
     """A later version of the protocol may have more values: their number."""
     return enum.Name(number) if number in enum.values() else str(number)
+
+
+def printable(text: str) -> str:
+    """A server's text, of which no character has an effect on a terminal; of a longer one the beginning, and "…"."""
+    shown = "".join(c if c.isprintable() or c in "\n\t" else f"\\u{ord(c):04x}" for c in text[:LONGEST_TEXT + 1])
+    return shown if len(shown) <= LONGEST_TEXT else shown[:LONGEST_TEXT - 1] + "…"
 
 
 class ZigguratError(Exception):
     """The base of the client's own exceptions."""
 
     def __str__(self) -> str:
-        """Printable: texts of a server must not reach a terminal as escape sequences."""
-        return "".join(c if c.isprintable() or c in "\n\t" else f"\\u{ord(c):04x}" for c in super().__str__())
+        return printable(super().__str__())
 
 
 class ConnectionLost(ZigguratError, ConnectionError):
@@ -40,8 +48,8 @@ class ProtocolError(ZigguratError):
         self.code: str = name_of(v1.Error.Code, error.code)
         self.retryable: bool = error.retryable
         self.tick: int = error.tick
-        self.robot: str = error.robot
-        self.field: str = error.field
+        self.robot: str = printable(error.robot)
+        self.field: str = printable(error.field)
         self.is_fatal: bool = error.severity == v1.Error.FATAL
         where = "".join(f" ({name} {value})" for name, value in
                         (("robot", error.robot), ("field", error.field)) if value)
@@ -53,4 +61,4 @@ class Refused(ProtocolError):
 
     def __init__(self, refusal: v1.Refusal):
         super().__init__(refusal.error)
-        self.holder: str = refusal.holder
+        self.holder: str = printable(refusal.holder)

@@ -7,7 +7,7 @@ from typing import Any, Dict, Iterable, Iterator, List, Optional, Union
 
 from . import protocol_pb2 as v1
 from .connection import Connection, Curve
-from .errors import ConnectionLost, Displaced, ProtocolError, Refused, name_of
+from .errors import ConnectionLost, Displaced, ProtocolError, Refused, name_of, printable
 from .exchange import Exchange
 from .named import Named
 from .robot import Robot
@@ -120,7 +120,7 @@ class Session:
                 return self._observe(seen)
             if kind == "end":
                 self.ending = Ending(name_of(v1.End.Reason, message.end.reason).lower(),
-                                     message.end.message, message.end.tick)
+                                     printable(message.end.message), message.end.tick)
                 raise StopIteration
             self._take(kind, message)
 

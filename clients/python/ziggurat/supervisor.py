@@ -9,7 +9,7 @@ from . import protocol_pb2 as v1
 from .connection import Connection, Curve
 from .devices import Color, Quaternion, Vector
 from .devices.led import color_of
-from .errors import ConnectionLost, ProtocolError, name_of
+from .errors import ConnectionLost, ProtocolError, name_of, printable
 from .ticks import Ending
 
 
@@ -127,7 +127,7 @@ class Supervisor:
                 raise ProtocolError(message.error)
             if kind == "end":
                 self.ending = Ending(name_of(v1.End.Reason, message.end.reason).lower(),
-                                     message.end.message, message.end.tick)
+                                     printable(message.end.message), message.end.tick)
                 raise ConnectionLost(f"the run has ended: {self.ending.reason}")
 
     def status(self) -> Status:

@@ -31,7 +31,7 @@ class Tick:
 @dataclass(frozen=True)
 class Ending:
     reason: str  # "finished", "interrupted" or "failed"
-    message: str
+    message: str  # printable, at most 4096 characters
     tick: int  # the last one
 
 

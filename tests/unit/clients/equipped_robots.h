@@ -35,6 +35,7 @@ inline void add_cameras(v1::RobotDescription& robot) {
 inline v1::ServerMessage welcome() {
   v1::ServerMessage message;
   v1::Welcome& welcome = *message.mutable_welcome();
+  welcome.mutable_version()->set_major(1);
   welcome.set_max_message_bytes(8 << 20);
   welcome.add_robots()->set_id("a");
   for (const char* id : {"b", "c"}) {

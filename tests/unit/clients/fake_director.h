@@ -12,6 +12,7 @@ namespace ziggurat {
 inline v1::ServerMessage judge() {
   v1::ServerMessage message;
   v1::Welcome& welcome = *message.mutable_welcome();
+  welcome.mutable_version()->set_major(1);
   welcome.set_seed(7);
   welcome.set_tick_ns(50'000'000);
   welcome.set_session_token("token");

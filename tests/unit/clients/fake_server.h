@@ -78,6 +78,7 @@ class FakeServer {
   static v1::ServerMessage two_robots() {
     v1::ServerMessage message;
     v1::Welcome& welcome = *message.mutable_welcome();
+    welcome.mutable_version()->set_major(1);
     welcome.set_seed(7);
     welcome.set_tick_ns(50'000'000);
     welcome.set_max_message_bytes(1 << 20);

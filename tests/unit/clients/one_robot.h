@@ -44,6 +44,7 @@ class OneRobot {
  private:
   static v1::Welcome welcome(const v1::RobotDescription& description) {
     v1::Welcome welcome;
+    welcome.mutable_version()->set_major(1);
     welcome.set_max_message_bytes(64 << 20);
     *welcome.add_robots() = description;
     return welcome;

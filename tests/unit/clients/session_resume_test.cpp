@@ -69,6 +69,7 @@ TEST(Resuming, WhatIsHeardStaysThoughTheMessageComesAgain) {
   heard.mutable_observation()->set_tick(3);
   heard.mutable_observation()->add_radio_messages()->mutable_payload()->assign(40 << 20, 'x');
   v1::ServerMessage welcome;
+  welcome.mutable_welcome()->mutable_version()->set_major(1);
   welcome.mutable_welcome()->set_session_token("token");
   welcome.mutable_welcome()->set_max_message_bytes(1 << 20);
   v1::RobotDescription& robot = *welcome.mutable_welcome()->add_robots();

@@ -82,6 +82,7 @@ TEST(Session, AResumedOneBeginsWithWhatWasCommanded) {
     EXPECT_EQ(hello.session_token(), "token");
     EXPECT_EQ(hello.version().minor(), 4U);
     v1::ServerMessage message;
+    message.mutable_welcome()->mutable_version()->set_major(1);
     for (const char* id : {"a", "b"}) {
       v1::RobotDescription& robot = *message.mutable_welcome()->add_robots();
       robot.set_id(id);

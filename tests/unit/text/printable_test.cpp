@@ -52,6 +52,15 @@ TEST(Printable, OtherBytesBecomeReplacementCharacters) {
   EXPECT_EQ(printable("\xf0\x9f"), other + other) << "cut";
 }
 
+TEST(Printable, OfALongerTextThereIsAPart) {
+  EXPECT_EQ(printable_part("a\x1b\u202e"), "a\\u001b\\u202e");
+  EXPECT_EQ(printable_part("1234567890", 10), "1234567890");
+  EXPECT_EQ(printable_part("1234567890a", 10), "1234567\u2026");
+  EXPECT_EQ(printable_part("12345\u00e4\u00e4\u00e4\u00e4", 10), "12345\u00e4\u2026") << "no character is cut";
+  EXPECT_EQ(printable_part("12345\x1b\x1b", 16), "12345\\u001b\u2026") << "no number is cut";
+  EXPECT_EQ(printable_part(std::string(1'000'000, '\x1b')).size(), 4096U - 1);
+}
+
 TEST(IsUtf8, RefusesWhatPrintableReplaces) {
   for (const char* text : {"", "a\n\x1b", "\u00ac\u2060\U000e0080"}) EXPECT_TRUE(is_utf8(text)) << text;
   for (const char* text : {"a\x9b", "\xc0\x9b", "\xed\xa0\x80", "b\xf0\x9f"}) EXPECT_FALSE(is_utf8(text)) << text;

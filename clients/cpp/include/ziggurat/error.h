@@ -1,6 +1,7 @@
 #pragma once
 // Errors between a controller and the server. Besides, unknown ids are std::out_of_range and
-// invalid values std::invalid_argument; their messages name what is allowed.
+// invalid values std::invalid_argument; their messages name what is allowed. Texts of a server are printable in
+// all of them, and have 4096 bytes at most.
 
 #include <cstdint>
 #include <stdexcept>
@@ -12,7 +13,7 @@ namespace ziggurat {
 /// Options. what() names the endpoint and the time-out.
 class ConnectionError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit ConnectionError(const std::string& message);
 };
 
 /// The server refused the session or one of its messages. what() is the server's message.
@@ -28,8 +29,7 @@ class ProtocolError : public std::runtime_error {
     std::string holder;      ///< ROBOT_TAKEN: name of the client that owns the robot
   };
 
-  ProtocolError(const std::string& message, Details details)
-      : std::runtime_error(message), details_(std::move(details)) {}
+  ProtocolError(const std::string& message, Details details);
   const Details& details() const noexcept { return details_; }
 
  private:

@@ -108,7 +108,7 @@ struct Ending {
     failed,       ///< the run can't continue; `message` is the reason
   };
   Reason reason = Reason::finished;
-  std::string message;
+  std::string message;     ///< printable, 4096 bytes at most
   std::uint64_t tick = 0;  ///< the last one
 };
 

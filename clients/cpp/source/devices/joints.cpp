@@ -1,6 +1,7 @@
 #include <map>
 
 #include "layout.h"
+#include "text/printable.h"
 
 namespace ziggurat {
 namespace {
@@ -48,7 +49,7 @@ void Layout::add_joints() {
 
 void Joint::set_target(double target) {
   if (target_ == nullptr) {
-    throw std::logic_error("joint '" + id_ +
+    throw std::logic_error("joint '" + text::printable_part(id_) +
                            "' has no motor: the controller's <actuators> do not list it");
   }
   check_finite(target, "the target of joint", id_);

@@ -1,4 +1,5 @@
 #include "layout.h"
+#include "text/printable.h"
 
 namespace ziggurat {
 
@@ -42,7 +43,7 @@ namespace {
 void check_limit(std::size_t value, std::size_t max, const std::string& radio, const char* who,
                  const char* unit) {
   if (value <= max) return;
-  throw std::length_error("radio '" + radio + "': " + std::string(who) + " sends " +
+  throw std::length_error("radio '" + text::printable_part(radio) + "': " + std::string(who) + " sends " +
                           std::to_string(value) + unit + " at this tick; at most " +
                           std::to_string(max) + " are allowed");
 }
@@ -53,7 +54,7 @@ void RadioTraffic::send(const std::string& radio, std::uint32_t index, std::uint
                         Bytes message) {
   constexpr std::size_t overhead = 96;  // of a message besides its payload: its fields count, too [bytes]
   if (message.size() > Radio::max_message_bytes) {
-    throw std::length_error("radio '" + radio + "': a message of " +
+    throw std::length_error("radio '" + text::printable_part(radio) + "': a message of " +
                             std::to_string(message.size()) + " bytes; at most " +
                             std::to_string(Radio::max_message_bytes) + " are allowed");
   }
@@ -121,7 +122,7 @@ void Layout::add_radios() {
 
 void Radio::send(Bytes message) {
   if (traffic_ == nullptr) {
-    throw std::logic_error("radio '" + id_ +
+    throw std::logic_error("radio '" + text::printable_part(id_) +
                            "' does not send: the controller's <actuators> have no radios");
   }
   traffic_->send(id_, index_, robot_, message);

@@ -1,4 +1,5 @@
 #include "layout.h"
+#include "text/printable.h"
 
 namespace ziggurat {
 
@@ -17,7 +18,7 @@ void Layout::add_tags() {
 
 void Tag::set_payload(std::string_view payload) {
   if (payload.size() > max_payload_bytes) {
-    throw std::length_error("the payload of tag '" + id_ + "' has " +
+    throw std::length_error("the payload of tag '" + text::printable_part(id_) + "' has " +
                             std::to_string(payload.size()) + " bytes; at most " +
                             std::to_string(max_payload_bytes) + " are allowed");
   }

@@ -2,12 +2,15 @@
 
 #include "program/runner.h"
 
+#include <sys/resource.h>
+
 #include <atomic>
 #include <csignal>
 #include <thread>
 
 #include "network/server.h"
 #include "network/small_run.h"
+#include "program/file_share.h"
 #include "script/interrupt.h"
 #include "script_fixture.h"
 
@@ -164,6 +167,22 @@ TEST_F(RunnerTest, AnInterruptLeavesWithoutFailure) {
   EXPECT_FALSE(has_failures_);
   for (const auto& report : reports_) EXPECT_TRUE(report.failures.empty());
   EXPECT_EQ(commands_.joint_targets, (std::vector<double>{0, 0, 0}));
+}
+
+TEST(Files, AreSharedByTheRobotsOfAProcess) {
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  rlimit few = before;
+  few.rlim_cur = 264;
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+  EXPECT_EQ(share_of_files(1), 32U);
+  EXPECT_EQ(share_of_files(20), 10U);
+  EXPECT_EQ(share_of_files(1000), 1U);
+  open_more_files();
+  rlimit after{};
+  EXPECT_EQ(::getrlimit(RLIMIT_NOFILE, &after), 0);
+  EXPECT_EQ(after.rlim_cur, before.rlim_max);
+  ::setrlimit(RLIMIT_NOFILE, &before);
 }
 
 }  // namespace

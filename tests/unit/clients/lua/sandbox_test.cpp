@@ -266,5 +266,23 @@ TEST_F(Sandbox, TrustedScriptsHaveAllOfLua) {
   EXPECT_EQ(value("type(debug.getinfo(print).func)"), "function");
 }
 
+TEST_F(Sandbox, HasABoundedNumberOfOpenFiles) {
+  EXPECT_EQ(value("(function() local n, file, why = 0 OPEN = {} repeat file, why = io.open(IN .. 'data.txt') n = n + 1 "
+                  "OPEN[n] = file until not file return n .. ' ' .. why end)()")
+                .substr(0, 60),
+            ("33 '" + folder().string() + "/inside/data.txt' is not opened: this script has 32 files").substr(0, 60));
+  EXPECT_NE(value("(function() OPEN = {} for i = 1, 40 do OPEN[i] = io.lines(IN .. 'data.txt') end end)()")
+                .find("has 32 files open"), std::string::npos);
+  EXPECT_NE(value("(function() OPEN = {} for i = 1, 40 do io.input(IN .. 'data.txt') OPEN[i] = io.input() end end)()")
+                .find("has 32 files open"), std::string::npos);
+}
+
+TEST_F(Sandbox, OpensMoreFilesAfterItClosedOrForgotOthers) {
+  EXPECT_EQ(value("(function() for i = 1, 1000 do assert(io.open(IN .. 'data.txt')):close() end "
+                  "for i = 1, 1000 do assert(io.open(IN .. 'data.txt')) end "
+                  "for i = 1, 1000 do for line in io.lines(IN .. 'data.txt') do end end return 'all' end)()"),
+            "all");
+}
+
 }  // namespace
 }  // namespace ziggurat::lua

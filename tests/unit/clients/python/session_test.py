@@ -12,7 +12,7 @@ import ziggurat
 from ziggurat import protocol_pb2 as v1
 from ziggurat.connection import Connection
 
-from fake_server import FakeServer, welcome
+from fake_server import FakeServer, equipped, welcome
 from session_case import SessionCase, open_with
 
 
@@ -117,6 +117,49 @@ class Lies(SessionCase):
         error = v1.Error(message="\x1b]52;c;eA==\x07\u202eé")
         self.assertEqual(str(ziggurat.ProtocolError(error)).split(": ", 1)[1], "\\u001b]52;c;eA==\\u0007\\u202eé")
         self.assertEqual(str(ziggurat.Displaced("\x9b")), "\\u009b")
+
+    def test_texts_of_a_server_are_bounded(self):
+        long = v1.Error(message="\x1b" * 1_000_000, robot="r" * 1_000_000)
+        refused = ziggurat.Refused(v1.Refusal(error=long, holder="\x1b" + "h" * 1_000_000))
+        for text in (str(refused), refused.robot, refused.holder):
+            self.assertEqual(len(text), 4096)
+            self.assertTrue(text.endswith("…"))
+            self.assertTrue(text.isprintable())
+
+    def refused(self, data):
+        """The exception of a client that is answered so."""
+        def part(server):
+            server.receive()
+            server.socket.send_multipart([server.peer, data])
+
+        caught = []
+
+        def client():
+            with self.assertRaises(ziggurat.ProtocolError) as error:
+                self.connect()
+            caught.append(str(error.exception))
+
+        self.play(part, client)
+        return caught[0]
+
+    def test_a_welcome_of_another_major_version_is_refused(self):
+        other = welcome(equipped("a"))
+        other.version.CopyFrom(v1.Version(major=9, minor=4))
+        self.assertRegex(self.refused(v1.ServerMessage(welcome=other).SerializeToString()),
+                         "VERSION_MISMATCH: .*the server speaks version 9.4 of the protocol, this client 1.4")
+
+    def test_a_welcome_that_could_take_all_memory_is_not_decoded(self):
+        other = welcome(equipped("a")).SerializeToString()
+
+        def with_robots(count):
+            robots = other + b"\x52\x00" * count
+            length = len(robots)
+            return b"\x0a" + bytes(length >> shift & 0x7F | (0x80 if length >> shift + 7 else 0)
+                                   for shift in (0, 7, 14, 21) if length >> shift) + robots
+
+        self.assertIn("this client takes 262144 at most", self.refused(with_robots(1 << 18)))
+        self.assertIn("more than 2097152 fields", self.refused(with_robots(1 << 21)))
+        self.assertIn("bytes, more than 67108864", self.refused(b"\x0a" * (65 << 20)))
 
     def test_the_json_client_ends_with_a_sentence(self):
         controller = pathlib.Path(__file__).parents[4] / "clients" / "json" / "controller.py"

@@ -1,0 +1,60 @@
+"""What decoding a message would cost, found out before: a hostile one of a few bytes a field would take all memory."""
+
+from __future__ import annotations
+
+from typing import Any, Tuple
+
+from . import protocol_pb2 as v1
+
+CHEAP = 1 << 20  # [bytes]; so few have few fields
+LONGEST_WELCOME = 64 << 20  # and of all else that is sent once [bytes]
+MOST_FIELDS = 1 << 21  # Welcomes of ten thousand robots with a hundred fields each have half of that
+MOST_ROBOTS = 1 << 18
+_OFTEN = tuple(bytes([v1.ServerMessage.DESCRIPTOR.fields_by_name[name].number << 3 | 2])
+               for name in ("observation", "world_state"))  # a tag of one byte
+
+
+def excess(data: bytes) -> str:
+    """What is wrong with the cost of a ServerMessage; empty: nothing."""
+    if len(data) <= CHEAP:
+        return ""
+    if not data.startswith(_OFTEN) and len(data) > LONGEST_WELCOME:
+        return f"a message of {len(data)} bytes, more than {LONGEST_WELCOME}, which this client does not decode"
+    if _count(data, 0, len(data), v1.ServerMessage.DESCRIPTOR, MOST_FIELDS) > MOST_FIELDS:
+        return f"a message of more than {MOST_FIELDS} fields, which this client does not decode"
+    return ""
+
+
+def _varint(data: bytes, at: int) -> Tuple[int, int]:
+    """The number and the place behind it. Raises IndexError at the end of the data."""
+    value = shift = 0
+    while True:
+        byte = data[at]
+        value |= (byte & 0x7F) << shift
+        at, shift = at + 1, shift + 7
+        if byte < 0x80 or shift > 63:
+            return value, at
+
+
+def _count(data: bytes, at: int, end: int, kind: Any, most: int) -> int:
+    """Fields between these places, those of messages in them included. What is no message is left to the decoder."""
+    numbers = kind.fields_by_number
+    fields = 0
+    try:
+        while at < end and fields <= most:
+            tag, at = _varint(data, at)
+            fields += 1
+            wire = tag & 7
+            if wire == 0:
+                _, at = _varint(data, at)
+            elif wire == 2:
+                size, at = _varint(data, at)
+                field = numbers.get(tag >> 3)
+                if field is not None and field.message_type is not None:
+                    fields += _count(data, at, min(end, at + size), field.message_type, most - fields)
+                at += size
+            elif wire in (1, 5):
+                at += 8 if wire == 1 else 4
+    except IndexError:
+        pass
+    return fields

@@ -1,0 +1,68 @@
+#include "cli/whole_file.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <filesystem>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+namespace ziggurat::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int interruptions[] = {SIGINT, SIGTERM, SIGHUP};
+
+std::atomic<const char*> unfinished = nullptr;  // to be removed; handlers of signals may use no more than this
+
+void remove_and_end(int number) {
+  constexpr std::string_view words = "ziggurat: interrupted; the file was not finished and is removed\n";
+  if (const char* const path = unfinished.exchange(nullptr)) {
+    ::unlink(path);
+    [[maybe_unused]] const ssize_t told = ::write(STDERR_FILENO, words.data(), words.size());
+  }
+  ::signal(number, SIG_DFL);
+  ::raise(number);
+}
+
+/// A signal that is ignored, as by nohup, stays so.
+void handle_interruptions() {
+  for (const int number : interruptions) {
+    struct sigaction action = {};
+    ::sigaction(number, nullptr, &action);
+    if (action.sa_handler != SIG_DFL) continue;
+    action.sa_handler = remove_and_end;
+    ::sigaction(number, &action, nullptr);
+  }
+}
+
+}  // namespace
+
+WholeFile::WholeFile(std::string out) : out_(std::move(out)), part_(out_) {
+  std::error_code error;
+  if (out_ == "-" || (fs::exists(out_, error) && !fs::is_regular_file(out_, error))) return;
+  target_ = fs::is_symlink(out_, error) ? fs::weakly_canonical(out_, error).string() : out_;
+  part_ = fmt::format("{}.{}.part", target_, ::getpid());  // another process may write the same
+  unfinished = part_.c_str();
+  handle_interruptions();
+}
+
+WholeFile::~WholeFile() {
+  if (target_.empty() || unfinished.exchange(nullptr) == nullptr) return;
+  std::error_code error;
+  fs::remove(part_, error);
+}
+
+void WholeFile::keep() {
+  if (target_.empty()) return;
+  std::error_code error;
+  fs::rename(part_, target_, error);
+  if (error) throw std::runtime_error(fmt::format("{} can't be written: {}", out_, error.message()));
+  unfinished = nullptr;
+}
+
+}  // namespace ziggurat::cli
