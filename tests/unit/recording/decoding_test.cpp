@@ -88,7 +88,9 @@ TEST(Decoding, AMessageOfManySmallPartsIsNotDecoded) {
     const std::size_t before = allocated();
     const auto fault = decode(bytes, *message);
     EXPECT_LE(allocated(), before + most.memory) << bomb.name;
-    if (most.memory / most.bytes < 10) EXPECT_TRUE(fault) << bomb.name;
+    if (most.memory / most.bytes < 10) {
+      EXPECT_TRUE(fault) << bomb.name;
+    }
   }
 }
 
