@@ -66,7 +66,7 @@ def _opened_pipe(option: str, path: Path) -> int:
             if error.errno != errno.ENXIO:
                 raise
         if time.monotonic() > deadline:
-            raise WrongOutput(f"{option} is '{path}', a pipe that nobody reads; start its reader first")
+            raise WrongOutput(f"{option} is '{path}', a pipe without reader; start its reader first")
         time.sleep(0.02)
 
 
@@ -110,7 +110,7 @@ class Stdout:
     says why."""
 
     def __init__(self, stream: Optional[TextIO]):
-        """stream: None if it is closed; then nobody wants to see it, which is no fault."""
+        """stream: None if it is closed, which is no fault."""
         self._stream = stream or open(os.devnull, "w")
         self.fault = ""
         if hasattr(self._stream, "reconfigure"):

@@ -73,10 +73,10 @@ class Mistakes(unittest.TestCase):
         self.expect("/dev/full can't be written: No space left on device", "server", "--only", "S9.stale",
                     "--json", "/dev/full", "--", *TINY)
 
-    def test_a_pipe_that_nobody_reads(self):
+    def test_a_pipe_without_reader(self):
         with tempfile.TemporaryDirectory() as folder:
             os.mkfifo(f"{folder}/r.json")
-            self.expect("--json is '.*r.json', a pipe that nobody reads; start its reader first", "server", "--json",
+            self.expect("--json is '.*r.json', a pipe without reader; start its reader first", "server", "--json",
                         f"{folder}/r.json", "--", *TINY)
 
     def test_lists_that_are_none(self):
