@@ -329,7 +329,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
     if (rebounding && lifts_too_much(problem_, work_, rebound_, step_)) {
       problem_.leave_rebounds();
       solver_.solve_displacement(problem_);
-    } else if (rebounding && !problem_.in_turn) {
+    } else if (rebounding) {
       bound_way(problem_, rebound_);
     }
     for (std::size_t i = 0; i < step_.size(); ++i) step_[i] += problem_.velocity[i];

@@ -157,6 +157,18 @@ void blend(Problem& problem, const Snapshot& without, double share) {
   }
 }
 
+/// The square of the fastest that a tree's root moves, before or after [m^2/s^2].
+double square_of_fastest(const Problem& problem, const Rebound& rebound) {
+  double most = 0;
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    const Tree& tree = *problem.trees[i];
+    for (const double* v : {tree.v.data(), rebound.start.data() + problem.offset[i]}) {
+      if (tree.free_root) most = std::max(most, v[3] * v[3] + v[4] * v[4] + v[5] * v[5]);
+    }
+  }
+  return most;
+}
+
 }  // namespace
 
 bool rebounds(const Problem& problem) {
@@ -193,6 +205,8 @@ bool lifts_too_much(const Problem& problem, Workspace& work, const Rebound& rebo
 
 void bound_way(Problem& problem, const Rebound& rebound) {
   double share = 1;
+  // A ball that is struck and strikes another one may be as fast after as before, and move all the same.
+  const double of_turns = problem.in_turn ? 4 * square_of_fastest(problem, rebound) : 0;
   double depth = problem.allowed_overlap;  // what overlaps is moved apart by up to that
   for (const Block& block : problem.blocks) depth = std::max(depth, -block.gap);
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
@@ -206,6 +220,7 @@ void bound_way(Problem& problem, const Rebound& rebound) {
         square += way[j] * way[j];
         change += (tree.v[j] - start[j]) * (tree.v[j] - start[j]);
       }
+      if (tree.free_root && k == 3) change = std::max(change, of_turns);
       // Before it struck, for a part of the substep, it had the other velocity.
       const double most = more_than_moved * problem.length * problem.length * change +
                           4 * depth * depth / square_of_lever(problem, i, k);
