@@ -18,6 +18,9 @@ struct LinkIndex {
 /// Slower impacts do not bounce, and where their surfaces are apart need not be known [m/s].
 inline constexpr double slow_impact = 0.05;
 
+/// Surfaces that are nearer touch from a substep's beginning on [m].
+inline constexpr double touching = 1e-6;
+
 /// A point where two links touch or may touch within the substep.
 struct Contact {
   LinkIndex a, b;

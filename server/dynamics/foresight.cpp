@@ -55,7 +55,10 @@ bool strikes(const Limit& limit, const Tree& tree, double length, double least) 
 void find_blows(const std::vector<Tree>& trees, const std::vector<unsigned char>& fast, std::span<const Contact> contacts,
                 std::span<const Limit> limits, double length, double least, std::vector<int>& out) {
   const auto is_fast = [&](int tree) { return tree >= 0 && fast[tree]; };
-  const auto throws = [&](int tree, const Contact& contact) { return is_fast(tree) && (contact.restitution > 0 || trees[tree].links.size() > 1); };
+  const auto moves = [&](int tree) { return tree >= 0 && trees[tree].dofs > 0; };
+  const auto throws = [&](int tree, const Contact& contact) {
+    return is_fast(tree) && (contact.restitution > 0 || trees[tree].links.size() > 1 || (moves(contact.a.tree) && moves(contact.b.tree)));
+  };
   for (const Contact& contact : contacts) {
     if (!throws(contact.a.tree, contact) && !throws(contact.b.tree, contact)) continue;
     const double apart = parting(trees, contact);
@@ -82,12 +85,6 @@ bool System::foresee(std::span<Contact> contacts, std::span<Limit> limits, doubl
   for (const Servo& servo : servos_) {
     const Tree& tree = trees[servo.tree];
     if (servo_change(servo, tree, fast) > fast && moves(servo.tree)) disturbed_.push_back(servo.tree);
-  }
-  for (const int i : between_) {
-    const Contact& contact = contacts_[i];
-    if (!moves(contact.a.tree) || !moves(contact.b.tree)) continue;
-    const double apart = parting(trees, contact);
-    if (-apart > fast && contact.gap + length_ * apart < 0) disturbed_.push_back(contact.a.tree);
   }
   fast_.assign(fast_trees.empty() ? 0 : trees.size(), 0);
   for (const int tree : fast_trees) fast_[tree] = moves(tree);

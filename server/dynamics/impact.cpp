@@ -1,6 +1,7 @@
 #include "dynamics/impact.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -10,9 +11,13 @@
 namespace ziggurat::dynamics {
 namespace {
 
-/// Larger trees and islands are not looked at for what they do not come to meet.
-constexpr int most_dofs = 32;
+/// Larger islands are not looked at for what they do not come to meet.
 constexpr std::size_t most_blocks = 300;
+
+/// Whether a side of a contact is a larger tree than responses are worked out for.
+bool is_large(const Problem& problem, const Block& block) {
+  return std::ranges::any_of(std::array{block.a, block.b}, [&](int place) { return place >= 0 && problem.trees[place]->dofs > most_dofs_struck; });
+}
 
 /// Whether a contact held what is on it in the last substep, and does not part.
 bool may_carry(const Problem& problem, const Block& block) {
@@ -89,8 +94,7 @@ void aim(const Problem& problem, Block& block) {
 /// Whether a contact is still met when another one, which is met earlier, has rebounded: a ball on a plate does not reach the
 /// floor below that.
 bool is_met_after(const Problem& problem, const Block& later, const Block& earlier) {
-  const auto is_large = [&](int tree) { return tree >= 0 && problem.trees[tree]->dofs > most_dofs; };
-  if (is_large(earlier.a) || is_large(earlier.b)) return true;
+  if (is_large(problem, earlier)) return true;
   const double own = response(problem, earlier, earlier), cross = response(problem, earlier, later);
   if (!(own > 0) || cross <= 0) return true;
   double now[Block::most_rows], impact[Block::most_rows];
@@ -136,8 +140,7 @@ std::vector<Impact> impacts_in_turn(Problem& problem) {
     const auto is_of_the_same_face = [&](const Impact& other) {
       return other.block->a == block.a && other.block->b == block.b && other.block->frame.col(0) == block.frame.col(0);
     };
-    const auto is_large = [&](int place) { return place >= 0 && problem.trees[place]->dofs > most_dofs; };
-    if (out.size() == most || std::ranges::any_of(out, is_of_the_same_face) || is_large(block.a) || is_large(block.b)) return {};
+    if (out.size() == most || std::ranges::any_of(out, is_of_the_same_face) || is_large(problem, block)) return {};
     out.push_back({&block, parting_of(problem, block), pull_of(problem, block)});
     any |= block.gap + problem.length * (out.back().speed + problem.length * out.back().pull) < 0;
   }

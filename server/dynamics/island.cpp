@@ -169,10 +169,9 @@ void take_velocities(const Problem& problem, const std::vector<unsigned char>& f
 /// Friction between two that meet within the substep acts when they do. So what turns them, about the points that meet, and what moves
 /// them are one impulse, and angular momentum stays.
 void wait_for_friction(const Problem& problem, std::span<const Contact> contacts, std::vector<double>& step) {
-  constexpr double together = 1e-6;  // what is nearer touches from the beginning [m]
   for (const Block& block : problem.blocks) {
     if (block.kind != Block::Source::contact || block.rows < 3 || block.impulse[0] == 0) continue;
-    if (-contacts[block.source].until_met.dot(contacts[block.source].normal) < together) continue;
+    if (-contacts[block.source].until_met.dot(contacts[block.source].normal) < touching) continue;
     const Vector3 friction = block.frame.col(1) * block.impulse[1] + block.frame.col(2) * block.impulse[2];
     const double time = block.bounces ? block.met : problem.length;
     const auto shift = [&](int place, double sign) {

@@ -11,11 +11,10 @@
 namespace ziggurat::dynamics {
 namespace {
 
-constexpr int most_dofs = 32;
 constexpr double still = 1e-9;  // what is slower does not come nearer [m/s]
 
-using Row = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_dofs, 1>;
-using Mass = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, most_dofs, most_dofs>;
+using Row = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_dofs_struck, 1>;
+using Mass = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, most_dofs_struck, most_dofs_struck>;
 
 /// Of a block's first speed, for a tree: zero if it is not a side of it.
 Row row_of(const Problem& problem, const Block& block, int tree) {

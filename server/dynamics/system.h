@@ -108,7 +108,7 @@ class System {
   /// say what they meet. To be called after wake_disturbed(), whose servos and trees it takes.
   /// @param contacts  those, and perhaps more behind them
   /// @param far   what need not be known: how far such a tree comes in the substep [m]
-  /// @param fast  trees that may come farther already: their blows and limits set other links of them in motion
+  /// @param fast  all trees that may come half as far already: what strikes them, or their limits, may throw them and others elsewhere
   /// @return      whether there are some
   bool foresee(std::span<Contact> contacts, std::span<Limit> limits, double far, std::span<const int> fast, Foresight& out);
 

@@ -256,9 +256,7 @@ void Colliders::follow(const dynamics::System& system, double length) {
     woke |= group.rested && !group.rests;
     if (group.moves ? group.unchanged() : all[group.first].reach == least) continue;
     if (group.moves) followed_.push_back(static_cast<std::size_t>(&group - groups.data()));
-    const double step = follow(group, system, length);
-    if (step > least) fast.push_back(static_cast<int>(group.entity));
-    keep_in_box(group, step, true);
+    keep_in_box(group, follow(group, system, length), true);
   }
 }
 
@@ -271,13 +269,11 @@ void Colliders::follow(const dynamics::System& system, double length, const Tree
     if (!group.proxy || !group.moves) return;
     group.rests = false;
     followed_.push_back(static_cast<std::size_t>(&group - groups.data()));
-    const double step = follow(group, system, length);
-    if (step > least_reach(length)) fast.push_back(static_cast<int>(group.entity));
-    keep_in_box(group, step, false);
+    keep_in_box(group, follow(group, system, length), false);
   });
 }
 
-/// Takes the poses and motions of its colliders.
+/// Takes the poses and motions of its colliders, and notes whether it is fast.
 /// @return  how far it moves [m]
 double Colliders::follow(ColliderGroup& group, const dynamics::System& system, double length) {
   double fastest = 0;
@@ -292,6 +288,7 @@ double Colliders::follow(ColliderGroup& group, const dynamics::System& system, d
     fastest = std::max(fastest, speed);
   }
   enclose(group);
+  if (length * fastest > least_reach(length) / 2) fast.push_back(static_cast<int>(group.entity));
   return length * fastest;
 }
 

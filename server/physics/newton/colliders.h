@@ -87,7 +87,7 @@ class Colliders {
     Collider collider;
   };
   std::vector<Thrown> thrown;
-  /// Entities that move farther in the substep than what does not move yet may come, see least_reach().
+  /// Entities that move by more than half of what does not move yet may come, see least_reach(): two of them may strike each other so fast.
   std::vector<int> fast;
 
   bool rests(const Collider& collider) const {

@@ -68,9 +68,6 @@ double farthest_that_may_touch(const Collider& a, const Collider& b, double leng
   return slack + length * speed;
 }
 
-/// What is nearer touches [m].
-constexpr double together = 1e-6;
-
 /// Half of it; the floor has none [m].
 double smallest_extent(const Collider& collider) {
   if (collider.entity == Collider::floor) return BT_LARGE_FLOAT;
@@ -92,7 +89,7 @@ bool tumbles(const Collider& a, const Collider& b, const Approach& approach, dou
 void place_between(const Collider& a, const math::Vector3& on_a, const Collider& b, const math::Vector3& on_b,
                    double apart, dynamics::Contact& contact) {
   const math::Vector3 from = from_bullet(a.pose * to_bullet(on_a)), way = from_bullet(b.pose * to_bullet(on_b)) - from;
-  if (way.squaredNorm() < together * together) return;
+  if (way.squaredNorm() < dynamics::touching * dynamics::touching) return;
   if (contact.gap > apart) {
     contact.point = from;
     contact.until_met = way;
@@ -125,7 +122,7 @@ contact::Contacts look(const Collider& a, const Collider& b, double length, int 
     if (found.count > 0 && swings) out.swing = std::max(swing_of(a, time), swing_of(b, time));
   } else if (!approach.may_touch) {
     found.count = 0;
-  } else if (found.count <= 2 && approach.least > together && normal_turns(a, b)) {
+  } else if (found.count <= 2 && approach.least > dynamics::touching && normal_turns(a, b)) {
     found = first_meeting(a, b, length, slack, time);
   } else if (out.tumbles) {
     found = contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::all);
