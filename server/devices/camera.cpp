@@ -16,7 +16,7 @@ bool Sight::clear(const math::Vector3& eye, const math::Vector3& target) const {
   const math::Vector3 way = target - eye;
   const double length = way.norm();
   const physics::RayQuery ray{eye, target, {}, false};
-  const auto hit = few ? rays.cast(ray, colliders) : rays.cast(ray);
+  const auto hit = rays.cast(ray, candidates);
   const bool blocked = hit && hit->distance < length - at_target;
   if (shown || all) {
     const math::Vector3 end =
@@ -29,8 +29,6 @@ bool Sight::clear(const math::Vector3& eye, const math::Vector3& target) const {
 }
 
 namespace {
-
-constexpr std::size_t few_colliders = 32;  // more are left to the tree
 
 world::CameraLayout camera_layout(const Carrier& carrier, const scene::Camera& from,
                                   const world::Layout& layout) {
@@ -103,8 +101,8 @@ class Cameras final : public Kind {
     if (lens.shows_frustum) tick.state.frusta.push_back({camera, view.corners});
     // All rays of a camera lie in the box of its eye and its frustum.
     tick.rays.find(view.bounds.low.cwiseMin(view.pose.position),
-                   view.bounds.high.cwiseMax(view.pose.position), colliders_);
-    Sight sight{tick.rays, robot, nullptr, tick.all_rays, colliders_, colliders_.size() <= few_colliders};
+                   view.bounds.high.cwiseMax(view.pose.position), {}, candidates_);
+    Sight sight{tick.rays, robot, nullptr, tick.all_rays, candidates_};
     // One reference: a function that holds more would allocate.
     const camera::LineOfSight clear = [&sight](const math::Vector3& eye,
                                                const math::Vector3& target) {
@@ -123,7 +121,7 @@ class Cameras final : public Kind {
 
   bool detects_ = false;
   std::vector<std::size_t> found_;
-  std::vector<std::size_t> colliders_;  // about one camera
+  physics::Candidates candidates_;  // of one camera
 };
 
 }  // namespace

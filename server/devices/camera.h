@@ -15,11 +15,10 @@ namespace ziggurat::devices {
 /// within 0.1 mm of the point, nor a body that the camera is inside of.
 struct Sight {
   const physics::Rays& rays;
-  std::size_t robot;                       ///< into Layout::robots: the one with the camera
-  std::vector<world::Ray>* shown;          ///< gets the tested rays; may be null
-  std::vector<world::Ray>* all;            ///< the same
-  std::span<const std::size_t> colliders;  ///< all that can be in the way, if there are few
-  bool few;
+  std::size_t robot;               ///< into Layout::robots: the one with the camera
+  std::vector<world::Ray>* shown;  ///< gets the tested rays; may be null
+  std::vector<world::Ray>* all;    ///< the same
+  const physics::Candidates& candidates;  ///< what can be in the way
 
   bool clear(const math::Vector3& eye, const math::Vector3& target) const;
 };

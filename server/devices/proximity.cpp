@@ -101,17 +101,32 @@ class Proximity final : public Kind {
     math::RandomStream random;
   };
 
+  /// The rays of a robot's sensors, and what is near all of them.
+  /// @param own  the robot's entity, which they ignore
+  void aim(const Tick& tick, const world::Range& sensors, std::span<const std::size_t> own) {
+    segments_.clear();
+    math::Vector3 low = math::Vector3::Constant(HUGE_VAL), high = -low;
+    for (std::size_t i = sensors.begin; i < sensors.end(); ++i) {
+      const world::ProximityLayout& ray = tick.layout.proximity[i];
+      const math::Pose start = world::pose_of(tick.state, ray.mount);
+      const math::Vector3 way = start.orientation * ray.direction;
+      const math::Vector3 end = start.position + ray.range * way;
+      segments_.push_back({start.position, way, end});
+      low = low.cwiseMin(start.position).cwiseMin(end);
+      high = high.cwiseMax(start.position).cwiseMax(end);
+    }
+    tick.rays.find(low, high, own, candidates_);
+  }
+
   void sense(Tick& tick, Robot& robot) {
     const world::RobotLayout& layout = tick.layout.robots[robot.index];
     if (tick.state.is_absent(layout.entity)) return;
     const std::array own{layout.entity};
+    aim(tick, layout.proximity, own);
     for (std::size_t i = layout.proximity.begin; i < layout.proximity.end(); ++i) {
-      const world::ProximityLayout& ray = tick.layout.proximity[i];
       const Sensor& sensor = sensors_[i];
-      const math::Pose start = world::pose_of(tick.state, ray.mount);
-      const math::Vector3 way = start.orientation * ray.direction;
-      const math::Vector3 end = start.position + ray.range * way;
-      const auto hit = tick.rays.cast({start.position, end, own, sensor.sees_floor});
+      const auto& [start, way, end] = segments_[i - layout.proximity.begin];
+      const auto hit = tick.rays.cast({start, end, own, sensor.sees_floor}, candidates_);
       double reading = 0;
       if (hit) {
         reading = sensor.footbot ? footbot_proximity_reading(hit->distance)
@@ -124,14 +139,20 @@ class Proximity final : public Kind {
       }
       tick.observations.proximity[i] = reading;
       if (!tick.wants_rays(robot.shows_rays)) continue;
-      const math::Vector3 seen = hit ? math::Vector3(start.position + hit->distance * way) : end;
-      tick.add({world::Ray::Kind::proximity, robot.index, start.position, seen, hit.has_value()},
+      const math::Vector3 seen = hit ? math::Vector3(start + hit->distance * way) : end;
+      tick.add({world::Ray::Kind::proximity, robot.index, start, seen, hit.has_value()},
                robot.shows_rays);
     }
   }
 
-  std::vector<Sensor> sensors_;  // parallel to Layout::proximity
-  std::vector<Robot> robots_;    // that have sensors
+  struct Segment {
+    math::Vector3 start, way, end;  // the way is of unit length
+  };
+
+  std::vector<Sensor> sensors_;         // parallel to Layout::proximity
+  std::vector<Robot> robots_;           // that have sensors
+  std::vector<Segment> segments_;       // of the robot under way
+  physics::Candidates candidates_;  // of these
 };
 
 }  // namespace

@@ -71,8 +71,7 @@ void find_blows(const std::vector<Tree>& trees, const std::vector<unsigned char>
 
 }  // namespace
 
-bool System::foresee(std::span<Contact> contacts, std::span<Limit> limits, double far, std::span<const int> fast_trees, Foresight& out) {
-  contacts_ = contacts;
+bool System::foresee(std::span<Limit> limits, double far, std::span<const int> fast_trees, Foresight& out) {
   limits_ = limits;
   out.trees.clear();
   out.speeds.clear();
@@ -91,7 +90,7 @@ bool System::foresee(std::span<Contact> contacts, std::span<Limit> limits, doubl
   if (!fast_.empty()) find_blows(trees, fast_, contacts_, limits_, length_, fast, disturbed_);
   if (disturbed_.empty()) return false;
   find_awake();
-  gather(contacts_, servos_, limits_);
+  gather();
   for (int& tree : disturbed_) tree = island_[tree];
   std::ranges::sort(disturbed_);
   disturbed_.erase(std::unique(disturbed_.begin(), disturbed_.end()), disturbed_.end());

@@ -170,8 +170,9 @@ void System::note_commands() {
 bool System::wake_disturbed(double length, std::span<Contact> contacts, std::span<Servo> servos, std::span<const int> chosen) {
   length_ = length;
   chosen_ = chosen;
-  contacts_ = contacts;
   servos_ = servos;
+  contacts_ = contacts;
+  note_ends(contacts_, ends_);
   if (sleepers_.size() > trees.size()) wake_all();
   sleepers_.resize(trees.size());
   next_.resize(trees.size(), -1);
@@ -184,17 +185,12 @@ bool System::wake_disturbed(double length, std::span<Contact> contacts, std::spa
     woke = true;
   });
   const auto moves = [&](int tree) { return trees[tree].dofs > 0; };
-  between_.clear();
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (contacts_[i].a.tree >= 0 && contacts_[i].b.tree >= 0) between_.push_back(static_cast<int>(i));
-  }
   for (bool again = true; again;) {  // who wakes may touch another
     again = false;
-    for (const int i : between_) {
-      const Contact& contact = contacts_[i];
-      const int a = contact.a.tree, b = contact.b.tree;
-      if (asleep(a) == asleep(b)) continue;  // most, and this reads no tree
-      if (!moves(a) || !moves(b) || !comes_to_touch(contact)) continue;
+    for (std::size_t i = 0; i < ends_.size(); ++i) {
+      const auto [a, b] = ends_[i];
+      if (a < 0 || b < 0 || asleep(a) == asleep(b)) continue;  // most, and this reads no tree
+      if (!moves(a) || !moves(b) || !comes_to_touch(contacts_[i])) continue;
       wake(a);
       wake(b);
       again = woke = true;

@@ -18,21 +18,30 @@ bool is_earlier(const Contact& a, const Contact& b) {
   return key(a) < key(b);
 }
 
+/// The tree that leads those which one is joined with.
+int leader_of(int tree, std::vector<int>& parent) {
+  while (parent[tree] != tree) tree = parent[tree] = parent[parent[tree]];
+  return tree;
+}
+
 }  // namespace
+
+void note_ends(std::span<const Contact> contacts, std::vector<Ends>& out) {
+  constexpr std::size_t ahead = 8;
+  out.clear();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (i + ahead < contacts.size()) fetch(&contacts[i + ahead], 2 * sizeof(LinkIndex));
+    out.push_back({contacts[i].a.tree, contacts[i].b.tree});
+  }
+}
 
 void LeftIslands::add(std::span<const int> of_island, int parts) {
   islands.push_back({parts, trees.size(), trees.size() + of_island.size()});
   trees.insert(trees.end(), of_island.begin(), of_island.end());
 }
 
-int System::find(int tree) {
-  while (parent_[tree] != tree) tree = parent_[tree] = parent_[parent_[tree]];
-  return tree;
-}
-
 /// Sorts trees that are awake and what acts on them by island; islands by their first tree.
-void System::gather(std::span<const Contact> contacts, std::span<const Servo> servos,
-                    std::span<const Limit> limits) {
+void System::gather() {
   parent_.resize(trees.size());
   island_.resize(trees.size());
   place_.resize(trees.size());
@@ -40,25 +49,25 @@ void System::gather(std::span<const Contact> contacts, std::span<const Servo> se
   const auto moves = [&](int tree) { return tree >= 0 && trees[tree].dofs > 0; };
   const auto acts = [&](int tree) { return moves(tree) && !asleep(tree); };
   items_.clear();
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    int a = contacts[i].a.tree, b = contacts[i].b.tree;
+  for (std::size_t i = 0; i < ends_.size(); ++i) {
+    auto [a, b] = ends_[i];
     if (!moves(a)) std::swap(a, b);
     if (!acts(a) || (moves(b) && asleep(b))) continue;
     if (moves(b)) {  // the lower index leads
-      a = find(a), b = find(b);
+      a = leader_of(a, parent_), b = leader_of(b, parent_);
       parent_[std::max(a, b)] = std::min(a, b);
     }
     items_.push_back({a, contact_item, static_cast<int>(i)});
   }
-  for (std::size_t i = 0; i < servos.size(); ++i) {
-    if (acts(servos[i].tree)) items_.push_back({servos[i].tree, servo_item, static_cast<int>(i)});
+  for (std::size_t i = 0; i < servos_.size(); ++i) {
+    if (acts(servos_[i].tree)) items_.push_back({servos_[i].tree, servo_item, static_cast<int>(i)});
   }
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    if (acts(limits[i].tree)) items_.push_back({limits[i].tree, limit_item, static_cast<int>(i)});
+  for (std::size_t i = 0; i < limits_.size(); ++i) {
+    if (acts(limits_[i].tree)) items_.push_back({limits_[i].tree, limit_item, static_cast<int>(i)});
   }
   int islands = 0;
   for (const int i : awake_) {
-    const int leader = find(i);
+    const int leader = leader_of(i, parent_);
     island_[i] = leader == i ? islands++ : island_[leader];
   }
   first_tree_.assign(islands + 1, 0);
@@ -83,7 +92,7 @@ void System::gather(std::span<const Contact> contacts, std::span<const Servo> se
   first_item_[0] = 0;
   const auto earlier = [&](const Item& a, const Item& b) {
     if (a.kind != b.kind || a.kind != contact_item) return std::tuple(a.kind, a.index) < std::tuple(b.kind, b.index);
-    return is_earlier(contacts[a.index], contacts[b.index]);
+    return is_earlier(contacts_[a.index], contacts_[b.index]);
   };
   for (int i = 0; i < islands; ++i) {
     const auto of_island = std::span(item_order_).subspan(first_item_[i], first_item_[i + 1] - first_item_[i]);
@@ -117,14 +126,18 @@ void System::fetch_after(std::size_t island) const {
 
 Report System::step(double length, std::span<Contact> contacts, std::span<Servo> servos,
                     std::span<Limit> limits, std::span<const int> chosen) {
+  wake_disturbed(length, contacts, servos, chosen);
+  return advance(limits);
+}
+
+Report System::advance(std::span<Limit> limits) {
   limits_ = limits;
   report_ = {};
   left.islands.clear();
   left.trees.clear();
-  wake_disturbed(length, contacts, servos, chosen);
   find_awake();
   report_.awake = static_cast<int>(awake_.size());
-  gather(contacts, servos, limits);
+  gather();
   for (std::size_t i = 0; i + 1 < first_tree_.size(); ++i) {
     const int first = first_tree_[i], last = first_tree_[i + 1];
     fetch_after(i);
@@ -144,10 +157,11 @@ Report System::step(double length, std::span<Contact> contacts, std::span<Servo>
 
 void System::push_apart(std::span<Contact> contacts, std::span<const int> chosen) {
   contacts_ = contacts;
+  note_ends(contacts_, ends_);
   servos_ = {};
   chosen_ = chosen;
   find_awake();
-  gather(contacts_, servos_, limits_);
+  gather();
   for (std::size_t i = 0; i + 1 < first_tree_.size(); ++i) {
     const int first = first_item_[i], last = first_item_[i + 1];
     if (first == last || item_order_[first].kind != contact_item) continue;

@@ -67,6 +67,12 @@ struct RestOptions {
   double swept_time = 0.5;      ///< [s]
 };
 
+/// Between which trees a contact is; -1: the world. Contacts take far more of the cache.
+struct Ends {
+  int a = -1, b = -1;
+};
+void note_ends(std::span<const Contact> contacts, std::vector<Ends>& out);
+
 class System {
  public:
   std::vector<Tree> trees;
@@ -98,19 +104,18 @@ class System {
   /// Adds to a link's external wrench for the coming substep. What sleeps notices no other.
   void push(int tree, int link, const Wrench& wrench);
 
-  /// Wakes what the coming substep would not leave at rest. step() does so, too; to be called
-  /// before it where contacts of sleepers are told only if something wakes.
-  /// @param chosen  see step()
-  /// @return        whether something did
+  /// Takes what acts in the coming substep, see step(), and wakes what that would not leave at rest.
+  /// To be called before advance(), again with more contacts where those of sleepers are told only
+  /// if something wakes.
+  /// @return  whether something did
   bool wake_disturbed(double length, std::span<Contact> contacts, std::span<Servo> servos, std::span<const int> chosen = {});
 
   /// Which trees the coming substep sets in motion within it: by motors, pushes or blows, so that their speeds at its beginning do not
-  /// say what they meet. To be called after wake_disturbed(), whose servos and trees it takes.
-  /// @param contacts  those, and perhaps more behind them
+  /// say what they meet. To be called after wake_disturbed(), whose contacts, servos and trees it takes.
   /// @param far   what need not be known: how far such a tree comes in the substep [m]
   /// @param fast  all trees that may come half as far already: what strikes them, or their limits, may throw them and others elsewhere
   /// @return      whether there are some
-  bool foresee(std::span<Contact> contacts, std::span<Limit> limits, double far, std::span<const int> fast, Foresight& out);
+  bool foresee(std::span<Limit> limits, double far, std::span<const int> fast, Foresight& out);
 
   /// Advances all trees that are awake by one substep. Their external wrenches must be set.
   /// @param length    [s]
@@ -123,6 +128,9 @@ class System {
   ///                  act between them and these. Empty: all do
   Report step(double length, std::span<Contact> contacts, std::span<Servo> servos = {},
               std::span<Limit> limits = {}, std::span<const int> chosen = {});
+
+  /// The same with what wake_disturbed() has taken.
+  Report advance(std::span<Limit> limits);
 
   /// Moves apart what overlaps, without speed: for overlaps that are found after a substep.
   /// @param contacts  of trees that are awake; their impulses do not matter
@@ -143,15 +151,13 @@ class System {
   };
   template <class Visit>
   void each_that_takes_part(Visit visit) const;
-  int find(int tree);
   bool changed(int tree) const;
   void forget_pushes();
   bool comes_to_touch(const Contact& contact) const;
   void note_commands();
   void settle(int first_tree, int last_tree, bool carried, double swept_miss = 0);
   void find_awake();
-  void gather(std::span<const Contact> contacts, std::span<const Servo> servos,
-              std::span<const Limit> limits);
+  void gather();
   void fetch_after(std::size_t island) const;
   void gather_island(int first_tree, int last_tree, int first_item, int last_item);
   void solve_island(int first_tree, int last_tree, int first_item, int last_item);
@@ -177,7 +183,7 @@ class System {
   std::vector<unsigned char> watch_;
   std::vector<int> awake_, disturbed_;
   std::vector<unsigned char> fast_;  ///< of each tree: what strikes it may throw it elsewhere
-  std::vector<int> between_;  // contacts of two trees
+  std::vector<Ends> ends_;  // of contacts_
   double length_ = 0;
   std::span<Contact> contacts_;
   std::span<Servo> servos_;

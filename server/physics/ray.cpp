@@ -311,27 +311,35 @@ std::optional<RayHit> Rays::cast(const RayQuery& query) const {
   return flight.end();
 }
 
-void Rays::find(const Vector3& low, const Vector3& high,
-                std::vector<std::size_t>& colliders) const {
-  struct Policy : btDbvt::ICollide {
-    std::vector<std::size_t>& found;
-    explicit Policy(std::vector<std::size_t>& found_in) : found(found_in) {}
-    void Process(const btDbvtNode* leaf) override {
-      found.push_back(static_cast<std::size_t>(leaf->dataAsInt));
-    }
-  } policy(colliders);
-  colliders.clear();
+void Rays::find(const Vector3& low, const Vector3& high, std::span<const std::size_t> ignored,
+                Candidates& out) const {
+  constexpr std::size_t few = 32;
   const Parts& p = *parts_;
-  p.tree.collideTVNoStackAlloc(p.tree.m_root, btDbvtVolume::FromMM(to_bullet(low), to_bullet(high)),
-                               p.stack, policy);
+  const btDbvtVolume box = btDbvtVolume::FromMM(to_bullet(low), to_bullet(high));
+  out.colliders.clear();
+  p.stack.resize(0);
+  if (p.tree.m_root) p.stack.push_back(p.tree.m_root);
+  while (p.stack.size() > 0 && out.colliders.size() <= few) {
+    const btDbvtNode& node = *p.stack[p.stack.size() - 1];
+    p.stack.pop_back();
+    if (!Intersect(node.volume, box)) continue;
+    if (node.isinternal()) {
+      p.stack.push_back(node.childs[0]);
+      p.stack.push_back(node.childs[1]);
+      continue;
+    }
+    const auto collider = static_cast<std::size_t>(node.dataAsInt);
+    if (std::ranges::find(ignored, p.solids[collider].entity) == ignored.end()) out.colliders.push_back(collider);
+  }
+  out.are_few = out.colliders.size() <= few;
 }
 
-std::optional<RayHit> Rays::cast(const RayQuery& query,
-                                 std::span<const std::size_t> colliders) const {
+std::optional<RayHit> Rays::cast(const RayQuery& query, const Candidates& candidates) const {
+  if (!candidates.are_few) return cast(query);
   const Parts& p = *parts_;
   Flight flight(p, query);
   if (!flight.valid) return std::nullopt;
-  for (const std::size_t collider : colliders) {
+  for (const std::size_t collider : candidates.colliders) {
     const btDbvtNode* leaf = p.solids[collider].leaf;
     if (flight.passes(leaf->volume)) flight.Process(leaf);
   }

@@ -25,6 +25,12 @@ struct RayQuery {
   bool sees_floor = false;
 };
 
+/// Colliders that rays in one place may meet.
+struct Candidates {
+  std::vector<std::size_t> colliders;
+  bool are_few = false;  ///< otherwise not all are listed: a ray finds the first faster by itself
+};
+
 class Rays {
  public:
   explicit Rays(const scene::Physics& physics);
@@ -49,13 +55,14 @@ class Rays {
   /// touches is met at 0. The floor is met from above only.
   std::optional<RayHit> cast(const RayQuery& query) const;
 
-  /// Colliders that may reach into a box, for many rays in one place.
-  /// @param low, high  corners of the box in W [m];  @param colliders  emptied before
+  /// What may reach into a box, for many rays in one place.
+  /// @param low, high  corners of the box in W [m];  @param ignored  entities without which
   void find(const math::Vector3& low, const math::Vector3& high,
-            std::vector<std::size_t>& colliders) const;
+            std::span<const std::size_t> ignored, Candidates& out) const;
 
-  /// The same as cast(query) for a segment inside the box of find(); faster where they are few.
-  std::optional<RayHit> cast(const RayQuery& query, std::span<const std::size_t> colliders) const;
+  /// The same as cast(query) for a segment inside the box of find() that ignores what it did;
+  /// faster.
+  std::optional<RayHit> cast(const RayQuery& query, const Candidates& candidates) const;
 
  private:
   struct Parts;

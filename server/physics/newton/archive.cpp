@@ -93,7 +93,7 @@ void archive_fields(math::Archive& archive, Contacts& contacts) {
   }
   contacts.near_.clear();
   contacts.contacts_.clear();
-  contacts.owner_.clear();
+  contacts.owners_.clear();
   contacts.met_.clear();
   contacts.turned_.clear();
 }

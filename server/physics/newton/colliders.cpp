@@ -19,8 +19,10 @@ namespace {
 // How much larger than needed a new box is made: by some steps at the present speed, as far as that
 // is little for its size, and at least by so much [m].
 constexpr double least_slack = 1e-3;
-constexpr double steps_ahead = 6;
+constexpr double steps_ahead = 12;
 constexpr double share_of_size = 0.1;
+
+constexpr std::size_t most_ahead = 8;  // colliders whose memory is asked for
 
 bool inside(const btVector3& outer_low, const btVector3& outer_high, const btVector3& low,
             const btVector3& high) {
@@ -63,15 +65,6 @@ std::optional<Collider> make_collider(const Body& body, const scene::Entity& ent
 /// The fastest that a point of it may be [m/s].
 double speed_of(const Collider& collider) {
   return collider.velocity.length() + collider.angular_velocity.length() * collider.radius;
-}
-
-/// Asks for the memory that follow() reads of the trees after one.
-void fetch_after(std::size_t number, const std::vector<dynamics::Tree>& trees) {
-  if (number + 4 < trees.size()) dynamics::fetch(&trees[number + 4], sizeof(dynamics::Tree));
-  if (number + 2 >= trees.size()) return;
-  dynamics::fetch(trees[number + 2].rotation);
-  dynamics::fetch(trees[number + 2].position);
-  dynamics::fetch(trees[number + 2].motion);
 }
 
 }  // namespace
@@ -273,11 +266,28 @@ void Colliders::follow(const dynamics::System& system, double length, const Tree
   });
 }
 
+/// Asks for the memory that follow() takes for the groups after one.
+void Colliders::fetch_after(const ColliderGroup& group, const dynamics::System& system) const {
+  const auto later = [&](std::size_t by) -> const ColliderGroup* {
+    const std::size_t index = static_cast<std::size_t>(&group - groups.data()) + by;
+    return index < groups.size() && groups[index].moves ? &groups[index] : nullptr;
+  };
+  if (const ColliderGroup* next = later(6)) dynamics::fetch(&system.trees[next->entity], sizeof(dynamics::Tree));
+  if (const ColliderGroup* next = later(3)) {
+    const dynamics::Tree& tree = system.trees[next->entity];
+    dynamics::fetch(tree.rotation);
+    dynamics::fetch(tree.position);
+    dynamics::fetch(tree.motion);
+    dynamics::fetch(&all[next->first], std::min(next->count, most_ahead) * sizeof(Collider));
+    dynamics::fetch(next->proxy, sizeof(*next->proxy));
+  }
+}
+
 /// Takes the poses and motions of its colliders, and notes whether it is fast.
 /// @return  how far it moves [m]
 double Colliders::follow(ColliderGroup& group, const dynamics::System& system, double length) {
   double fastest = 0;
-  if (group.moves) fetch_after(group.entity, system.trees);
+  if (group.moves) fetch_after(group, system);
   for (std::size_t i = group.first; i < group.first + group.count; ++i) {
     Collider& collider = all[i];
     collider.reach = least_reach(length);

@@ -133,6 +133,7 @@ class Colliders {
   struct Hits;
   void place(Collider& collider, const dynamics::Tree& tree) const;
   double follow(ColliderGroup& group, const dynamics::System& system, double length);
+  void fetch_after(const ColliderGroup& group, const dynamics::System& system) const;
   void enclose(ColliderGroup& group);
   void keep_in_box(ColliderGroup& group, double step, bool shrinks);
   void insert(ColliderGroup& group, std::size_t index);

@@ -151,6 +151,12 @@ contact::Contacts look_at_thrown(const Colliders& colliders, std::size_t a, std:
   return {};
 }
 
+/// Whether each of two colliders is chosen, or stands.
+bool is_among(std::size_t a, std::size_t b, const Colliders& colliders, const TreeSet& chosen) {
+  const auto counts = [&](const Collider& collider) { return !collider.moves || chosen.holds[collider.entity]; };
+  return counts(colliders.all[a]) && counts(colliders.all[b]);
+}
+
 }  // namespace
 
 dynamics::Contact law_of(const Collider& a, const Collider& b, const math::Vector3& normal,
@@ -176,8 +182,7 @@ std::span<dynamics::Contact> Contacts::find(double length) {
   apart_ = dynamics::slow_impact * length;
   colliders_.find_near(near_);
   meet_all(length);
-  const auto awake = std::ranges::count_if(met_, [&](int pair) { return !pairs_[pair].rests; });
-  if (colliders_.woke || static_cast<std::size_t>(awake) + resting_ != live_) drop_unseen();
+  if (colliders_.woke || awake_ + resting_ != live_) drop_unseen();
   drop_hidden();
   return contacts_;
 }
@@ -200,9 +205,11 @@ void Contacts::meet_all(double length) {
   ++part_;
   swings.clear();
   contacts_.clear();
-  owner_.clear();
+  owners_.clear();
   turned_.clear();
   met_.clear();
+  on_bases_.clear();
+  awake_ = 0;
   floor_pairs_.resize(colliders_.all.size(), 0);
   lists_.resize(colliders_.all.size());
   for (const Near& near : near_) {
@@ -228,31 +235,21 @@ std::span<dynamics::Contact> Contacts::add_resting() {
   for (std::size_t i = 1; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
     if (!pair.live || pair.seen == substep_) continue;
-    pair.first = static_cast<std::uint32_t>(contacts_.size());
     emit(pair);
   }
   return contacts_;
 }
 
-/// Whether each side is chosen, or stands.
-bool Contacts::is_among(const Pair& pair, const TreeSet& chosen) const {
-  const auto counts = [&](std::size_t i) {
-    const Collider& collider = colliders_.all[i];
-    return !collider.moves || chosen.holds[collider.entity];
-  };
-  return counts(pair.a) && counts(pair.b);
-}
-
 void Contacts::choose(const TreeSet& chosen) {
   met_.clear();
   for (std::size_t i = 1; i < pairs_.size(); ++i) {
-    if (pairs_[i].count > 0 && is_among(pairs_[i], chosen)) met_.push_back(static_cast<int>(i));
+    if (pairs_[i].count > 0 && is_among(pairs_[i].a, pairs_[i].b, colliders_, chosen)) met_.push_back(static_cast<int>(i));
   }
 }
 
 std::span<dynamics::Contact> Contacts::keep(const TreeSet& chosen) {
-  keep_if([&](std::size_t i) { return is_among(pairs_[owner_[i]], chosen); });
-  std::erase_if(turned_, [&](std::size_t pair) { return !is_among(pairs_[pair], chosen); });
+  keep_if([&](const Pair& pair) { return is_among(pair.a, pair.b, colliders_, chosen); });
+  std::erase_if(turned_, [&](std::size_t pair) { return !is_among(pairs_[pair].a, pairs_[pair].b, colliders_, chosen); });
   return contacts_;
 }
 
@@ -264,6 +261,7 @@ void Contacts::meet(Pair& pair, double length) {
   resting_ -= pair.rests;
   pair.rests = colliders_.rests(a) && colliders_.rests(b);
   resting_ += pair.rests;
+  awake_ += !pair.rests;
   Turning turning;
   contact::Contacts found = look(a, b, length, most_points, turning);
   if (found.count == 0 && !colliders_.thrown.empty()) {
@@ -271,6 +269,7 @@ void Contacts::meet(Pair& pair, double length) {
   }
   if (turning.swing > 0) swings.push_back({static_cast<int>((a.swings ? a : b).entity), turning.swing});
   add(found, pair, length);
+  if (found.count > 0) note_bases(pair);
   if (turning.tumbles && !(a.moves && b.moves)) turned_.push_back(&pair - pairs_.data());
 }
 
@@ -289,7 +288,6 @@ void Contacts::add(const contact::Contacts& found, Pair& pair, double length) {
   const math::Vector3 with_a = length * from_bullet(a.velocity), with_b = length * from_bullet(b.velocity);
   pair.count = found.count;
   pair.normal = from_bullet(found.normal);
-  pair.first = static_cast<std::uint32_t>(contacts_.size());
   for (int i = 0; i < found.count; ++i) {
     const contact::Point& point = found.points[i];
     const btVector3 on_a = point.on_b + found.normal * point.distance;
@@ -323,6 +321,7 @@ void Contacts::emit(const Pair& pair) {
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
   const dynamics::Contact law = law_of(a, b, pair.normal, pair.count);
+  dynamics::fetch(contacts_.data() + contacts_.size() + ahead, pair.count * sizeof(dynamics::Contact));
   for (int i = 0; i < pair.count; ++i) {
     dynamics::Contact& contact = contacts_.emplace_back(law);
     contact.point = pair.points[i].point;
@@ -330,15 +329,21 @@ void Contacts::emit(const Pair& pair) {
     if (a.moves && b.moves) place_between(a, pair.points[i].on_a, b, pair.points[i].on_b, apart_, contact);
     contact.impulse = share_ * pair.points[i].impulse;
     contact.angular_impulse = share_ * pair.points[i].angular_impulse;
-    owner_.push_back(static_cast<int>(&pair - pairs_.data()));
+    owners_.push_back({static_cast<int>(&pair - pairs_.data()), i});
   }
 }
 
 void Contacts::remember(bool more) {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (i + 8 < contacts_.size()) dynamics::fetch(&pairs_[owner_[i + 8]], Pair::beginning);
-    Pair& pair = pairs_[owner_[i]];
-    Remembered& point = pair.points[i - pair.first];
+    if (i + ahead < contacts_.size()) {
+      const Owner& owner = owners_[i + ahead];
+      const Pair& pair = pairs_[owner.pair];
+      dynamics::fetch(&contacts_[i + ahead].impulse, 2 * sizeof(math::Vector3));
+      dynamics::fetch(&pair.share, sizeof(pair.share));
+      dynamics::fetch(&pair.points[owner.point].impulse, 2 * sizeof(math::Vector3));
+    }
+    Pair& pair = pairs_[owners_[i].pair];
+    Remembered& point = pair.points[owners_[i].point];
     if (more) pair.earlier += contacts_[i].impulse;
     if (share_ == 0) continue;
     point.impulse = contacts_[i].impulse / share_;

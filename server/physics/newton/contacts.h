@@ -61,6 +61,7 @@ class Contacts {
 
  private:
   static constexpr int most_points = 8;  // of a pair; 4 unless it tumbles
+  static constexpr std::size_t ahead = 8;  // contacts whose memory is asked for
   struct Remembered {
     math::Vector3 on_a{0, 0, 0}, on_b{0, 0, 0};  // in the colliders' frames [m]
     math::Vector3 point{0, 0, 0};
@@ -70,13 +71,12 @@ class Contacts {
   };
   // Begins a line of the cache.
   struct alignas(64) Pair {
-    static constexpr std::size_t beginning = 256;  // with the first point [bytes]
+    static constexpr std::size_t beginning = 384;  // with two points [bytes]
     std::uint32_t a = 0, b = 0;  // colliders
     bool live = false;
     bool rests = false;       // both sides did in the substep in which it was seen last
     unsigned seen = 0;        // the substep in which it was near last
     unsigned met = 0;         // likewise, counting parts as substeps
-    std::uint32_t first = 0;  // of its contacts in the list
     int count = 0;
     math::Vector3 normal{0, 0, 1};
     math::Vector3 earlier{0, 0, 0};  // impulse in earlier parts of the substep [N s]
@@ -88,12 +88,12 @@ class Contacts {
   Pair& pair_of(std::size_t a, std::size_t b, int& place);
   void meet_all(double length);
   void meet(Pair& pair, double length);
-  bool is_among(const Pair& pair, const TreeSet& chosen) const;
   void add(const contact::Contacts& found, Pair& pair, double length);
   void emit(const Pair& pair);
   bool is_inside_base(const Collider& cover, const Collider& hidden, std::size_t mover, const btVector3& up, btScalar height,
                       const btVector3& point);
   bool covers(const Pair& seen, const Pair& hidden, std::size_t mover);
+  void note_bases(const Pair& pair);
   void drop_hidden();
   template <class IsKept>
   void keep_if(IsKept is_kept);
@@ -104,7 +104,8 @@ class Contacts {
   Colliders& colliders_;
   std::vector<Pair> pairs_;  // [0] is none
   std::vector<int> unused_;
-  std::size_t live_ = 0, resting_ = 0;
+  std::size_t live_ = 0, resting_ = 0;  // pairs
+  std::size_t awake_ = 0;               // that the last meet_all() saw
   std::unordered_map<std::uint64_t, int>
       places_;                         // of pairs by their colliders; not with the floor
   double apart_ = 0;                   // what is farther apart and touches meets later in the substep [m]
@@ -117,7 +118,11 @@ class Contacts {
   std::vector<int> forgotten_;    // pairs, in forget()
   std::vector<int> neighbours_;   // of a collider, in is_inside_base()
   std::vector<dynamics::Contact> contacts_;
-  std::vector<int> owner_;                      // pair of each contact
+  /// Where a contact is remembered.
+  struct Owner {
+    int pair = 0, point = 0;
+  };
+  std::vector<Owner> owners_;                   // of each contact
   std::array<Remembered, most_points> before_;  // of the pair under way, a substep ago
   std::vector<std::size_t> turned_;             // pairs of the substep, one side of which stands
   std::vector<dynamics::Contact> overlaps_;     // of these
@@ -133,20 +138,17 @@ class Contacts {
   std::vector<OnBase> on_bases_;
 };
 
-/// @param is_kept  of the place of a contact: the same for all of a pair
+/// Leaves the contacts of some pairs.
 template <class IsKept>
 void Contacts::keep_if(IsKept is_kept) {
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < owner_.size(); ++i) {
-    Pair& pair = pairs_[owner_[i]];
-    const bool first = pair.first == i;
-    if (!is_kept(i)) continue;
-    if (first) pair.first = static_cast<std::uint32_t>(kept);
+  for (std::size_t i = 0; i < owners_.size(); ++i) {
+    if (!is_kept(pairs_[owners_[i].pair])) continue;
     contacts_[kept] = contacts_[i];
-    owner_[kept++] = owner_[i];
+    owners_[kept++] = owners_[i];
   }
   contacts_.resize(kept);
-  owner_.resize(kept);
+  owners_.resize(kept);
 }
 
 }  // namespace ziggurat::physics

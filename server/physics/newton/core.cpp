@@ -136,6 +136,18 @@ void push_apart_what_turned(dynamics::System& system, Contacts& contacts, std::s
   }
 }
 
+/// Wakes all trees but some.
+/// @return  whether something slept
+bool wake_others(dynamics::System& system, const TreeSet& those) {
+  bool woke = false;
+  for (std::size_t i = 0; i < those.holds.size(); ++i) {
+    if (those.holds[i] || !system.asleep(static_cast<int>(i))) continue;
+    system.wake(static_cast<int>(i));
+    woke = true;
+  }
+  return woke;
+}
+
 }  // namespace
 
 NewtonCore::NewtonCore(const scene::Physics& physics) : settings_(physics) {}
@@ -294,10 +306,20 @@ void NewtonCore::remember(const Share& share) {
   });
 }
 
-void NewtonCore::step(std::span<dynamics::Contact> contacts, const Share& share) {
+/// Wakes what something disturbs. Then what rests may be touched, too.
+/// @param contacts  in and out;  @param woke  whether something woke before
+/// @return          whether something has woken
+bool NewtonCore::wake_disturbed(const Share& share, std::span<dynamics::Contact>& contacts, bool woke) {
+  woke |= system_.wake_disturbed(share.length, contacts, servos_, share.trees());
+  if (!woke || share.chosen) return woke;
+  contacts = contacts_.add_resting();
+  return system_.wake_disturbed(share.length, contacts, servos_, share.trees()) || woke;
+}
+
+/// Moves on what wake_disturbed() has been told.
+void NewtonCore::step(const Share& share) {
   system_.swings = contacts_.swings;
-  const dynamics::Report report =
-      system_.step(share.length, contacts, servos_, limits_, share.trees());
+  const dynamics::Report report = system_.advance(limits_);
   if (!system_.left.trees.empty()) {
     choose(chosen_, system_.left.trees, false, system_.trees.size());
     contacts_.keep(chosen_);
@@ -317,12 +339,15 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
   colliders_.follow(system_, length);
   prepare(bodies, whole);
   std::span<dynamics::Contact> contacts = contacts_.find(length);
-  bool woke = stiff && wake_stiff(*stiff);
-  woke |= system_.wake_disturbed(length, contacts, servos_);
-  if (woke) contacts = contacts_.add_resting();
+  bool woke = false;
+  if (stiff) {  // what takes the substep in parts must be awake
+    division_.find(stiff->stiff_pairs(), contacts_.near(), {}, colliders_.all, system_.trees);
+    woke = wake_others(system_, division_.with(0));
+  }
+  woke = wake_disturbed(whole, contacts, woke);
   woke |= foresee(whole, contacts, woke);
   if (!stiff) {
-    step(contacts, whole);
+    step(whole);
     return divide(bodies, whole);
   }
   if (woke) {  // what has just woken, or is thrown, may touch others
@@ -333,7 +358,8 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
     const auto is_other = [&](const auto& item) { return !whole.chosen->holds[item.tree]; };
     std::erase_if(servos_, is_other);
     std::erase_if(limits_, is_other);
-    step(contacts_.keep(*whole.chosen), whole);
+    system_.wake_disturbed(length, contacts_.keep(*whole.chosen), servos_, whole.trees());
+    step(whole);
     divide(bodies, whole);
   }
   for (const int count : division_.counts()) {
@@ -348,14 +374,13 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
 bool NewtonCore::foresee(const Share& share, std::span<dynamics::Contact>& contacts, bool& woke) {
   constexpr int most_blows = 8;
   bool any = false;
-  for (int i = 0; i < most_blows && system_.foresee(contacts, limits_, least_reach(share.length), colliders_.fast, foresight_); ++i) {
+  for (int i = 0; i < most_blows && system_.foresee(limits_, least_reach(share.length), colliders_.fast, foresight_); ++i) {
     const SpeedsComeBack at_the_end{system_, foresight_};
     swap_speeds(system_.trees, foresight_);
     if (!colliders_.widen(foresight_.trees, system_, share.length)) break;
     any = true;
     contacts = share.chosen ? contacts_.find(share.length, *share.chosen, share.of_impulses) : contacts_.find(share.length);
-    woke |= system_.wake_disturbed(share.length, contacts, servos_, share.trees());
-    if (woke && !share.chosen) contacts = contacts_.add_resting();
+    woke = wake_disturbed(share, contacts, woke);
   }
   return any;
 }
@@ -365,23 +390,9 @@ void NewtonCore::take_part(std::span<Body> bodies, const Share& part) {
   colliders_.follow(system_, part.length, *part.chosen);
   prepare(bodies, part);
   std::span<dynamics::Contact> contacts = contacts_.find(part.length, *part.chosen, part.of_impulses);
-  bool woke = system_.wake_disturbed(part.length, contacts, servos_, part.trees());
+  bool woke = wake_disturbed(part, contacts, false);
   foresee(part, contacts, woke);
-  step(contacts, part);
-}
-
-/// What takes the substep in parts must be awake.
-/// @return  whether something was not
-bool NewtonCore::wake_stiff(const Plugin& stiff) {
-  division_.find(stiff.stiff_pairs(), contacts_.near(), {}, colliders_.all, system_.trees);
-  const TreeSet& whole = division_.with(0);
-  bool woke = false;
-  for (std::size_t i = 0; i < whole.holds.size(); ++i) {
-    if (whole.holds[i] || !system_.asleep(static_cast<int>(i))) continue;
-    system_.wake(static_cast<int>(i));
-    woke = true;
-  }
-  return woke;
+  step(part);
 }
 
 /// Moves a set of trees on in steps of length / count. Forces act in the middle of each, as

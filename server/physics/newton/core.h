@@ -71,8 +71,8 @@ class NewtonCore {
     std::span<const int> trees() const { return chosen ? chosen->trees : std::span<const int>(); }
   };
   void prepare(std::span<Body> bodies, const Share& share);
-  void step(std::span<dynamics::Contact> contacts, const Share& share);
-  bool wake_stiff(const Plugin& stiff);
+  bool wake_disturbed(const Share& share, std::span<dynamics::Contact>& contacts, bool woke);
+  void step(const Share& share);
   bool foresee(const Share& share, std::span<dynamics::Contact>& contacts, bool& woke);
   void take_part(std::span<Body> bodies, const Share& part);
   void remember(const Share& share);

@@ -54,26 +54,25 @@ bool Contacts::covers(const Pair& seen, const Pair& hidden, std::size_t mover) {
   return true;
 }
 
+/// Notes a pair that touches for each of its sides that moves, where the other may have others beside it.
+void Contacts::note_bases(const Pair& pair) {
+  const int number = static_cast<int>(&pair - pairs_.data());
+  const auto note = [&](std::size_t mover, std::size_t on) {
+    const Collider& base = colliders_.all[on];
+    if (!base.moves) {
+      on_bases_.push_back({mover, Collider::floor, 0, on, number});
+    } else if (colliders_.groups[base.group].count > 1) {
+      on_bases_.push_back({mover, base.entity, base.part, on, number});
+    }
+  };
+  if (colliders_.all[pair.a].moves) note(pair.a, pair.b);
+  if (colliders_.all[pair.b].moves) note(pair.b, pair.a);
+}
+
 /// Drops contacts with inner edges: those between colliders that stand flush beside each other, in
 /// the world or in one body.
 void Contacts::drop_hidden() {
-  const auto is_compound = [&](const Collider& base) { return base.moves && colliders_.groups[base.group].count > 1; };
-  on_bases_.clear();
-  for (std::size_t i = 0; i < owner_.size(); ++i) {
-    const Pair& pair = pairs_[owner_[i]];
-    if (pair.first != i) continue;
-    const auto add = [&](std::size_t mover, std::size_t on) {
-      const Collider& base = colliders_.all[on];
-      if (!base.moves) {
-        on_bases_.push_back({mover, Collider::floor, 0, on, owner_[i]});
-      } else if (is_compound(base)) {
-        on_bases_.push_back({mover, base.entity, base.part, on, owner_[i]});
-      }
-    };
-    if (colliders_.all[pair.a].moves) add(pair.a, pair.b);
-    if (colliders_.all[pair.b].moves) add(pair.b, pair.a);
-  }
-  std::sort(on_bases_.begin(), on_bases_.end());
+  if (!std::ranges::is_sorted(on_bases_)) std::ranges::sort(on_bases_);
   const auto same_base = [](const OnBase& a, const OnBase& b) {
     return a.mover == b.mover && a.entity == b.entity && a.part == b.part;
   };
@@ -91,7 +90,7 @@ void Contacts::drop_hidden() {
       }
     }
   }
-  if (dropped) keep_if([&](std::size_t i) { return pairs_[owner_[i]].count > 0; });
+  if (dropped) keep_if([](const Pair& pair) { return pair.count > 0; });
 }
 
 }  // namespace ziggurat::physics

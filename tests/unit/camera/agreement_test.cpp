@@ -87,7 +87,7 @@ class BothDetectors {
   void place_camera(const Pose& pose) { stage_.state.origins.back() = pose; }
 
   bool clear(const Vector3& eye, const Vector3& target) const {
-    return devices::Sight{rays_, 0, nullptr, nullptr, {}, false}.clear(eye, target);
+    return devices::Sight{rays_, 0, nullptr, nullptr, {}}.clear(eye, target);
   }
 
   std::map<int, std::array<Vector2, 4>> simulated() {

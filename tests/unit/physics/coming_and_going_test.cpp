@@ -227,9 +227,9 @@ TEST(RemoveEntity, IsIgnoredByRays) {
   rays.remove(0);
   rays.update(state_of(world));
   EXPECT_EQ(rays.cast(query)->entity, 1u);
-  std::vector<std::size_t> near;
-  rays.find({0, -1, 0}, {5, 1, 1}, near);
-  EXPECT_EQ(near.size(), 1u);
+  Candidates near;
+  rays.find({0, -1, 0}, {5, 1, 1}, {}, near);
+  EXPECT_EQ(near.colliders.size(), 1u);
 }
 
 TEST(AddAndRemoveEntity, AThousandTimesLeavesTheWorldUnchanged) {
