@@ -28,13 +28,17 @@ bool may_carry(const Problem& problem, const Block& block) {
   return u[0] <= resting;
 }
 
-/// Notes which trees what touches them from below carries.
+/// Notes which trees what touches them from below carries, and what contacts gave them in the last substep.
 void find_carried(Problem& problem) {
   problem.carried.assign(problem.trees.size(), 0.0);
+  problem.pressed.assign(problem.trees.size(), Vector3::Zero());
   for (const Block& block : problem.blocks) {
-    if (!may_carry(problem, block)) continue;
+    if (block.kind != Block::Source::contact) continue;
     Vector3 push = Vector3::Zero();
     for (int r = 0; r < std::min(block.rows, 3); ++r) push += block.impulse[r] * block.frame.col(r);
+    if (block.a >= 0) problem.pressed[block.a] += push;
+    if (block.b >= 0) problem.pressed[block.b] -= push;
+    if (!may_carry(problem, block)) continue;
     if (block.a >= 0) problem.carried[block.a] -= push.dot(problem.trees[block.a]->gravity);
     if (block.b >= 0) problem.carried[block.b] += push.dot(problem.trees[block.b]->gravity);
   }
@@ -53,19 +57,22 @@ double pull_of(const Problem& problem, const Block& block) {
   return block.frame.col(0).dot(fall_of(problem, block.a) - fall_of(problem, block.b));
 }
 
-/// What pushes give a tree at the substep's beginning [m/s].
-Vector3 push_of(const Problem& problem, int place) {
-  Vector3 sum = Vector3::Zero();
-  if (place < 0 || !problem.trees[place]->free_root) return sum;
-  for (const Wrench& wrench : problem.trees[place]->external) sum += wrench.force;
-  return problem.length / problem.total_mass[place] * sum;
+/// What pushes give a tree along a direction at the substep's beginning, without what contacts held of it in the last one [m/s].
+double push_of(const Problem& problem, int place, const Vector3& along) {
+  if (place < 0 || !problem.trees[place]->free_root) return 0;
+  double push = 0;
+  for (const Wrench& wrench : problem.trees[place]->external) push += problem.length * wrench.force.dot(along);
+  const double held = problem.pressed[place].dot(along), left = push * held < 0 ? push + held : push;
+  return left * push > 0 ? left / problem.total_mass[place] : 0;
 }
 
 /// How fast the surfaces of a contact part at the substep's beginning [m/s].
 double parting_of(const Problem& problem, const Block& block) {
   double u[Block::most_rows];
   problem.speeds(block, u);
-  return u[0] + block.frame.col(0).dot(push_of(problem, block.a) - push_of(problem, block.b));
+  if (block.gap <= touching) return u[0];  // what touches already is pressed, not thrown
+  const Vector3 normal = block.frame.col(0);
+  return u[0] + push_of(problem, block.a, normal) - push_of(problem, block.b, normal);
 }
 
 /// When in the substep surfaces meet, and with which speed and how far apart they are at its end.
@@ -165,7 +172,8 @@ void aim_rebounds(Problem& problem) {
   for (Block& block : problem.blocks) {
     const auto hides_it = [&](const Block& other) {
       const auto shares = [&](int tree) { return tree >= 0 && (tree == block.a || tree == block.b); };
-      return other.bounces && other.met < block.met && (shares(other.a) || shares(other.b)) && !is_met_after(problem, block, other);
+      const bool is_later = block.before * (other.met - block.met) > touching;  // flat faces are not so exactly flat
+      return other.bounces && is_later && (shares(other.a) || shares(other.b)) && !is_met_after(problem, block, other);
     };
     if (!block.bounces || std::ranges::none_of(problem.blocks, hides_it)) continue;
     block.bounces = false;

@@ -97,6 +97,20 @@ void put_back(std::vector<Tree>& trees, std::span<const int> island, const std::
   }
 }
 
+/// Whether bodies would pass through a surface on the way that gravity bends, though their speed at its end does not say so:
+/// what a push nearly carries.
+bool is_crossed(const Problem& problem, const Block& block, double allowed) {
+  if (block.kind != Block::Source::contact) return false;
+  const auto fall = [&](int place) -> Vector3 {
+    if (place < 0 || !problem.trees[place]->free_root) return Vector3::Zero();
+    return problem.trees[place]->gravity;
+  };
+  double u[Block::most_rows];
+  problem.speeds(block, u);
+  const double pull = block.frame.col(0).dot(fall(block.a) - fall(block.b));
+  return pull > 0 && block.gap + problem.length * (u[0] - problem.length / 2 * pull) < -allowed;
+}
+
 /// Notes which trees of an island nothing but motors of joints acts on: what they come near does not hold them.
 /// @param allowed  see holds()
 /// @return         how many
@@ -106,7 +120,7 @@ std::size_t find_free(const Problem& problem, std::span<const Servo> servos, dou
   const auto touch = [&](int tree) { count -= tree >= 0 && std::exchange(out[tree], 0); };
   for (const Block& block : problem.blocks) {
     const bool is_motor = block.kind == Block::Source::servo && servos[block.source].dof >= 0;
-    if (is_motor || !holds(block, allowed)) continue;
+    if (is_motor || !(holds(block, allowed) || is_crossed(problem, block, allowed))) continue;
     touch(block.a);
     touch(block.b);
     if (count == 0) break;

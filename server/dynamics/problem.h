@@ -73,6 +73,7 @@ struct Problem {
   std::vector<double> total_mass;              ///< of each tree [kg]
   double weight = 0;                           ///< of all trees [N]
   std::vector<double> carried;                 ///< memory of solve_velocities(): what carries each tree, times gravity [N s m/s^2]
+  std::vector<Vector3> pressed;                ///< likewise: what contacts gave each tree in the last substep [N s]
   std::vector<double> velocity;                ///< v: start and solution
   bool in_turn = false;                        ///< its impacts were taken in the order of time: they say where all of it ends
   std::vector<std::pair<int, int>> couplings;  ///< pairs of trees that meet in a block

@@ -12,26 +12,38 @@ namespace {
 constexpr double rounding = 1e-9;       // of the energy
 constexpr double more_than_moved = 1.02;  // the square of how much farther than its speeds say it may be moved
 
-/// f^T M^-1 f of a tree.
-double work_on_mass(const Problem& problem, std::size_t tree, const Eigen::VectorXd& force) {
-  const auto n = force.size();
-  const Eigen::MatrixXd mass = Eigen::Map<const Eigen::MatrixXd>(problem.mass_of(tree), n, n);
-  return force.dot(mass.llt().solve(force));
-}
-
-/// What pushes the trees, without gravity, does in the substep, of which v is the solution. Where impacts were taken in turn, pushes act before
-/// them: a body may go another way at the end.
-double work_of_pushes(const Problem& problem, Workspace& work) {
+/// Gives the trees what pushes them, without gravity, as it acts: at once, before any impact.
+/// @param start   velocities at the substep's beginning, of each dof: in, without it; out, with it
+/// @param change  out: of each dof
+/// @return        its work [J]
+double push(const Problem& problem, Workspace& work, std::vector<double>& start, std::vector<double>& change) {
   double sum = 0;
+  change.assign(start.size(), 0);
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];
-    work.scratch.resize(tree.dofs);
+    const int n = tree.dofs;
+    work.scratch.resize(n);
     external_forces(tree, work, work.scratch, true, false);
-    const Eigen::Map<const Eigen::VectorXd> force(work.scratch.data(), tree.dofs), before(tree.v.data(), tree.dofs);
-    const Eigen::Map<const Eigen::VectorXd> after(problem.velocity.data() + problem.offset[i], tree.dofs);
-    if (force.isZero(0)) continue;
-    const double mean = force.dot(before + after) / 2;
-    sum += problem.length * (problem.in_turn ? force.dot(before) + problem.length / 2 * work_on_mass(problem, i, force) : mean);
+    const Eigen::VectorXd impulse = problem.length * Eigen::Map<const Eigen::VectorXd>(work.scratch.data(), n);
+    if (impulse.isZero(0)) continue;
+    const Eigen::MatrixXd mass = Eigen::Map<const Eigen::MatrixXd>(problem.mass_of(i), n, n);
+    Eigen::Map<Eigen::VectorXd> before(start.data() + problem.offset[i], n), faster(change.data() + problem.offset[i], n);
+    faster = mass.llt().solve(impulse);
+    sum += impulse.dot(before + faster / 2);
+    before += faster;
+  }
+  return sum;
+}
+
+/// What contacts that do not rebound take of the work of pushes: these press, and do not move what is held.
+/// @param change  see push()
+double work_held(const Problem& problem, const std::vector<double>& change) {
+  double sum = 0;
+  for (const Block& block : problem.blocks) {
+    if (block.kind != Block::Source::contact || problem.rebounded(block)) continue;
+    double u[Block::most_rows];
+    problem.speeds(block, u, change.data());
+    for (int r = 0; r < block.rows; ++r) sum += std::min(0.0, block.impulse[r] * u[r] / 2);
   }
   return sum;
 }
@@ -181,9 +193,10 @@ void bound_impacts(Problem& problem, Solver& solver, Workspace& work, Rebound& o
   for (const Tree* tree : problem.trees) {
     out.start.insert(out.start.end(), tree->v.begin(), tree->v.end());
   }
+  const double pushed = push(problem, work, out.start, out.change);
   const double share = share_without_gain(problem, out.without, out.start);
   if (share < 1) blend(problem, out.without, share);
-  out.most_energy = energy(problem.trees) + work_of_pushes(problem, work) + work_of_servos(problem, out.without);
+  out.most_energy = energy(problem.trees) + pushed + work_held(problem, out.change) + work_of_servos(problem, out.without);
 }
 
 bool lifts_too_much(const Problem& problem, Workspace& work, const Rebound& rebound,

@@ -13,8 +13,8 @@ namespace ziggurat::dynamics {
 struct Rebound {
   double most_energy = 0;  ///< kinetic and potential, at the substep's end [J]
   Snapshot without;        ///< the solution without rebound
-  std::vector<double> start;          ///< velocities at the substep's beginning, of each dof
-  std::vector<double> after, change;  ///< of bound_energy(), which uses their memory again
+  std::vector<double> start;          ///< velocities at the substep's beginning, with what pushes give, of each dof
+  std::vector<double> after, change;  ///< memory of functions
 };
 
 /// Whether a contact of the island pushes and rebounds; to be called when its problem is solved.

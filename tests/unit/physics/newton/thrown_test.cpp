@@ -207,6 +207,24 @@ TEST(NewtonThrown, APushStopsAtAWall) {
   }
 }
 
+// It rose by g h^2 / 2 in each substep, and through the ceiling: its speed at the end of each was none.
+TEST(NewtonThrown, WhatAPushNearlyCarriesStaysBelowACeiling) {
+  for (const double hz : rates) {
+    for (const double share : {0.9, 0.99, 0.999, 1.0, 1.001, 1.5}) {
+      World world(newton(false), 1 / hz);
+      world.add(standing(at(0, 0, 0), scene::Box{{0.4, 0.4, 0.1}}));
+      world.add(loose(at(0, 0, -0.01), scene::Box{{0.01, 0.01, 0.01}}, 0.0075));
+      const world::Push push{1, Vector3(0, 0, share * 0.0075 * earth), Vector3::Zero()};
+      set_pushes(world, std::span(&push, 1));
+      for (int i = 0; i < hz; ++i) {
+        world.step();
+        ASSERT_LT(origin(world, 1).position.z(), -0.01 + 2e-6) << hz << ' ' << share << ' ' << i;
+      }
+      EXPECT_LT(std::abs(origin(world, 1).position.z() + 0.01), share < 1 ? 1 : 1e-5) << hz << ' ' << share;
+    }
+  }
+}
+
 // It slept after 0.3 s, with its motor running.
 TEST(NewtonThrown, WhatAMotorMovesSlowlyDoesNotSleep) {
   for (const double speed : {3e-5, 3e-4}) {
