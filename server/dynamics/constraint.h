@@ -28,6 +28,9 @@ struct Contact {
   /// From the point on a to that on b, where both move: what meets later in the substep is not there yet [m].
   Vector3 until_met{0, 0, 0};
   Vector3 normal{0, 0, 1};  ///< unit, from b to a
+  /// Of a round body that touches another one that moves: the velocity of the point of contact, which is that of neither's material [m/s].
+  Vector3 velocity{0, 0, 0};
+  bool rolls = false;       ///< it has that velocity
   double gap = 0;           ///< along the normal; negative = overlap [m]
   double friction = 0;      ///< Coulomb coefficient
   double rolling = 0;       ///< lever of the torque that resists rolling [m]

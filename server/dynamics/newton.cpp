@@ -331,7 +331,7 @@ Outcome Solver::solve(Problem& problem) {
     sweep_until_converged(problem, outcome, options.most_sweeps);
     return outcome;
   }
-  if (work <= options.newton_work) {
+  if (options.suits_newton(problem.trees.size(), work)) {
     if (iterate(problem, outcome, options.most_far)) return outcome;
     start_.give_back(problem);
     ease(problem, outcome);
@@ -427,7 +427,7 @@ bool Solver::soften_after_sweeps(Problem& problem, Outcome& outcome) {
 void Solver::solve_displacement(Problem& problem) {
   Outcome outcome;
   const double work = start(problem);
-  if (work <= options.newton_work) {
+  if (options.suits_newton(problem.trees.size(), work)) {
     take_speeds(problem);
     if (iterate(problem, outcome, options.most_iterations)) return;
     start_.give_back(problem);

@@ -37,6 +37,8 @@ struct Beginning {
 
 struct SolverOptions {
   double newton_work = 3e4;  ///< multiplications of a factorisation; more: not on the law itself
+  std::size_t few_trees = 8;  ///< make no heap, however large they are:
+  double more_for_few = 50;   ///< times as many multiplications for them
   int most_iterations = 16;  ///< of Newton's method on the law itself
   double near = 1e-3;        ///< a miss of this times the largest speed needs no new factors
   int most_far = 6;          ///< iterations that lead no nearer, with a miss above `far`
@@ -57,6 +59,9 @@ struct SolverOptions {
   double most_scale = 4;             ///< of that speed, over the speeds at the beginning: redundant contacts may hold each other up with any impulse
   double absolute_tolerance = 1e-10;  ///< [m/s] or [rad/s]
 
+  bool suits_newton(std::size_t trees, double work) const {
+    return work <= newton_work * (trees <= few_trees ? more_for_few : 1);
+  }
   double tolerance_of_softened(const Beginning& beginning, double scale) const {
     const double least = std::max(beginning.fastest, beginning.fall);
     return absolute_tolerance + soft_tolerance * (least > 0 ? std::min(scale, most_scale * least) : scale);

@@ -157,16 +157,17 @@ void Problem::weigh(Block& block) const {
   for (int r = 0; r < block.rows; ++r) block.mobility[r] = std::max(block.mobility[r], 1e-12);
 }
 
-/// What a point of a link accelerates by while the speeds of all coordinates stay [m/s^2].
+/// By how much a link's velocity at a point of contact changes in a second while the speeds of all coordinates stay [m/s^2].
 /// @param tree  its place in the island
-Vector3 Problem::bend(int tree, int link, const Vector3& point) const {
+Vector3 Problem::bend(int tree, int link, const Vector3& point, const Contact& contact) const {
   constexpr double most = 0.2;  // of what turns farther in the substep this does not say where it ends [rad]
   const Motion& motion = trees[tree]->motion[link];
-  if (first_bias[tree] < 0 || motion.angular.squaredNorm() * length * length > most * most) return Vector3::Zero();
+  const bool turns_far = motion.angular.squaredNorm() * length * length > most * most;
+  if (first_bias[tree] < 0 || (turns_far && !contact.rolls)) return Vector3::Zero();
   const Motion& spatial = bias[first_bias[tree] + link];
   const Vector3 arm = point - trees[tree]->origin;
-  return spatial.linear + spatial.angular.cross(arm) +
-         motion.angular.cross(motion.linear + motion.angular.cross(arm));
+  const Vector3 with_it = motion.linear + motion.angular.cross(arm);
+  return spatial.linear + spatial.angular.cross(arm) + motion.angular.cross(contact.rolls ? contact.velocity : with_it);
 }
 
 /// What a contact that does not rebound seeks. Surfaces that are pressed together give way like stiff springs,
@@ -215,8 +216,8 @@ void Problem::add(const Contact& contact, int a, int b, int source) {
   for (int r = 3; r < block.rows; ++r) block.impulse[r] = angular[r - 3];
   press(block);
   if (a >= 0 && b >= 0) {  // what lies on a turntable does not drift outwards
-    const Vector3 apart = bend(a, contact.a.link, contact.point) -
-                          bend(b, contact.b.link, contact.point + contact.until_met);
+    const Vector3 apart = bend(a, contact.a.link, contact.point, contact) -
+                          bend(b, contact.b.link, contact.point + contact.until_met, contact);
     for (int r = 1; r < std::min(block.rows, 3); ++r) {
       block.seek[r] = -length / 2 * block.frame.col(r).dot(apart);
     }

@@ -114,7 +114,7 @@ struct Problem {
   int add_columns(const Tree& tree, int rows);
   int add_rows(const Tree& tree, int link, const Vector3& point, const Block& block, double sign);
   void weigh(Block& block) const;
-  Vector3 bend(int tree, int link, const Vector3& point) const;
+  Vector3 bend(int tree, int link, const Vector3& point, const Contact& contact) const;
   void press(Block& block) const;
 };
 

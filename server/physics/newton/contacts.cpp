@@ -98,6 +98,26 @@ void place_between(const Collider& a, const math::Vector3& on_a, const Collider&
   }
 }
 
+/// Whether a collider touches with a round surface, so that its point of contact is not always the same.
+bool is_round(const Collider& collider, const btVector3& normal) {
+  constexpr btScalar upright = btScalar(0.7);  // cosine of the steepest axis of what lies on its side
+  const auto lies = [&] { return btFabs(collider.pose.getBasis().getColumn(2).dot(normal)) < upright; };
+  return std::holds_alternative<contact::Sphere>(collider.shape) ||
+         ((std::holds_alternative<contact::Cylinder>(collider.shape) || std::holds_alternative<contact::Capsule>(collider.shape)) && lies());
+}
+
+/// Notes how the point of contact moves where one of two colliders that move is round and the other one is not: with its centre,
+/// and about the normal.
+void note_rolling(const Collider& a, const Collider& b, dynamics::Contact& contact) {
+  const btVector3 normal = to_bullet(contact.normal);
+  const bool round_a = is_round(a, normal);
+  if (round_a == is_round(b, normal)) return;
+  const Collider& round = round_a ? a : b;
+  const btVector3 arm = to_bullet(round_a ? contact.point : math::Vector3(contact.point + contact.until_met)) - round.pose.getOrigin();
+  contact.rolls = true;
+  contact.velocity = from_bullet(round.velocity + round.angular_velocity.dot(normal) * normal.cross(arm));
+}
+
 /// How two colliders turn in a substep.
 struct Turning {
   bool tumbles = false;  ///< one so far that other points may touch
@@ -326,7 +346,10 @@ void Contacts::emit(const Pair& pair) {
     dynamics::Contact& contact = contacts_.emplace_back(law);
     contact.point = pair.points[i].point;
     contact.gap = pair.points[i].gap;
-    if (a.moves && b.moves) place_between(a, pair.points[i].on_a, b, pair.points[i].on_b, apart_, contact);
+    if (a.moves && b.moves) {
+      place_between(a, pair.points[i].on_a, b, pair.points[i].on_b, apart_, contact);
+      note_rolling(a, b, contact);
+    }
     contact.impulse = share_ * pair.points[i].impulse;
     contact.angular_impulse = share_ * pair.points[i].angular_impulse;
     owners_.push_back({static_cast<int>(&pair - pairs_.data()), i});

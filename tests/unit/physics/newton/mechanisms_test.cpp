@@ -341,24 +341,6 @@ TEST(NewtonTable, RestsOnItsFourFeetAlike) {
   }
 }
 
-// Velocities are those at the substep's beginning: along them it would go outwards by a share of (w h)^2 / 2 in each.
-TEST(NewtonTurntable, CarriesABoxInACircle) {
-  const double radius = 0.2, speed = 2, seconds = 10;
-  for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
-    World world(newton(), 1 / hz);
-    scene::Entity table = prototype("table", at(0, 0, 0), false,
-                                    {link("base", scene::Box{{0.1, 0.1, 0.1}}, 1), link("disc", scene::Cylinder{0.4, 0.02}, 5)});
-    table.joints.push_back(joint(scene::JointType::revolute, Vector3::UnitZ(), at(0, 0, 0.2), at(0, 0, 0)));
-    world.add(with_friction(table, 1));
-    world.add(loose(at(radius, 0, 0.22), scene::Box{{0.05, 0.05, 0.02}}, 0.2, 1));
-    world.add_motor(world.joint(0, 0), scene::JointMode::velocity, 0.5 / hz);
-    world.set_target(world.joint(0, 0), speed);
-    run(world, seconds, 1 / hz);
-    EXPECT_NEAR(world.velocity(world.joint(0, 0)), speed, 1e-6) << hz;
-    EXPECT_NEAR(std::hypot(origin(world, 1).position.x(), origin(world, 1).position.y()), radius, 1e-3 * radius) << hz;
-  }
-}
-
 // It stops with all that it has: what is left of its energy is rounding.
 TEST(NewtonArm, ThatStrikesAPlateStaysANumber) {
   for (const double hz : {50, 100, 200, 500, 1000, 2000}) {

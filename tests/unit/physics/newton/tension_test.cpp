@@ -143,5 +143,32 @@ TEST(NewtonTension, BeyondWhatPartsCanFollowIsTold) {
   EXPECT_GT(hoist.world.convergence().not_converged, 0U);
 }
 
+// From 14 links on slide and floor pressed on each other through the first link, with up to 1e10 N, and friction held the chain.
+TEST(NewtonChain, IsDraggedOverTheFloorByASlide) {
+  const double force = 3, radius = 0.005, length = 0.05, mass = 0.01, friction = 0.4, seconds = 0.5;
+  for (const double hz : {100, 500}) {
+    for (const int count : {10, 15, 24}) {
+      World world(newton(true), 1 / hz);
+      std::vector<scene::Link> links{link("base", scene::Box{{0.01, 0.01, 0.01}}, 1), link("slider", scene::Box{{0.02, 0.02, 0.02}}, 1)};
+      for (int i = 0; i < count; ++i) links.push_back(link("link" + std::to_string(i), scene::Box{{2 * radius, 2 * radius, length}}, mass));
+      scene::Entity chain = with_friction(prototype("chain", at(0, 0, 0.1), false, links), friction / 0.5);  // the floor has 0.5
+      chain.joints.push_back(joint(scene::JointType::prismatic, -Vector3::UnitX(), at(-0.05, 0, 0), {}));
+      const Pose lying{{0.02, 0, radius - 0.1}, math::Quaternion(Eigen::AngleAxisd(std::numbers::pi / 2, Vector3::UnitY()))};
+      for (int i = 0; i < count; ++i) {
+        scene::Joint to_next = joint(scene::JointType::spherical, Vector3::UnitZ(), i == 0 ? lying : at(0, 0, length), {});
+        to_next.parent = i + 1, to_next.child = i + 2;
+        chain.joints.push_back(to_next);
+      }
+      world.add(chain);
+      world.add_motor(world.joint(0, 0), scene::JointMode::velocity, force / hz);
+      world.set_target(world.joint(0, 0), 1000);
+      run(world, seconds, 1 / hz);
+      const double all = 1 + count * mass, moved = world.position(world.joint(0, 0));
+      EXPECT_GT(moved, 0.97 * (force - friction * count * mass * earth) / all * seconds * seconds / 2) << hz << ' ' << count;
+      EXPECT_LT(moved, 1.03 * (force - friction * (count - 0.5) * mass * earth) / all * seconds * seconds / 2) << hz << ' ' << count;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ziggurat::physics
