@@ -96,14 +96,17 @@ class Connection:
     def closed(self) -> bool:
         return self.socket.closed
 
-    def send(self, message: v1.ClientMessage) -> None:
-        """Waits while the queue is full. Raises ConnectionLost if the server has refused the connection: ZeroMQ
+    def send(self, message: v1.ClientMessage, is_last: bool = False) -> None:
+        """Waits while the queue is full; with the last message only half a second, as a server that reads nothing
+        would hold up the end of the program. Raises ConnectionLost if the server has refused the connection: ZeroMQ
         has given it up, and there is no queue any more."""
         data = message.SerializeToString()
         while True:
             try:
                 return self.socket.send(data)
             except zmq.Again:
+                if is_last:
+                    return
                 why = self._next_reason()
                 if why is not None:
                     self.close()
