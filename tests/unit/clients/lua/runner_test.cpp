@@ -4,8 +4,10 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <functional>
 #include <thread>
 
 #include "network/server.h"
@@ -59,12 +61,14 @@ class RunnerTest : public ScriptTest {
   bool has_failures_ = false;
   std::atomic<pthread_t> client_{};
   std::atomic<std::uint64_t> published_ = 0;  ///< ticks
+  std::function<void(std::uint64_t)> before_tick_;
 
  private:
   bool run_client() {
     client_ = ::pthread_self();
     ProgramOptions program;
     program.script = folder() / "main.lua";
+    program.folders = {folder()};
     program.quiet = true;
     ziggurat::Options options;
     options.endpoint = server_.endpoints().front();
@@ -81,6 +85,7 @@ class RunnerTest : public ScriptTest {
   void serve() {
     ASSERT_EQ(server_.gather(patience), Outcome::complete);
     for (std::uint64_t tick = 0; tick <= 4; ++tick) {
+      if (before_tick_) before_tick_(tick);
       const world::Observations seen = small_.observations(tick);
       server_.publish(seen, network::no_tags);
       ++published_;
@@ -139,6 +144,36 @@ TEST_F(RunnerTest, AFailureInDestroyIsOneOfItsRobot) {
   EXPECT_NE(message.find("main.lua:1: late (in destroy, after tick 4)"), std::string::npos)
       << message;
   EXPECT_EQ(logged_at(5), "");
+}
+
+/// Files below this folder that this process has open.
+std::vector<std::string> open_files(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& each : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code error;
+    const auto file = std::filesystem::read_symlink(each.path(), error);
+    if (!error && file.parent_path() == folder) names.push_back(file.filename());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+TEST_F(RunnerTest, TheScriptOfARobotThatHasLeftEndsAndItsFilesAreClosed) {
+  std::vector<std::string> open_at_the_end;
+  before_tick_ = [&](std::uint64_t tick) {
+    constexpr std::size_t robot = 1;
+    if (tick == 2) server_.remove_robots({&robot, 1}, "It was removed.");
+    if (tick == 4) open_at_the_end = open_files(folder());
+  };
+  const std::string own = "'" + folder().string() + "/' .. robot.id .. '.txt'";
+  run("local file = io.open(" + own + ", 'w')\n"
+      "function init() end\n"
+      "function step() if robot.id == 'robot2' then nothing.x = 1 end end\n"
+      "function destroy() file:write('end') log('destroy') end");
+  EXPECT_EQ(open_at_the_end, std::vector<std::string>{"robot0.txt"});
+  EXPECT_EQ(logged_at(2), "1: destroy\n");
+  EXPECT_EQ(logged_at(5), "0: destroy\n");
+  EXPECT_EQ(std::filesystem::file_size(folder() / "robot1.txt"), 3U);
 }
 
 TEST_F(RunnerTest, InvalidAndTooManyLinesAreHandled) {
