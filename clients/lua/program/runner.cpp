@@ -37,7 +37,8 @@ void Runner::run() {
     offer_to_terminal();
   }
   const Turn turn;
-  if (!are_scripts_interrupted()) finish();
+  // To free the states of many robots takes seconds: the world does not wait for that.
+  are_scripts_interrupted() ? session_.leave() : finish();
   for (Seat& seat : seats_) seat.controller.reset();
 }
 

@@ -58,6 +58,7 @@ class RunnerTest : public ScriptTest {
   network::Server server_;
   world::Commands commands_ = small_.commands();
   std::vector<network::Report> reports_;
+  bool trusts_scripts_ = false;
   bool has_failures_ = false;
   std::atomic<pthread_t> client_{};
   std::atomic<std::uint64_t> published_ = 0;  ///< ticks
@@ -70,6 +71,7 @@ class RunnerTest : public ScriptTest {
     program.script = folder() / "main.lua";
     program.folders = {folder()};
     program.quiet = true;
+    program.trusts_scripts = trusts_scripts_;
     ziggurat::Options options;
     options.endpoint = server_.endpoints().front();
     options.robots = {"*"};
@@ -202,6 +204,25 @@ TEST_F(RunnerTest, AnInterruptLeavesWithoutFailure) {
   EXPECT_FALSE(has_failures_);
   for (const auto& report : reports_) EXPECT_TRUE(report.failures.empty());
   EXPECT_EQ(commands_.joint_targets, (std::vector<double>{0, 0, 0}));
+}
+
+TEST_F(RunnerTest, AnInterruptLeavesBeforeStatesAreFreed) {
+  trusts_scripts_ = true;
+  bool are_freed = true;
+  before_tick_ = [&](std::uint64_t tick) {
+    if (tick == 2) {
+      interrupt_scripts();
+      std::this_thread::sleep_for(milliseconds(700));  // the client looks every 500 ms
+    }
+    if (tick == 4) are_freed = std::filesystem::exists(folder() / "freed");
+  };
+  run("local until_then = setmetatable({}, {__gc = function()\n"
+      "  local begin = os.clock()\n"
+      "  while robot.id == 'robot2' and os.clock() < begin + 2 do end\n"
+      "  if robot.id == 'robot2' then io.open('" + (folder() / "freed").string() + "', 'w'):close() end end})\n"
+      "function init() end function step() return until_then end");
+  EXPECT_FALSE(are_freed);
+  EXPECT_TRUE(std::filesystem::exists(folder() / "freed"));
 }
 
 TEST(Files, AreSharedByTheRobotsOfAProcess) {
