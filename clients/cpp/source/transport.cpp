@@ -19,7 +19,6 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds longest_linger{1000};
 constexpr milliseconds longest_wait_to_send{500};  // between checks of whether the connection was refused
-constexpr int most_waiting = 16;  // messages of a server that this program has not taken yet
 constexpr const char* monitor_address = "inproc://monitor";
 constexpr int monitored = ZMQ_EVENT_CONNECTED | ZMQ_EVENT_DISCONNECTED | ZMQ_EVENT_HANDSHAKE_SUCCEEDED |
                           ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
@@ -78,7 +77,6 @@ ZeroMq::ZeroMq(const SessionOptions& options)
   socket_.set(zmq::sockopt::sndtimeo, static_cast<int>(longest_wait_to_send.count()));
   socket_.set(zmq::sockopt::linger, 0);
   socket_.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(longest_message));
-  socket_.set(zmq::sockopt::rcvhwm, most_waiting);
   monitor_.set(zmq::sockopt::linger, 0);
   zmq_socket_monitor(socket_.handle(), monitor_address, monitored);
   monitor_.connect(monitor_address);

@@ -20,7 +20,6 @@ VERSION = v1.Version(major=1, minor=4)
 SLICE = 0.5  # [s] of a wait
 LINGER_MS = 1000  # time to send the last messages when a session is closed
 LONGEST_MESSAGE = (1 << 30) + (1 << 20)  # of a server: an Observation of 1 GiB and what is around it [bytes]
-MOST_WAITING = 16  # messages of a server that this program has not taken yet
 MONITORED = (zmq.EVENT_CONNECTED | zmq.EVENT_DISCONNECTED | zmq.EVENT_HANDSHAKE_SUCCEEDED
              | zmq.EVENT_HANDSHAKE_FAILED_NO_DETAIL | zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL
              | zmq.EVENT_HANDSHAKE_FAILED_AUTH)
@@ -72,7 +71,6 @@ class Connection:
         self.socket.setsockopt(zmq.LINGER, LINGER_MS)  # also of a program that ends without close(), as by Ctrl-C
         self.socket.setsockopt(zmq.SNDTIMEO, int(1000 * SLICE))
         self.socket.setsockopt(zmq.MAXMSGSIZE, LONGEST_MESSAGE)  # a longer one closes the connection
-        self.socket.setsockopt(zmq.RCVHWM, MOST_WAITING)
         if curve is not None:
             self.socket.curve_serverkey = curve.server_key.encode()
             self.socket.curve_publickey = curve.public_key.encode()
