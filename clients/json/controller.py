@@ -36,6 +36,7 @@ class Connection:
     def __init__(self, endpoint):
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
         self.socket.linger = 1000  # [ms] to send the last message
+        self.socket.maxmsgsize = (1 << 30) + (1 << 20)  # [bytes]; a longer one closes the connection
         if server_key := os.environ.get("ZIGGURAT_SERVER_KEY"):
             secret = pathlib.Path(os.environ["ZIGGURAT_CURVE_SECRET"]).read_text().strip().encode()
             self.socket.curve_serverkey, self.socket.curve_secretkey = server_key.encode(), secret

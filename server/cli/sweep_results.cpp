@@ -282,7 +282,9 @@ int sweep_plot(const Arguments& arguments) {
   const bool to_stdout = values.text("file") == "-";
   const auto file = values.has("file") && !to_stdout ? std::filesystem::path(values.text("file"))
                                                      : sofar.folder.path() / (name + ".svg");
-  recording::check_output({"--file", file.string(), {".svg"}}, taken_by(sofar));
+  const auto taken = taken_by(sofar);
+  recording::check_output({"--file", file.string(), {".svg"}}, taken);
+  recording::check_output({"--file", sweep::program_beside(file).string(), {".gnuplot"}}, taken);
   sweep::draw(sofar.experiment, sofar.results, plot, file);
   reports::Console console;
   to_stdout ? print(file) : console.result(file.string());

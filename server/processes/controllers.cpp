@@ -220,14 +220,19 @@ void Controllers::forget_robots(std::size_t first) {
   processes_ = std::move(kept);
 }
 
+std::optional<BusyScript> busy_script(const ControllerProcess& process) {
+  std::ifstream file(process.place_file);
+  BusyScript script;
+  std::getline(file, script.robot);
+  std::getline(file, script.place, '\0');
+  if (script.robot.empty() || script.robot[0] == '\0') return std::nullopt;
+  return script;
+}
+
 std::optional<BusyScript> Controllers::busy_script(std::size_t robot) const {
   for (const ControllerProcess& each : processes_) {
     if (!std::ranges::binary_search(each.robots, robot)) continue;
-    std::ifstream file(each.place_file);
-    BusyScript script;
-    std::getline(file, script.robot);
-    std::getline(file, script.place, '\0');
-    if (!script.robot.empty() && script.robot[0] != '\0') return script;
+    if (auto script = processes::busy_script(each)) return script;
   }
   return std::nullopt;
 }

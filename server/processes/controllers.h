@@ -44,6 +44,9 @@ struct BusyScript {
   std::string place;  ///< `FILE`, and `:LINE` once that takes long, unless it sleeps
 };
 
+/// What it runs now, or ran when it ended; nothing if it ran none.
+std::optional<BusyScript> busy_script(const ControllerProcess& process);
+
 /// How the controllers of a run are started.
 struct LaunchSettings {
   std::string endpoint;                    ///< where they connect

@@ -265,6 +265,9 @@ std::optional<Ending> Watch::lost_controller() {
   if (ended) {
     const std::string when = gathered_ ? fmt::format("at tick {}", tick_) : "before the first tick";
     vanished_ = describe(*ended, fmt::format("{} {}", ended->process.how_it_ended(), when), world_.simulation.layout());
+    if (const auto script = processes::busy_script(*ended)) {  // of many robots one may be the reason
+      vanished_ += fmt::format("; it ran the script of {}: {}", script->robot, script->place);
+    }
     if (restart(*ended)) return std::nullopt;
   } else if (!free_directors.empty()) {
     vanished_ = fmt::format("director '{}' disconnected at tick {}", free_directors.front(), tick_);

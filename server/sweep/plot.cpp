@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "processes/child_process.h"
+#include "processes/private_folder.h"
 #include "sweep/folder.h"
 #include "sweep/means.h"
 #include "text/numbers.h"
@@ -20,6 +21,19 @@ namespace ziggurat::sweep {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::string_view first_line =
+    "# Written by ziggurat sweep plot, which replaces it: copy it before you change it.\n";
+
+void check_is_written_here(const fs::path& script) {
+  std::error_code error;
+  const auto status = fs::status(script, error);
+  if (!fs::exists(status)) return;
+  if (fs::is_regular_file(status) && read_file(script).starts_with(first_line)) return;
+  throw text::UsageError(fmt::format("'{}' is there and was not written by sweep plot: the program of gnuplot would "
+                                     "replace it; move it, or name another picture with --file",
+                                     script.string()));
+}
 
 /// A text as gnuplot writes it: between single quotes, which are doubled inside.
 std::string in_single_quotes(std::string_view text) {
@@ -107,30 +121,30 @@ std::string gnuplot_program(const Experiment& experiment, std::span<const Result
   const std::string label = fmt::format("{} (mean, {:g} % confidence)", plot.measure,
                                         100 * plot.confidence);
   return fmt::format(
-      "set terminal svg size 800,500 dynamic font 'sans-serif,14' noenhanced background 'white'\n"
+      "{}set terminal svg size 800,500 dynamic font 'sans-serif,14' noenhanced background 'white'\n"
       "set output {}\nset xlabel {}\nset ylabel {}\nset grid\nset offsets graph 0.03, graph 0.03, "
       "graph 0.03, graph 0.03\nset key outside right\n{}{}plot{}\n",
-      in_single_quotes(svg.string()), in_single_quotes(x.name), in_single_quotes(label), abscissa.ticks(), data, curves);
+      first_line, in_single_quotes(svg.string()), in_single_quotes(x.name), in_single_quotes(label), abscissa.ticks(), data, curves);
 }
+
+fs::path program_beside(const fs::path& svg) { return fs::path(svg).replace_extension(".gnuplot"); }
 
 void draw(const Experiment& experiment, std::span<const Result> results, const Plot& plot,
           const fs::path& svg) {
   const std::string program = gnuplot_program(experiment, results, plot, svg);
-  fs::path script = svg, log = svg;
-  script.replace_extension(".gnuplot");
-  log += ".log";
+  const fs::path script = program_beside(svg);
+  check_is_written_here(script);
   write_file(script, program);
+  const processes::PrivateFolder folder;
+  const fs::path log = fs::path(folder.path()) / "gnuplot.log";
   try {
-    processes::ChildProcess gnuplot({{"gnuplot", script.string()}, {}, log.string()});
+    // Its whole path: a name may begin with a dash.
+    processes::ChildProcess gnuplot({{"gnuplot", fs::absolute(script).string()}, {}, log.string()});
     processes::end_all({&gnuplot}, 60'000, [] { return false; });
-    const std::string said(text::trimmed(read_file(log)));
-    fs::remove(log);
     if (!gnuplot.ended_well()) {
-      throw text::UsageError(fmt::format("gnuplot {}: {}", gnuplot.how_it_ended(), said));
+      throw text::UsageError(fmt::format("gnuplot {}: {}", gnuplot.how_it_ended(), text::trimmed(read_file(log))));
     }
   } catch (const std::system_error& error) {
-    std::error_code ignored;
-    fs::remove(log, ignored);
     if (error.code() != std::errc::no_such_file_or_directory) throw;
     throw text::UsageError(
         fmt::format("plots need gnuplot, which is not installed; on Debian: apt-get install "

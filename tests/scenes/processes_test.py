@@ -198,6 +198,20 @@ end
 """)
         self.expect_waiting_for_line_4()
 
+    def test_the_end_of_a_process_names_the_script_that_ran(self):
+        self.write("swing.lua", """function init() end
+function step()
+   if robot.id == "r1" then
+      return (("a"):rep(1000000)):find(".-.-b")
+   end
+end
+""")
+        summary = self.folder / "s.json"
+        outcome = self.run_scene("--lua-processes", 1, "--summary", summary, code=CONTROLLER_FAILED)
+        sentence = r"ended with exit code 3 at tick 1; it controlled robots r0, r1, r2; it ran the script of r1: .*swing\.lua:4$"
+        self.assertRegex(outcome.err, "(?m)" + sentence)
+        self.assertRegex(json.loads(summary.read_text())["vanished"], sentence)
+
     def test_a_stuck_coroutine_is_named_with_file_and_line(self):
         self.write("swing.lua", """function init() end
 local function work()

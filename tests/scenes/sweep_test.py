@@ -113,10 +113,26 @@ class Tables(SweepTest):
             svg = (self.out / "wall_s.svg").read_text()
             self.assertIn("<svg", svg)
             self.assertIn(f"{ITERATIONS} = 10", svg)
+            self.assertEqual(sorted(path.name for path in self.out.glob("wall_s*")), ["wall_s.gnuplot", "wall_s.svg"])
         self.environment["PATH"] = "/nowhere"
         outcome = self.sweep(*arguments, out=False, code=FAULT)
         self.assert_is_sentence(outcome, "plots need gnuplot, which is not installed; on Debian: apt-get")
         self.assertIn("yerrorlines", (self.out / "wall_s.gnuplot").read_text())
+
+    def test_plots_replace_no_file_beside_them(self):
+        self.sweep(self.scene, *self.grid)
+        arguments = ("plot", self.out, "--y", "ticks", "--file", self.folder / "a.svg")
+        log = self.folder / "a.svg.log"
+        log.write_text("mine")
+        if shutil.which("gnuplot"):
+            for _ in range(2):  # its own program is replaced
+                self.sweep(*arguments, out=False)
+        self.assertEqual(log.read_text(), "mine")
+        program = self.folder / "a.gnuplot"
+        program.write_text("# mine")
+        outcome = self.sweep(*arguments, out=False, code=FAULT)
+        self.assert_is_sentence(outcome, "a.gnuplot' is there and was not written by sweep plot")
+        self.assertEqual(program.read_text(), "# mine")
 
 
 class Failures(SweepTest):

@@ -47,6 +47,11 @@ std::optional<Moment> Controlling::moment(Connection::Kind kind, const Connectio
   return moment;
 }
 
+/// A robot was removed from the world, or another client has taken it over.
+void Controlling::warn(const v1::Error& error) {
+  if (error.code() == v1::Error::NOT_YOURS) fleet_->remove(error.robot());
+}
+
 void Controlling::hear(Connection::Kind kind, const v1::ServerMessage& message) {
   constexpr std::size_t most = 10'000;  // a client that does not ask for them keeps no more
   if (kind != Connection::Kind::kRobotSpawned || spawned_.size() == most) return;

@@ -28,6 +28,7 @@ class Controlling final : public Part {
   void write(v1::Leave& leave) override;
   void reset() override { fleet_->reset(); }
   void restore(const v1::Command& commanded) override { fleet_->resume(commanded); }
+  void warn(const v1::Error& error) override;
   void remove(const google::protobuf::RepeatedField<std::uint32_t>& robots) override {
     fleet_->remove(robots);
   }

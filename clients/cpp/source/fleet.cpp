@@ -61,6 +61,13 @@ void Fleet::remove(const google::protobuf::RepeatedField<std::uint32_t>& robots)
   }
 }
 
+void Fleet::remove(std::string_view id) {
+  if (by_id_.empty()) {
+    for (Robot& robot : robots_) by_id_.emplace(robot.id_, &robot);
+  }
+  if (const auto found = by_id_.find(id); found != by_id_.end()) found->second->is_gone_ = true;
+}
+
 void Fleet::move_metrics_to(google::protobuf::RepeatedPtrField<v1::Metric>& metrics) {
   for (const auto& [key, value] : log_.metrics) {
     v1::Metric& metric = *metrics.Add();

@@ -2,6 +2,8 @@
 // The robots of a session with all their devices; knows messages, but no connection.
 
 #include <span>
+#include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "channel.h"
@@ -34,6 +36,7 @@ class Fleet {
   void resume(v1::Command commanded);
   /// These robots (positions) have left the run. Positions that the session does not have are ignored.
   void remove(const google::protobuf::RepeatedField<std::uint32_t>& robots);
+  void remove(std::string_view id);
 
   /// Moves what was measured since the last call.
   void move_metrics_to(google::protobuf::RepeatedPtrField<v1::Metric>& metrics);
@@ -43,6 +46,7 @@ class Fleet {
 
  private:
   std::vector<Robot> robots_;
+  std::unordered_map<std::string_view, Robot*> by_id_;  // made when it is first needed
   Channels channels_;
   Robot::Log log_;
 };

@@ -174,7 +174,7 @@ LocalStream::Step LocalStream::take() {
   if (stage_ == Stage::greeting) return take_greeting(input);
   const auto header = zmtp::read_header(input);
   if (!header) return Step::incomplete;
-  const bool is_allowed = header->is_valid && header->body < SIZE_MAX / 4 &&
+  const bool is_allowed = header->is_valid && header->body <= longest_message &&
                           (!header->is_command || header->body <= zmtp::longest_command) &&
                           (stage_ == Stage::open || header->is_command);
   if (!is_allowed) {

@@ -76,6 +76,7 @@ ZeroMq::ZeroMq(const SessionOptions& options)
   socket_.set(zmq::sockopt::tcp_keepalive, 1);
   socket_.set(zmq::sockopt::sndtimeo, static_cast<int>(longest_wait_to_send.count()));
   socket_.set(zmq::sockopt::linger, 0);
+  socket_.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(longest_message));
   monitor_.set(zmq::sockopt::linger, 0);
   zmq_socket_monitor(socket_.handle(), monitor_address, monitored);
   monitor_.connect(monitor_address);

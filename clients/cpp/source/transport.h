@@ -39,6 +39,10 @@ class Transport {
   virtual void linger() = 0;
 };
 
+/// Of a server: an Observation of 1 GiB (docs/protocol.md, D5) and what is around it. A longer one closes the
+/// connection when its size is known [bytes].
+inline constexpr std::size_t longest_message = (std::size_t{1} << 30) + (std::size_t{1} << 20);
+
 /// What a client without keys is told at a protected endpoint.
 inline constexpr const char* keys_are_missing =
     "refused key? The endpoint is protected, and this client has no keys; set the server's public key "

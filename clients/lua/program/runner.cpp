@@ -31,13 +31,14 @@ void Runner::run() {
     for (Seat& seat : seats_) {
       if (are_scripts_interrupted()) return;
       if (!has_started) start(seat);
-      if (has_started && seat.controller && !seat.robot->gone()) answer(seat);
+      if (has_started && seat.controller) seat.robot->gone() ? end(seat) : answer(seat);
     }
     has_started = true;
     offer_to_terminal();
   }
   const Turn turn;
-  if (!are_scripts_interrupted()) finish();
+  // To free the states of many robots takes seconds: the world does not wait for that.
+  are_scripts_interrupted() ? session_.leave() : finish();
   for (Seat& seat : seats_) seat.controller.reset();
 }
 
@@ -75,11 +76,16 @@ Failure Runner::call(Controller& controller) {
 void Runner::finish() {
   for (Seat& seat : seats_) {
     if (are_scripts_interrupted()) return;
-    if (!seat.controller) continue;
-    const Failure failure = seat.controller->destroy(session_.tick());
-    hand_over_log(seat);
-    if (failure) fail(seat, *failure);
+    if (seat.controller) end(seat);
   }
+}
+
+// What the script holds is given back: its memory, its open files.
+void Runner::end(Seat& seat) {
+  const Failure failure = seat.controller->destroy(session_.tick());
+  hand_over_log(seat);
+  if (failure) fail(seat, *failure);
+  seat.controller.reset();
 }
 
 void Runner::hand_over_log(Seat& seat) {

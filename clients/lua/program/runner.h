@@ -29,12 +29,13 @@ class Runner {
  private:
   struct Seat {
     ziggurat::Robot* robot = nullptr;
-    std::unique_ptr<Controller> controller;  ///< null once it failed
+    std::unique_ptr<Controller> controller;  ///< null once it failed, or its robot has left the run
   };
 
   void start(Seat& seat);
   void answer(Seat& seat);
   void finish();
+  void end(Seat& seat);  ///< of the run, or of its robot
   Failure call(Controller& controller);
   void hand_over_log(Seat& seat);
   void fail(Seat& seat, const std::string& message);

@@ -19,6 +19,7 @@ from .find_server import find_server
 VERSION = v1.Version(major=1, minor=4)
 SLICE = 0.5  # [s] of a wait
 LINGER_MS = 1000  # time to send the last messages when a session is closed
+LONGEST_MESSAGE = (1 << 30) + (1 << 20)  # of a server: an Observation of 1 GiB and what is around it [bytes]
 MONITORED = (zmq.EVENT_CONNECTED | zmq.EVENT_DISCONNECTED | zmq.EVENT_HANDSHAKE_SUCCEEDED
              | zmq.EVENT_HANDSHAKE_FAILED_NO_DETAIL | zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL
              | zmq.EVENT_HANDSHAKE_FAILED_AUTH)
@@ -69,6 +70,7 @@ class Connection:
         self.socket.setsockopt(zmq.IPV6, endpoint.startswith("tcp://["))
         self.socket.setsockopt(zmq.LINGER, LINGER_MS)  # also of a program that ends without close(), as by Ctrl-C
         self.socket.setsockopt(zmq.SNDTIMEO, int(1000 * SLICE))
+        self.socket.setsockopt(zmq.MAXMSGSIZE, LONGEST_MESSAGE)  # a longer one closes the connection
         if curve is not None:
             self.socket.curve_serverkey = curve.server_key.encode()
             self.socket.curve_publickey = curve.public_key.encode()
@@ -96,14 +98,17 @@ class Connection:
     def closed(self) -> bool:
         return self.socket.closed
 
-    def send(self, message: v1.ClientMessage) -> None:
-        """Waits while the queue is full. Raises ConnectionLost if the server has refused the connection: ZeroMQ
+    def send(self, message: v1.ClientMessage, is_last: bool = False) -> None:
+        """Waits while the queue is full; with the last message only half a second, as a server that reads nothing
+        would hold up the end of the program. Raises ConnectionLost if the server has refused the connection: ZeroMQ
         has given it up, and there is no queue any more."""
         data = message.SerializeToString()
         while True:
             try:
                 return self.socket.send(data)
             except zmq.Again:
+                if is_last:
+                    return
                 why = self._next_reason()
                 if why is not None:
                     self.close()

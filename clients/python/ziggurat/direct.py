@@ -324,5 +324,6 @@ class World(Session):
             self._answer()
         reason = v1.Leave.FAILED if failure else v1.Leave.DONE
         self._connection.send(v1.ClientMessage(leave=v1.Leave(
-            reason=reason, message=failure, log=self._direction.log, metrics=self._figures.take())))
+            reason=reason, message=failure, log=self._direction.log, metrics=self._figures.take())),
+            is_last=True)
         self._end()

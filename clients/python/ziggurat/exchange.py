@@ -121,17 +121,17 @@ class Readings(Generic[T]):
 
     def __init__(self, field: str, count: int, make: Callable[[Sequence[float]], T],
                  is_there: Callable[[v1.RobotDescription], bool]):
-        self._field = field  # of Observation
+        self.field = field  # of Observation
         self._count = count
         self._make = make
         self._is_there = is_there
 
     def place(self, exchange: Exchange, given: v1.RobotDescription) -> int:
-        return exchange.place(self._field, self._is_there(given))
+        return exchange.place(self.field, self._is_there(given))
 
     def __get__(self, robot: Any, owner: Any = None) -> Optional[T]:
-        place = robot._places[self]
-        values = getattr(robot._exchange.seen, self._field)
+        place = robot._places[self.field]
+        values = getattr(robot._exchange.seen, self.field)
         if place < 0 or not values:
             return None
         return self._make(values[place * self._count:(place + 1) * self._count])

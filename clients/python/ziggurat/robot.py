@@ -9,36 +9,42 @@ from .devices import Camera, Joint, Led, Magnet, Radio, RangeAndBearing, Sensors
     Wheels
 from .devices.joint import joints_of
 from .exchange import Exchange
-from .named import Named
+from .named import Listed
 
 
 class Robot(Sensors):
     """It has the devices that the scene's controller enables. range_and_bearing, wheels and turret
     are None for robots without them."""
 
+    joints = Listed[Joint]("joint")
+    radios = Listed[Radio]("radio")
+    leds = Listed[Led]("LED")
+    directional_leds = Listed[Led]("directional LED")
+    tags = Listed[Tag]("tag")
+    magnets = Listed[Magnet]("magnet")
+    cameras = Listed[Camera]("camera")
+
     def __init__(self, exchange: Exchange, position: int, given: v1.RobotDescription,
-                 tell_leave: Callable[["Robot", str], None]):
+                 find_leave: Callable[[], Optional[Callable[["Robot", str], None]]]):
+        """find_leave: the session's function by which a robot leaves; None if there is no session any more."""
         self.id: str = given.id
         self.controller: str = given.controller
         self.params: Dict[str, str] = {p.name: p.value for p in given.params}
         self.gone = False  # it has left the run, or another client has taken it over
         super().__init__(exchange, given)
         self._position = position
-        owner = f"robot {self.id!r}"
-        self._tell_leave = tell_leave
+        self._find_leave = find_leave
 
-        self.joints: Named[Joint] = Named(joints_of(exchange, given), "joint", owner)
-        self.radios: Named[Radio] = Named([Radio(exchange, r) for r in given.radios], "radio", owner)
-        self.leds: Named[Led] = Named([Led(exchange, "led_colors", l) for l in given.leds], "LED", owner)
-        self.directional_leds: Named[Led] = Named(
-            [Led(exchange, "directional_led_colors", l) for l in given.directional_leds],
-            "directional LED", owner)
-        self.tags: Named[Tag] = Named([Tag(exchange, tag) for tag in given.tags], "tag", owner)
-        self.magnets: Named[Magnet] = Named([Magnet(exchange, m) for m in given.magnets], "magnet", owner)
+        self._keep("joints", joints_of(exchange, given))
+        self._keep("radios", [Radio(exchange, radio) for radio in given.radios])
+        self._keep("leds", [Led(exchange, "led_colors", led) for led in given.leds])
+        self._keep("directional_leds", [Led(exchange, "directional_led_colors", led) for led in given.directional_leds])
+        self._keep("tags", [Tag(exchange, tag) for tag in given.tags])
+        self._keep("magnets", [Magnet(exchange, magnet) for magnet in given.magnets])
+        self._keep("cameras", [Camera(exchange, camera) for camera in given.cameras])
         self.range_and_bearing: Optional[RangeAndBearing] = \
             RangeAndBearing(exchange, position, given.range_and_bearing) \
             if given.HasField("range_and_bearing") else None
-        self.cameras: Named[Camera] = Named([Camera(exchange, c) for c in given.cameras], "camera", owner)
         self.wheels: Optional[Wheels] = \
             Wheels(exchange, given.wheels) if given.HasField("wheels") else None
         self.turret: Optional[Turret] = \
@@ -65,11 +71,16 @@ class Robot(Sensors):
 
     def leave(self) -> None:
         """Leaves the run forever: the world no longer waits for this robot."""
-        self._tell_leave(self, "")
+        self._leave("")
 
     def fail(self, message: str) -> None:
         """Leaves as failed: the run continues, and exits with code 3 at its end."""
-        self._tell_leave(self, message or "failed")
+        self._leave(message or "failed")
+
+    def _leave(self, failure: str) -> None:
+        leave = self._find_leave()
+        if leave is not None:
+            leave(self, failure)
 
     def __repr__(self) -> str:
         return f"Robot({self.id!r})"

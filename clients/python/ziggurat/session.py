@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import weakref
 from typing import Any, Dict, Iterable, Iterator, List, Optional, Union
 
 from . import protocol_pb2 as v1
@@ -45,14 +46,8 @@ class Session:
         try:
             self.welcome = self._connection.begin(hello, connect_timeout)
         except BaseException:
-            self._connection.close()
+            self._connection.close(linger_ms=0)
             raise
-        self.robots: Named[Robot] = Named(
-            [Robot(self._exchange, position, given, self._leave_one)
-             for position, given in enumerate(self.welcome.robots)], "robot")
-        self._exchange.begin()
-        self._exchange.resume(self.welcome.resumed.commanded)
-        self._remove(self.welcome.resumed.gone_robots)
         self._leaves: Dict[int, v1.ClientMessage] = {}  # of robots that left, by position
         self._answered: Optional[v1.ClientMessage] = None  # with this; the last one
         self._is_resumed = False  # the next observation may be the last one again
@@ -70,6 +65,22 @@ class Session:
         self.late = 0  # commands that came too late or twice
         # Of controllers that robots of this session have; remove those that you have handled.
         self.spawned: List[SpawnedRobot] = []
+        try:
+            self._make_robots()
+        except BaseException as error:  # Ctrl-C, or no memory
+            self.close(f"{type(error).__name__}: {error}")
+            raise
+
+    def _make_robots(self) -> None:
+        # Without a cycle of references: at its end the program frees them one by one, and the garbage collection
+        # does not look through all of them before.
+        leave_one = weakref.WeakMethod(self._leave_one)
+        self.robots: Named[Robot] = Named(
+            (Robot(self._exchange, position, given, leave_one)
+             for position, given in enumerate(self.welcome.robots)), "robot")
+        self._exchange.begin()
+        self._exchange.resume(self.welcome.resumed.commanded)
+        self._remove(self.welcome.resumed.gone_robots)
 
     @property
     def endpoint(self) -> str:
@@ -320,7 +331,7 @@ class Session:
         reason = v1.Leave.FAILED if failure else v1.Leave.DONE
         self._connection.send(v1.ClientMessage(leave=v1.Leave(
             reason=reason, message=failure, log=self._exchange.log,
-            metrics=self._exchange.metrics.take())))
+            metrics=self._exchange.metrics.take())), is_last=True)
         self._exchange.log = []
         self._end()
 

@@ -185,7 +185,7 @@ class Supervisor:
 
     def close(self) -> None:
         if not self._connection.closed:
-            self._connection.send(v1.ClientMessage(leave=v1.Leave(reason=v1.Leave.DONE)))
+            self._connection.send(v1.ClientMessage(leave=v1.Leave(reason=v1.Leave.DONE)), is_last=True)
             self._connection.close()
 
     def __enter__(self) -> "Supervisor":

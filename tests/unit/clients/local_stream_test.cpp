@@ -213,7 +213,8 @@ TEST_F(LocalStreams, CloseWhatIsNoServer) {
   for (const std::string& wrong :
        {std::string("HTTP/1.1 400 Bad Request\r\n\r\n") + std::string(64, ' '),
         greeting() + frame("too early"), greeting() + ready() + "\x7f\x01x",
-        greeting() + ready() + std::string("\2\xff\xff\xff\xff\xff\xff\xff\xff", 9)}) {
+        greeting() + ready() + std::string("\2\xff\xff\xff\xff\xff\xff\xff\xff", 9),
+        greeting() + ready() + std::string("\2\0\0\0\0\x40\x10\0\1", 9)}) {  // longest_message + 1
     listen();
     LocalStream stream(options_);
     accept();

@@ -113,6 +113,29 @@ TEST(Session, AResumedOneBeginsWithWhatWasCommanded) {
   EXPECT_FALSE(session.next());
 }
 
+TEST(Session, IsToldOfRobotsThatWereRemovedOrTakenOver) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    for (const char* id : {"b", "of another client"}) {
+      v1::ServerMessage message;
+      v1::Error& error = *message.mutable_error();
+      error.set_code(v1::Error::NOT_YOURS);
+      error.set_severity(v1::Error::WARNING);
+      error.set_robot(id);
+      self.send(message);
+    }
+    self.observe(4, {0, 0, 0, 0});
+    self.end();
+    self.receive();
+    self.receive();
+  });
+  Session session(options_for(server));
+  ASSERT_TRUE(session.next());
+  EXPECT_FALSE(session.robot("a").gone());
+  EXPECT_TRUE(session.robot("b").gone());
+  EXPECT_FALSE(session.next());
+}
+
 TEST(Session, IsToldOfDroppedAndSpawnedRobots) {
   FakeServer server([](FakeServer& self) {
     self.welcome();

@@ -2,14 +2,20 @@
 
 #include "transport.h"
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <array>
 #include <chrono>
+#include <string>
 #include <thread>
 #include <zmq.hpp>
 
 #include "ziggurat/error.h"
+#include "zmtp/frame.h"
 
 namespace ziggurat {
 namespace {
@@ -36,6 +42,59 @@ TEST(Transport, AConnectionThatIsRefusedTellsTheSender) {
     }
   };
   EXPECT_THROW(send_for_long(), ConnectionError) << "without a queue ZeroMQ alone would wait without end";
+}
+
+/// A server that writes what it likes to one connection, which it has shaken hands with.
+class RawServer {
+ public:
+  RawServer() {
+    listener_ = ::socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    EXPECT_EQ(::bind(listener_, reinterpret_cast<sockaddr*>(&address), size), 0);
+    EXPECT_EQ(::listen(listener_, 1), 0);
+    ::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
+    options.endpoint = "tcp://127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+  }
+  ~RawServer() {
+    ::close(client_);
+    ::close(listener_);
+  }
+  void shake_hands(Transport& transport) {
+    client_ = ::accept(listener_, nullptr, nullptr);
+    std::string bytes = zmtp::greeting("NULL", false);
+    zmtp::append_command(bytes, "READY", zmtp::metadata_of("ROUTER"));
+    write(bytes);
+    EXPECT_FALSE(transport.receive(std::chrono::milliseconds(100)));
+    EXPECT_FALSE(transport.was_closed());
+  }
+  void write(const std::string& bytes) {
+    EXPECT_EQ(::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL), static_cast<ssize_t>(bytes.size()));
+  }
+  static std::string header(std::size_t size) {
+    std::string bytes(zmtp::header_length(size), '\0');
+    zmtp::write_header(size, reinterpret_cast<std::uint8_t*>(bytes.data()));
+    return bytes;
+  }
+
+  SessionOptions options;
+
+ private:
+  int listener_ = -1, client_ = -1;
+};
+
+TEST(Transport, AMessageThatIsTooLongIsNotWaitedFor) {
+  RawServer server;
+  const auto transport = make_transport(server.options);
+  server.shake_hands(*transport);
+  server.write(RawServer::header(longest_message + 1));
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (!transport->was_closed() && std::chrono::steady_clock::now() < end) {
+    EXPECT_FALSE(transport->receive(std::chrono::milliseconds(10)));
+  }
+  EXPECT_TRUE(transport->was_closed());
 }
 
 }  // namespace

@@ -40,6 +40,10 @@ TEST(Plot, NamesThatAreNoNumbersStandSideBySide) {
   EXPECT_NE(text.find("0 3 0\n1 4 0\n"), std::string::npos) << "one value has no interval: " << text;
 }
 
+TEST(Plot, TheProgramStandsBesideThePicture) {
+  EXPECT_EQ(program_beside("a/b.svg"), "a/b.gnuplot");
+}
+
 TEST(Plot, OfNothingIsRefused) {
   const Experiment experiment{"/s.argos", {{Axis::Kind::parameter, "mode", {"a", "b"}}}, {1}, {}};
   EXPECT_THROW(gnuplot_program(experiment, {}, {0, {}, "time"}, "a.svg"), text::UsageError);

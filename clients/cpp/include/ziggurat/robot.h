@@ -85,8 +85,9 @@ class Robot : public Sensors {
   /// leaves the run forever and its commands become zero. The session's other robots continue.
   void fail(std::string_view message);
   bool failed() const noexcept { return failed_; }
-  /// The server has taken the robot out of the run, because answers were missing (Deadline): its values
-  /// have no effect any more. A server of protocol version 1.0 does not say so.
+  /// The robot has left the run, or this session: answers were missing (Deadline), it was removed from the world, or
+  /// another client has taken it over. Its values have no effect any more. A server of protocol version 1.0 does not
+  /// tell the first.
   bool gone() const noexcept { return is_gone_; }
 
  private:

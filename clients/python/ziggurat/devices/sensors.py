@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import List, NamedTuple, Optional, Sequence
+from typing import Any, Dict, NamedTuple, Optional, Sequence
 
 from .. import protocol_pb2 as v1
 from ..exchange import Exchange, Readings
-from ..named import Named
+from ..named import Listed
 from .device import Device, Quaternion, Vector
 
 __all__ = ["Battery", "ContactSensor", "Imu", "Pose", "ProximitySensor", "Sensors"]
@@ -101,20 +101,26 @@ class Sensors:
     pose = Readings("positioning", 7, lambda values: Pose(tuple(values[:3]), tuple(values[3:])),
                     lambda given: given.positioning)
     battery = Readings("batteries", 2, Battery._make, lambda given: given.battery)
+    imus = Listed[Imu]("IMU")
+    contact_sensors = Listed[ContactSensor]("contact sensor")
 
     def __init__(self, exchange: Exchange, given: v1.RobotDescription):
         self._exchange = exchange
-        self._places = {readings: readings.place(exchange, given)
+        self._devices: Dict[str, Sequence[Any]] = {}  # that no list was asked for yet
+        self._places = {readings.field: readings.place(exchange, given)
                         for readings in vars(Sensors).values() if isinstance(readings, Readings)}
-        self.proximity_sensors: List[ProximitySensor] = [
+        self.proximity_sensors: Sequence[ProximitySensor] = tuple(
             ProximitySensor(sensor.anchor, tuple(sensor.position), tuple(sensor.direction),
                             sensor.range, sensor.angle if sensor.HasField("angle") else None)
-            for sensor in given.proximity_sensors]
-        self.imus: Named[Imu] = Named([Imu(exchange, imu) for imu in given.imus], "IMU", f"robot {given.id!r}")
-        self.contact_sensors: Named[ContactSensor] = Named(
-            [ContactSensor(exchange, sensor) for sensor in given.contact_sensors], "contact sensor",
-            f"robot {given.id!r}")
-        self._proximity = [exchange.place("proximity") for _ in self.proximity_sensors]
+            for sensor in given.proximity_sensors)
+        self._keep("imus", [Imu(exchange, imu) for imu in given.imus])
+        self._keep("contact_sensors", [ContactSensor(exchange, sensor) for sensor in given.contact_sensors])
+        self._proximity = tuple(exchange.place("proximity") for _ in self.proximity_sensors)
+
+    def _keep(self, name: str, devices: Sequence[Any]) -> None:
+        """For the property of this name, a Listed."""
+        if devices:
+            self._devices[name] = devices
 
     @property
     def proximity(self) -> Sequence[float]:

@@ -4,8 +4,10 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <functional>
 #include <thread>
 
 #include "network/server.h"
@@ -56,16 +58,20 @@ class RunnerTest : public ScriptTest {
   network::Server server_;
   world::Commands commands_ = small_.commands();
   std::vector<network::Report> reports_;
+  bool trusts_scripts_ = false;
   bool has_failures_ = false;
   std::atomic<pthread_t> client_{};
   std::atomic<std::uint64_t> published_ = 0;  ///< ticks
+  std::function<void(std::uint64_t)> before_tick_;
 
  private:
   bool run_client() {
     client_ = ::pthread_self();
     ProgramOptions program;
     program.script = folder() / "main.lua";
+    program.folders = {folder()};
     program.quiet = true;
+    program.trusts_scripts = trusts_scripts_;
     ziggurat::Options options;
     options.endpoint = server_.endpoints().front();
     options.robots = {"*"};
@@ -81,6 +87,7 @@ class RunnerTest : public ScriptTest {
   void serve() {
     ASSERT_EQ(server_.gather(patience), Outcome::complete);
     for (std::uint64_t tick = 0; tick <= 4; ++tick) {
+      if (before_tick_) before_tick_(tick);
       const world::Observations seen = small_.observations(tick);
       server_.publish(seen, network::no_tags);
       ++published_;
@@ -141,6 +148,36 @@ TEST_F(RunnerTest, AFailureInDestroyIsOneOfItsRobot) {
   EXPECT_EQ(logged_at(5), "");
 }
 
+/// Files below this folder that this process has open.
+std::vector<std::string> open_files(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& each : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code error;
+    const auto file = std::filesystem::read_symlink(each.path(), error);
+    if (!error && file.parent_path() == folder) names.push_back(file.filename());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+TEST_F(RunnerTest, TheScriptOfARobotThatHasLeftEndsAndItsFilesAreClosed) {
+  std::vector<std::string> open_at_the_end;
+  before_tick_ = [&](std::uint64_t tick) {
+    constexpr std::size_t robot = 1;
+    if (tick == 2) server_.remove_robots({&robot, 1}, "It was removed.");
+    if (tick == 4) open_at_the_end = open_files(folder());
+  };
+  const std::string own = "'" + folder().string() + "/' .. robot.id .. '.txt'";
+  run("local file = io.open(" + own + ", 'w')\n"
+      "function init() end\n"
+      "function step() if robot.id == 'robot2' then nothing.x = 1 end end\n"
+      "function destroy() file:write('end') log('destroy') end");
+  EXPECT_EQ(open_at_the_end, std::vector<std::string>{"robot0.txt"});
+  EXPECT_EQ(logged_at(2), "1: destroy\n");
+  EXPECT_EQ(logged_at(5), "0: destroy\n");
+  EXPECT_EQ(std::filesystem::file_size(folder() / "robot1.txt"), 3U);
+}
+
 TEST_F(RunnerTest, InvalidAndTooManyLinesAreHandled) {
   run("function init() end function step() if robot.id == 'robot0' then "
       "log('\\xff\\0\\x80') for i = 1, 100 do log(('x'):rep(100000)) end end "
@@ -167,6 +204,25 @@ TEST_F(RunnerTest, AnInterruptLeavesWithoutFailure) {
   EXPECT_FALSE(has_failures_);
   for (const auto& report : reports_) EXPECT_TRUE(report.failures.empty());
   EXPECT_EQ(commands_.joint_targets, (std::vector<double>{0, 0, 0}));
+}
+
+TEST_F(RunnerTest, AnInterruptLeavesBeforeStatesAreFreed) {
+  trusts_scripts_ = true;
+  bool are_freed = true;
+  before_tick_ = [&](std::uint64_t tick) {
+    if (tick == 2) {
+      interrupt_scripts();
+      std::this_thread::sleep_for(milliseconds(700));  // the client looks every 500 ms
+    }
+    if (tick == 4) are_freed = std::filesystem::exists(folder() / "freed");
+  };
+  run("local until_then = setmetatable({}, {__gc = function()\n"
+      "  local begin = os.clock()\n"
+      "  while robot.id == 'robot2' and os.clock() < begin + 2 do end\n"
+      "  if robot.id == 'robot2' then io.open('" + (folder() / "freed").string() + "', 'w'):close() end end})\n"
+      "function init() end function step() return until_then end");
+  EXPECT_FALSE(are_freed);
+  EXPECT_TRUE(std::filesystem::exists(folder() / "freed"));
 }
 
 TEST(Files, AreSharedByTheRobotsOfAProcess) {

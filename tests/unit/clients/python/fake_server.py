@@ -17,10 +17,11 @@ class FakeServer:
         self.socket.setsockopt(zmq.ROUTER_MANDATORY, 1)
         self.endpoint = f"tcp://127.0.0.1:{self.socket.bind_to_random_port('tcp://127.0.0.1')}"
         self.peer = None
+        self.patience_ms = PATIENCE_MS  # for the client's next message
 
     def receive(self):
         """The content of the client's next message."""
-        if not self.socket.poll(PATIENCE_MS):
+        if not self.socket.poll(self.patience_ms):
             raise TimeoutError("no message from the client")
         self.peer, data = self.socket.recv_multipart()
         message = v1.ClientMessage.FromString(data)

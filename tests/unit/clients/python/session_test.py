@@ -1,6 +1,7 @@
 """The session: its beginning, refusals, ticks and events; against a fake server."""
 
 import pathlib
+import socket
 import subprocess
 import sys
 import time
@@ -141,6 +142,26 @@ class Lies(SessionCase):
 
         self.play(part, client)
         return caught[0]
+
+    def test_a_message_of_2_gib_is_not_waited_for(self):
+        greeting = b"\xff" + bytes(8) + b"\x7f\x03\x01NULL" + bytes(48)
+        ready = b"\x05READY\x0bSocket-Type\x00\x00\x00\x06ROUTER"
+        listener = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(listener.close)
+
+        def part(_):
+            connection = listener.accept()[0]
+            self.addCleanup(connection.close)
+            connection.sendall(greeting + bytes([4, len(ready)]) + ready)
+            connection.recv(1)
+            time.sleep(0.2)  # until the client has READY
+            connection.sendall(b"\x02" + (1 << 31).to_bytes(8, "big"))
+
+        def client():
+            with self.assertRaisesRegex(ziggurat.ConnectionLost, "the connection was closed"):
+                ziggurat.connect(f"tcp://127.0.0.1:{listener.getsockname()[1]}", connect_timeout=5)
+
+        self.play(part, client)
 
     def test_a_welcome_of_another_major_version_is_refused(self):
         other = welcome(equipped("a"))
