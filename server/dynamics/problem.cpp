@@ -11,6 +11,9 @@ namespace {
 /// No load presses surfaces in farther, and no more is pushed out in a substep [m].
 constexpr double deepest = 1e-7;
 
+/// Of what no freedom moves along a row [1/kg].
+constexpr double least_mobility = 1e-12;
+
 /// A right-handed frame whose first column is the normal.
 Matrix3 frame_about(const Vector3& normal) {
   int least = 0;
@@ -154,7 +157,7 @@ void Problem::weigh(Block& block) const {
     if (r == 3) continue;  // turning about the normal is alone
     block.mobility[r] = block.mobility[r + 1] = (block.mobility[r] + block.mobility[r + 1]) / 2;
   }
-  for (int r = 0; r < block.rows; ++r) block.mobility[r] = std::max(block.mobility[r], 1e-12);
+  for (int r = 0; r < block.rows; ++r) block.mobility[r] = std::max(block.mobility[r], least_mobility);
 }
 
 /// By how much a link's velocity at a point of contact changes in a second while the speeds of all coordinates stay [m/s^2].
@@ -208,7 +211,13 @@ void Problem::add(const Contact& contact, int a, int b, int source) {
     block.dofs_b = trees[b]->dofs_of(contact.b.link);
   }
   weigh(block);
+  block.kind = Block::Source::contact;
+  block.source = source;
   block.gap = contact.gap;
+  if (block.mobility[0] <= least_mobility) {  // what cannot come nearer presses with any impulse, and friction with it: with none
+    block.law = Block::Law::off;
+    return;
+  }
   const Vector3 impulse = block.frame.transpose() * contact.impulse;
   const Vector3 angular = block.frame.transpose() * contact.angular_impulse;
   block.impulse[0] = std::max(0.0, impulse[0]);
@@ -223,8 +232,6 @@ void Problem::add(const Contact& contact, int a, int b, int source) {
     }
   }
   block.restitution = contact.restitution;
-  block.source = source;
-  block.kind = Block::Source::contact;
   if (a >= 0 && b >= 0 && a != b) {
     const std::pair<int, int> pair(std::min(a, b), std::max(a, b));
     if (couplings.empty() || couplings.back() != pair) couplings.push_back(pair);

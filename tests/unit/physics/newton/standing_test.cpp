@@ -287,5 +287,26 @@ TEST(NewtonPile, DoesNotDependOnWhatIsFarAway) {
   EXPECT_EQ(pile(false), pile(true));
 }
 
+// A plate on a slide that touches the walls on both sides cannot come nearer to them: it stood still, held by the friction of 4e13 N.
+TEST(NewtonPress, FitsItsBoxExactlyAndMoves) {
+  const double size = 0.02, width = 3 * size, gap = 0.01;
+  World world(newton(true), 0.01);
+  for (const double side : {-1.0, 1.0}) {
+    world.add(standing(at(side * (width / 2 + 0.01), 0, 0), scene::Box{{0.02, 0.2, 0.1}}));
+    world.add(standing(at(0, side * (width / 2 + 0.01), 0), scene::Box{{width, 0.02, 0.1}}));
+  }
+  for (int i = 0; i < 18; ++i) {
+    world.add(loose(at((i % 3 - 1) * size, (i / 3 % 3 - 1) * size, i / 9 * size), scene::Box{{size, size, size}}, 0.01));
+  }
+  scene::Entity press = prototype("press", at(0, 0.5, 0), false, {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1), link("plate", scene::Box{{width, width, 0.02}}, 0.1)});
+  press.joints.push_back(joint(scene::JointType::prismatic, Vector3::UnitZ(), at(0, -0.5, 2 * size + gap), {}));
+  world.add(with_friction(press, 0.5));
+  const JointIndex index = world.joint(22, 0);
+  world.add_motor(index, scene::JointMode::velocity, 20 * 0.01);
+  world.set_target(index, -1000);
+  run(world, 0.5, 0.01);
+  EXPECT_NEAR(world.position(index), -gap, 1e-4);
+}
+
 }  // namespace
 }  // namespace ziggurat::physics
