@@ -66,36 +66,51 @@ double push_of(const Problem& problem, int place, const Vector3& along) {
   return left * push > 0 ? left / problem.total_mass[place] : 0;
 }
 
-/// How fast the surfaces of a contact part at the substep's beginning [m/s].
+/// By how much pushes let the surfaces of a contact part faster at the substep's beginning [m/s].
+double kick_of(const Problem& problem, const Block& block) {
+  const Vector3 normal = block.frame.col(0);
+  return push_of(problem, block.a, normal) - push_of(problem, block.b, normal);
+}
+
+/// How fast the surfaces of a contact part at the substep's beginning, without that [m/s].
 double parting_of(const Problem& problem, const Block& block) {
   double u[Block::most_rows];
   problem.speeds(block, u);
-  if (block.gap <= touching) return u[0];  // what touches already is pressed, not thrown
-  const Vector3 normal = block.frame.col(0);
-  return u[0] + push_of(problem, block.a, normal) - push_of(problem, block.b, normal);
+  return u[0];
 }
 
 /// When in the substep surfaces meet, and with which speed and how far apart they are at its end.
-void aim(const Problem& problem, Block& block) {
-  const double before = parting_of(problem, block), pull = pull_of(problem, block);
+/// @param before  how fast they part at its beginning [m/s];  @param pull  and by how much faster in a second [m/s^2]
+/// @return        whether they do
+bool aim(const Problem& problem, Block& block, double before, double pull) {
   const double gap = std::max(0.0, block.gap);
   const double square = before * before - 2 * pull * gap;  // of the speed of the impact
-  if (square < slow_impact * slow_impact) return;
+  if (square < slow_impact * slow_impact) return false;
   const double impact = std::sqrt(square);
-  if (impact <= before) return;  // they part
+  if (impact <= before) return false;  // they part
   const double time = 2 * gap / (impact - before), rest = problem.length - time;
   if (rest <= 0) {  // not yet: nothing may hold it
     block.seek[0] = std::min(block.seek[0], before + problem.length * pull);
-    return;
+    return false;
   }
   const double rise = rest * (block.restitution * impact + rest * pull / 2);
-  if (rise <= 0) return;
+  if (rise <= 0) return false;
   block.bounces = true;
   block.yield = 0;
   block.met = time;
   block.rise = rise;
   block.before = -impact - rest * pull;
   block.seek[0] = block.restitution * impact + rest * pull;
+  return true;
+}
+
+/// A push that is small beside the speed acts throughout, as gravity does; a larger one throws at the substep's beginning. What
+/// touches already is pressed by it.
+void aim(const Problem& problem, Block& block) {
+  const double before = parting_of(problem, block), pull = pull_of(problem, block);
+  const double kick = block.gap > touching ? kick_of(problem, block) : 0;
+  if (kick != 0 && std::abs(kick) < -before && aim(problem, block, before, pull + kick / problem.length)) return;
+  aim(problem, block, before + kick, pull);
 }
 
 /// Whether a contact is still met when another one, which is met earlier, has rebounded: a ball on a plate does not reach the
@@ -148,7 +163,7 @@ std::vector<Impact> impacts_in_turn(Problem& problem) {
       return other.block->a == block.a && other.block->b == block.b && other.block->frame.col(0) == block.frame.col(0);
     };
     if (out.size() == most || std::ranges::any_of(out, is_of_the_same_face) || is_large(problem, block)) return {};
-    out.push_back({&block, parting_of(problem, block), pull_of(problem, block)});
+    out.push_back({&block, parting_of(problem, block) + kick_of(problem, block), pull_of(problem, block)});
     any |= block.gap + problem.length * (out.back().speed + problem.length * out.back().pull) < 0;
   }
   if (!any || out.size() < 2) return {};

@@ -358,7 +358,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
       move(*problem_.trees[i]);
     }
   }
-  if (rebounding) bound_energy(problem_, work_, rebound_);
+  if (rebounding) bound_energy(problem_, work_, rebound_, step_);
   bound_gain(problem_, work_, before, grounded, is_part);
   const bool swept = outcome.sweeps > 0 && outcome.descents == 0;
   settle(first_tree, last_tree, rests, swept ? outcome.miss : 0);

@@ -11,8 +11,8 @@ namespace {
 /// No load presses surfaces in farther, and no more is pushed out in a substep [m].
 constexpr double deepest = 1e-7;
 
-/// Of what no freedom moves along a row [1/kg].
-constexpr double least_mobility = 1e-12;
+/// A contact's normal moves by less than this where a coordinate moves by a unit: it is across the way [1], [m].
+constexpr double across = 1e-9;
 
 /// A right-handed frame whose first column is the normal.
 Matrix3 frame_about(const Vector3& normal) {
@@ -33,6 +33,16 @@ bool comes_to_lower(const Limit& limit, double q, double speed, double length) {
   const double end = q + length * speed;
   if (end < limit.lower || end > limit.upper) return end < limit.lower;
   return q - limit.lower < limit.upper - q;
+}
+
+/// Whether any coordinate moves the sides of a contact along its normal.
+bool moves_along(const Problem& problem, const Block& block) {
+  const auto moves = [&](int place, int first, std::span<const int> dofs) {
+    if (place < 0) return false;
+    if (problem.trees[place]->free_root) return true;
+    return std::ranges::any_of(dofs, [&](int k) { return std::abs(problem.jacobian[first + k * block.rows]) > across; });
+  };
+  return moves(block.a, block.ja, block.dofs_a) || moves(block.b, block.jb, block.dofs_b);
 }
 
 /// Whether a link turns by enough that the ways of its points bend.
@@ -157,7 +167,7 @@ void Problem::weigh(Block& block) const {
     if (r == 3) continue;  // turning about the normal is alone
     block.mobility[r] = block.mobility[r + 1] = (block.mobility[r] + block.mobility[r + 1]) / 2;
   }
-  for (int r = 0; r < block.rows; ++r) block.mobility[r] = std::max(block.mobility[r], least_mobility);
+  for (int r = 0; r < block.rows; ++r) block.mobility[r] = std::max(block.mobility[r], 1e-12);
 }
 
 /// By how much a link's velocity at a point of contact changes in a second while the speeds of all coordinates stay [m/s^2].
@@ -214,7 +224,7 @@ void Problem::add(const Contact& contact, int a, int b, int source) {
   block.kind = Block::Source::contact;
   block.source = source;
   block.gap = contact.gap;
-  if (block.mobility[0] <= least_mobility) {  // what cannot come nearer presses with any impulse, and friction with it: with none
+  if (!moves_along(*this, block)) {  // what cannot come nearer presses with any impulse, and friction with it: with none
     block.law = Block::Law::off;
     return;
   }

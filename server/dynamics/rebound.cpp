@@ -14,11 +14,12 @@ constexpr double more_than_moved = 1.02;  // the square of how much farther than
 
 /// Gives the trees what pushes them, without gravity, as it acts: at once, before any impact.
 /// @param start   velocities at the substep's beginning, of each dof: in, without it; out, with it
-/// @param change  out: of each dof
+/// @param change  out: of each dof;  @param fall  out: likewise by gravity, of what is pushed
 /// @return        its work [J]
-double push(const Problem& problem, Workspace& work, std::vector<double>& start, std::vector<double>& change) {
+double push(const Problem& problem, Workspace& work, std::vector<double>& start, std::vector<double>& change, std::vector<double>& fall) {
   double sum = 0;
   change.assign(start.size(), 0);
+  fall.assign(start.size(), 0);
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];
     const int n = tree.dofs;
@@ -31,19 +32,26 @@ double push(const Problem& problem, Workspace& work, std::vector<double>& start,
     faster = mass.llt().solve(impulse);
     sum += impulse.dot(before + faster / 2);
     before += faster;
+    external_forces(tree, work, work.scratch, false, true);
+    const Eigen::VectorXd weight = problem.length * Eigen::Map<const Eigen::VectorXd>(work.scratch.data(), n);
+    Eigen::Map<Eigen::VectorXd>(fall.data() + problem.offset[i], n) = mass.llt().solve(weight);
   }
   return sum;
 }
 
 /// What contacts that do not rebound take of the work of pushes: these press, and do not move what is held.
-/// @param change  see push()
-double work_held(const Problem& problem, const std::vector<double>& change) {
+/// @param change, fall  see push(): of an impulse that holds both, each has its share
+double work_held(const Problem& problem, const std::vector<double>& change, const std::vector<double>& fall) {
   double sum = 0;
   for (const Block& block : problem.blocks) {
     if (block.kind != Block::Source::contact || problem.rebounded(block)) continue;
-    double u[Block::most_rows];
+    double u[Block::most_rows], others[Block::most_rows];
     problem.speeds(block, u, change.data());
-    for (int r = 0; r < block.rows; ++r) sum += std::min(0.0, block.impulse[r] * u[r] / 2);
+    problem.speeds(block, others, fall.data());
+    for (int r = 0; r < block.rows; ++r) {
+      const double share = u[r] * others[r] > 0 ? u[r] / (u[r] + others[r]) : 1;
+      sum += std::min(0.0, share * block.impulse[r] * u[r] / 2);
+    }
   }
   return sum;
 }
@@ -61,6 +69,34 @@ double work_of_servos(const Problem& problem, const Snapshot& without) {
     for (const int k : block.dofs_a) {
       const double along = problem.jacobian[block.ja + k], most = usual * along * after[k];  // it may be stopped at once, as by a limit
       sum += std::min(usual * along * (before[k] + after[k]) / 2, most) + more * along * after[k];
+    }
+  }
+  return sum;
+}
+
+/// Whether pushes are small beside the speeds of all impacts: then they act throughout the substep, see impact.cpp.
+/// @param start, change  see push(): out
+bool push_throughout(const Problem& problem, const std::vector<double>& start, const std::vector<double>& change) {
+  return !problem.in_turn && std::ranges::all_of(problem.blocks, [&](const Block& block) {
+    if (!problem.rebounded(block)) return true;
+    double u[Block::most_rows], kick[Block::most_rows];
+    problem.speeds(block, u, start.data());
+    problem.speeds(block, kick, change.data());
+    return kick[0] == 0 || std::abs(kick[0]) < kick[0] - u[0];
+  });
+}
+
+/// What such pushes give: their work on the way, without what a kick at the beginning of each substep has more of it.
+/// @param step  of each dof [rad], [m]
+double work_throughout(const Problem& problem, Workspace& work, const Rebound& rebound, const std::vector<double>& step) {
+  double sum = 0;
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    const Tree& tree = *problem.trees[i];
+    work.scratch.resize(tree.dofs);
+    external_forces(tree, work, work.scratch, true, false);
+    for (int k = 0; k < tree.dofs; ++k) {
+      const std::size_t place = problem.offset[i] + k;
+      sum += work.scratch[k] * (step[place] - problem.length / 2 * (tree.v[k] - rebound.before[place]));
     }
   }
   return sum;
@@ -193,10 +229,14 @@ void bound_impacts(Problem& problem, Solver& solver, Workspace& work, Rebound& o
   for (const Tree* tree : problem.trees) {
     out.start.insert(out.start.end(), tree->v.begin(), tree->v.end());
   }
-  const double pushed = push(problem, work, out.start, out.change);
+  out.before = out.start;
+  const double pushed = push(problem, work, out.start, out.change, out.after);
   const double share = share_without_gain(problem, out.without, out.start);
   if (share < 1) blend(problem, out.without, share);
-  out.most_energy = energy(problem.trees) + pushed + work_held(problem, out.change) + work_of_servos(problem, out.without);
+  const double unpushed = energy(problem.trees) + work_of_servos(problem, out.without);
+  out.most_energy = unpushed + pushed + work_held(problem, out.change, out.after);
+  out.throughout.reset();
+  if (pushed != 0 && push_throughout(problem, out.start, out.change)) out.throughout = unpushed;
 }
 
 bool lifts_too_much(const Problem& problem, Workspace& work, const Rebound& rebound,
@@ -243,7 +283,10 @@ void bound_way(Problem& problem, const Rebound& rebound) {
   for (double& way : problem.velocity) way *= share;
 }
 
-void bound_energy(const Problem& problem, Workspace& work, Rebound& rebound) {
+void bound_energy(const Problem& problem, Workspace& work, Rebound& rebound, const std::vector<double>& step) {
+  if (rebound.throughout) {
+    rebound.most_energy = std::min(rebound.most_energy, *rebound.throughout + work_throughout(problem, work, rebound, step));
+  }
   const double now = energy(problem.trees), excess = now - rebound.most_energy;
   const double kinetic = kinetic_energy(problem);
   if (excess <= rounding * (kinetic + std::abs(now))) return;

@@ -3,6 +3,7 @@
 // points strike at once, friction turns the body, or it turns far within the substep. An island takes as much
 // of the way from the impact without rebound to that with it as adds none.
 
+#include <optional>
 #include <vector>
 
 #include "dynamics/newton.h"
@@ -12,7 +13,9 @@ namespace ziggurat::dynamics {
 /// What bounds the rebounds of an island in a substep.
 struct Rebound {
   double most_energy = 0;  ///< kinetic and potential, at the substep's end [J]
+  std::optional<double> throughout;   ///< the same without pushes, where these act throughout the substep [J]
   Snapshot without;        ///< the solution without rebound
+  std::vector<double> before;         ///< velocities at the substep's beginning, of each dof
   std::vector<double> start;          ///< velocities at the substep's beginning, with what pushes give, of each dof
   std::vector<double> after, change;  ///< memory of functions
 };
@@ -38,6 +41,7 @@ void bound_way(Problem& problem, const Rebound& rebound);
 
 /// Takes what the rebounds gained all the same, at the substep's end: where bodies turn far, or what undoes overlaps
 /// lifts them. Needs move(), and leaves the trees moved.
-void bound_energy(const Problem& problem, Workspace& work, Rebound& rebound);
+/// @param step  displacements of the substep, of each dof [rad], [m]
+void bound_energy(const Problem& problem, Workspace& work, Rebound& rebound, const std::vector<double>& step);
 
 }  // namespace ziggurat::dynamics

@@ -107,15 +107,19 @@ bool is_round(const Collider& collider, const btVector3& normal) {
 }
 
 /// Notes how the point of contact moves where one of two colliders that move is round and the other one is not: with its centre,
-/// and about the normal.
-void note_rolling(const Collider& a, const Collider& b, dynamics::Contact& contact) {
+/// and about the normal, unless that turns it far in the substep.
+void note_rolling(const Collider& a, const Collider& b, double length, dynamics::Contact& contact) {
+  constexpr double far = 0.2;  // [rad]
   const btVector3 normal = to_bullet(contact.normal);
   const bool round_a = is_round(a, normal);
   if (round_a == is_round(b, normal)) return;
   const Collider& round = round_a ? a : b;
   const btVector3 arm = to_bullet(round_a ? contact.point : math::Vector3(contact.point + contact.until_met)) - round.pose.getOrigin();
+  const btScalar turning = round.angular_velocity.dot(normal);
+  const bool is_ball = std::holds_alternative<contact::Sphere>(round.shape);
+  if (!is_ball && length * btFabs(turning) > far) return;
   contact.rolls = true;
-  contact.velocity = from_bullet(round.velocity + round.angular_velocity.dot(normal) * normal.cross(arm));
+  contact.velocity = from_bullet(is_ball ? round.velocity : round.velocity + turning * normal.cross(arm));
 }
 
 /// How two colliders turn in a substep.
@@ -223,6 +227,7 @@ std::span<dynamics::Contact> Contacts::find(double length, const TreeSet& chosen
 /// All pairs that are near, and those with the floor.
 void Contacts::meet_all(double length) {
   ++part_;
+  length_ = length;
   swings.clear();
   contacts_.clear();
   owners_.clear();
@@ -348,7 +353,7 @@ void Contacts::emit(const Pair& pair) {
     contact.gap = pair.points[i].gap;
     if (a.moves && b.moves) {
       place_between(a, pair.points[i].on_a, b, pair.points[i].on_b, apart_, contact);
-      note_rolling(a, b, contact);
+      note_rolling(a, b, length_, contact);
     }
     contact.impulse = share_ * pair.points[i].impulse;
     contact.angular_impulse = share_ * pair.points[i].angular_impulse;

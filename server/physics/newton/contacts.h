@@ -109,6 +109,7 @@ class Contacts {
   std::unordered_map<std::uint64_t, int>
       places_;                         // of pairs by their colliders; not with the floor
   double apart_ = 0;                   // what is farther apart and touches meets later in the substep [m]
+  double length_ = 0;                  // of the coming substep or part [s]
   double share_ = 1;                   // of a substep's forces, that acts in the coming one
   unsigned substep_ = 0, part_ = 0;    // how many there were; part_: of both
   std::vector<int> met_, met_before_;  // pairs, by the last find() and the one before

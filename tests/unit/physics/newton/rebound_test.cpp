@@ -153,6 +153,26 @@ TEST(NewtonRebound, WhatIsPressedSlides) {
   }
 }
 
+// What its floor holds of the push is no energy that it lacks: slow ones stopped at the wall.
+TEST(NewtonRebound, WhatIsPressedReboundsFromAWall) {
+  for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+    for (const double speed : {0.1, 0.5, 2.0}) {
+      World world(newton(true), 1 / hz);
+      world.add(standing(at(0.52 + speed / 10, 0, 0), scene::Box{{1, 10, 1}}, 0));
+      scene::Entity box = loose(at(0, 0, 0), scene::Box{{0.04, 0.04, 0.04}}, 0.1, 0);
+      box.links[0].surface.restitution = 1;
+      world.add(box);
+      world::Push push{1, Vector3(0.1 * speed * hz, 0, -5), Vector3::Zero()};
+      for (int i = 0; i < hz / 5; ++i) {
+        set_pushes(world, std::span(&push, 1));
+        world.step();
+        push.force.x() = 0;
+      }
+      EXPECT_NEAR(state_of(world).links.back().velocity.x(), -speed, 1e-4) << hz << ' ' << speed;
+    }
+  }
+}
+
 // Both speeds were 0.
 TEST(NewtonRebound, AfterAPushOfOneSubstep) {
   for (const double hz : {50, 100, 200, 500, 1000, 2000}) {

@@ -308,5 +308,24 @@ TEST(NewtonPress, FitsItsBoxExactlyAndMoves) {
   EXPECT_NEAR(world.position(index), -gap, 1e-4);
 }
 
+// However heavy it is: a wall that is nearly along its way stops it.
+TEST(NewtonPress, StopsAtAWallThatIsNearlyAlongItsWay) {
+  const double gap = 0.1;
+  for (const double mass : {1.0, 1e6, 1e8}) {
+    for (const double tilt : {0.001, 0.01, 0.1}) {
+      World world(newton(), 0.01);
+      scene::Entity slide = prototype("slide", at(0, 0, 0), false, {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1), link("ball", scene::Sphere{0.1}, mass)});
+      slide.joints.push_back(joint(scene::JointType::prismatic, Vector3::UnitZ(), at(1, 0, 0), {}));
+      world.add(with_friction(slide, 0));
+      // The wall's face leans by the tilt; the ball's lower side comes to it after the gap.
+      const math::Quaternion leaning(Eigen::AngleAxisd(-tilt, Vector3::UnitY()));
+      const Vector3 normal = leaning * Vector3::UnitX(), touch = Vector3(1, 0, 0.1 - gap) - 0.1 * normal;
+      world.add(standing({touch - 0.5 * normal - leaning * Vector3(0, 0, 2), leaning}, scene::Box{{1, 1, 4}}, 0));
+      run(world, 0.4, 0.01);
+      EXPECT_NEAR(world.position(world.joint(0, 0)), -gap, 0.01 * gap) << mass << ' ' << tilt;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ziggurat::physics
