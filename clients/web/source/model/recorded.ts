@@ -10,6 +10,7 @@ import { areWhole, checkWorld } from "./check";
 import { Collisions } from "./collisions";
 import type { Contacts, Log, Poses, World } from "./messages";
 import type { Series } from "./series";
+import { kept, mostShown } from "./texts";
 import { newestMessage, type Frame, type Frames, type Mark } from "./timeline";
 
 const mostBytes = 192 * 1024 * 1024; // of frames in memory
@@ -323,7 +324,7 @@ export class Recorded implements Source, Frames {
   }
 
   private mark(sequence: number, kind: Mark["kind"], text: string): void {
-    if (this.marks.length < 20_000) this.marks.push({ sequence, kind, text: text.slice(0, 300) });
+    if (this.marks.length < 20_000) this.marks.push({ sequence, kind, text: kept(text, mostShown) });
   }
 }
 
