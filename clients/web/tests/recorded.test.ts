@@ -168,6 +168,33 @@ test("a first world of many small parts: the next one is shown, or the file is r
   recorded.close();
 });
 
+/** A file with one chunk, not compressed, of such records. */
+function fileOf(records: Uint8Array): Uint8Array {
+  const head = new DataView(new ArrayBuffer(9 + 40));
+  head.setUint8(0, 6); // a chunk
+  head.setBigUint64(1, BigInt(40 + records.length), true);
+  head.setBigUint64(9, 0n, true);
+  head.setBigUint64(17, 1n, true); // times
+  head.setBigUint64(25, BigInt(records.length), true);
+  head.setBigUint64(41, BigInt(records.length), true);
+  return new Uint8Array(Buffer.concat([Buffer.from("\x89MCAP0\r\n", "latin1"), new Uint8Array(head.buffer), records]));
+}
+
+test("a chunk of very many messages, and schemas of very many bytes, are refused", async () => {
+  const messages = new Uint8Array(31 * 1_000_001);
+  for (let at = 0; at < messages.length; at += 31) messages.set([5, 22], at); // empty ones
+  await assert.rejects(open(fileOf(messages)), /a chunk has more than 1000000 messages/);
+  const schemas = Array.from({ length: 17 }, (_, id) => {
+    const record = new DataView(new ArrayBuffer(9 + 14 + 4e6));
+    record.setUint8(0, 3);
+    record.setBigUint64(1, BigInt(14 + 4e6), true);
+    record.setUint16(9, id, true);
+    record.setUint32(19, 4e6, true);
+    return new Uint8Array(record.buffer);
+  });
+  await assert.rejects(open(fileOf(new Uint8Array(Buffer.concat(schemas)))), /its schemas and channels are too large/);
+});
+
 test("a recording that was cut off is shown up to there, and the user is told", async () => {
   const whole = await write(300);
   const { chunks } = (await open(whole)).container;

@@ -109,7 +109,7 @@ class Weighing {
     const fields = fieldsOf(type);
     if (levels === 0) this.memory = Infinity;
     while (reader.pos < end && this.memory <= this.most) {
-      const tag = reader.uint32();
+      const tag = this.varint();
       const wire = tag & 7;
       if (wire === WireType.StartGroup || wire === WireType.EndGroup) return void (this.memory = Infinity);
       if (tag >>> 3 === 0 || wire > WireType.Bit32) throw new RangeError("no field");
@@ -121,10 +121,18 @@ class Weighing {
     }
   }
 
+  private varint(): number {
+    const { reader } = this;
+    const first = this.bytes[reader.pos];
+    if (!(first < 0x80)) return reader.uint32();
+    ++reader.pos;
+    return first;
+  }
+
   private skip(wire: WireType): void {
     const { reader } = this;
     if (wire === WireType.LengthDelimited) {
-      const length = reader.uint32();
+      const length = this.varint();
       reader.pos += length;
     } else if (wire === WireType.Bit64) {
       reader.pos += 8;
@@ -142,7 +150,7 @@ class Weighing {
 
   private content(field: DescField, levels: number): void {
     const { reader } = this;
-    const length = reader.uint32();
+    const length = this.varint();
     const end = reader.pos + length;
     if (end > this.bytes.length) throw new RangeError("cut off");
     if (field.fieldKind === "map") {
@@ -161,12 +169,12 @@ class Weighing {
   private entry(field: DescField, end: number, levels: number): void {
     const { reader } = this;
     while (reader.pos < end && this.memory <= this.most) {
-      const tag = reader.uint32();
+      const tag = this.varint();
       if (tag !== entryMessage || !field.message) {
         this.skip(tag & 7);
         continue;
       }
-      const length = reader.uint32();
+      const length = this.varint();
       const inner = reader.pos + length;
       if (inner > end) throw new RangeError("cut off");
       this.memory += place + ofEmpty(field.message);

@@ -3,7 +3,7 @@ import { beginning, mostKept, mostShown } from "../model/texts";
 
 const mostText = 1000; // characters of any text; longText() shows more
 const mostTitle = 2000;
-const wordLength = 50; // of words that are broken
+const wordLength = 8; // of the pieces of long words
 
 type Child = Node | string | null;
 interface Options {
