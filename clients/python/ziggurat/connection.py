@@ -55,6 +55,25 @@ class Curve:
                              "'ziggurat keygen'") from None
 
 
+class Wait:
+    """For something that the server sends, from now on: what comes in between, as heartbeats, does not extend it."""
+
+    def __init__(self, seconds: Optional[float], what: str = "message"):
+        self._seconds = seconds  # of wall time; None: forever
+        self._what = what
+        self._end = None if seconds is None else time.monotonic() + seconds
+
+    def left(self, most: float) -> float:
+        """[s], and not more than that."""
+        return most if self._end is None else min(most, max(0.0, self._end - time.monotonic()))
+
+    def is_over(self) -> bool:
+        return self._end is not None and time.monotonic() >= self._end
+
+    def __str__(self) -> str:
+        return f"no {self._what} for {self._seconds:g} s"
+
+
 class Connection:
     """Connects in the background; the server may start later. Without endpoint: see find_server."""
 
@@ -114,17 +133,16 @@ class Connection:
                     self.close()
                     raise ConnectionLost(f"{self.endpoint}: {why}") from None
 
-    def receive(self, timeout: Optional[float]) -> v1.ServerMessage:
-        """The next message. `timeout` is wall time [s]; None waits forever.
+    def receive(self, wait: Wait) -> v1.ServerMessage:
+        """The next message.
 
         Raises Timeout, and ConnectionLost when all messages that arrived before have been read.
         """
         if self.closed:
             raise ConnectionLost("the session is closed")
-        end = None if timeout is None else time.monotonic() + timeout
         silence = 0.0  # in pieces: a program that was stopped has not waited
         while True:
-            rest = SLICE if end is None else min(SLICE, max(0.0, end - time.monotonic()))
+            rest = wait.left(SLICE)
             if self._why_closed is not None:
                 rest = 0.0
             began = time.monotonic()
@@ -140,8 +158,8 @@ class Connection:
                 continue
             if self.longest_silence is not None and silence >= self.longest_silence:
                 raise ConnectionLost(f"{self.endpoint}: the server has been silent for {silence:.1f} s")
-            if end is not None and time.monotonic() >= end:
-                raise Timeout(f"{self.endpoint}: no message for {timeout:g} s")
+            if wait.is_over():
+                raise Timeout(f"{self.endpoint}: {wait}")
 
     def _decoded(self, data: bytes) -> v1.ServerMessage:
         fault = excess(data)
@@ -211,7 +229,7 @@ class Connection:
         self.send(v1.ClientMessage(hello=hello))
         while True:
             try:
-                message = self.receive(connect_timeout)
+                message = self.receive(Wait(connect_timeout))
             except Timeout:
                 if is_patient and self.is_accepted:
                     continue

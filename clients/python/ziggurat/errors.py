@@ -33,7 +33,7 @@ class ConnectionLost(ZigguratError, ConnectionError):
 
 
 class Timeout(ZigguratError, TimeoutError):
-    """No message arrived within the time-out."""
+    """What was waited for did not arrive within the time-out. The session goes on; the next call waits again."""
 
 
 class Displaced(ZigguratError):

@@ -40,7 +40,7 @@ def connect(endpoint: str = "", robots: Union[str, Sequence[str]] = (), *, contr
     can_restore      this controller can go back: at Event.RESTORED it takes the state that it had at
                      the tick of the snapshot. Without, the server refuses to restore the world
     connect_timeout  wall time to wait for the server's welcome [s]
-    wait_timeout     wall time to wait for a message [s]; None: forever
+    wait_timeout     wall time to wait for each observation [s]; None: forever
     resume_timeout   wall time for which a session whose connection was lost is tried to resume [s]; None: as
                      long as the server reserves the robots, at least 10 s; 0: never
 

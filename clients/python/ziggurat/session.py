@@ -7,7 +7,7 @@ import weakref
 from typing import Any, Dict, Iterable, Iterator, List, Optional, Union
 
 from . import protocol_pb2 as v1
-from .connection import Connection, Curve
+from .connection import Connection, Curve, Wait
 from .errors import ConnectionLost, Displaced, ProtocolError, Refused, name_of, printable
 from .exchange import Exchange
 from .named import Named
@@ -117,11 +117,13 @@ class Session:
             raise ConnectionLost("the session is closed")
         if self._owes is not None:
             self._answer()
+        wait = Wait(self._wait_timeout, "observation")
         while True:
             try:
-                message = self._connection.receive(self._wait_timeout)
+                message = self._connection.receive(wait)
             except ConnectionLost as loss:
                 self._resume(loss)
+                wait = Wait(self._wait_timeout, "observation")
                 continue
             kind = message.WhichOneof("message")
             if kind in ("observation", "world_state"):  # a director is told the latter

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, List, Optional, Sequence, Tuple, Union
 
 from . import protocol_pb2 as v1
-from .connection import Connection, Curve
+from .connection import Connection, Curve, Wait
 from .devices import Color, Quaternion, Vector
 from .devices.led import color_of
 from .errors import ConnectionLost, ProtocolError, name_of, printable
@@ -94,7 +94,9 @@ class Supervisor:
     """Each call returns when the server has carried it out. For an observer, all but status and
     read raise ProtocolError with FORBIDDEN.
 
-    connect_timeout, wait_timeout  wall time [s]; None waits forever
+    connect_timeout  wall time to wait for the server's welcome [s]
+    wait_timeout     wall time to wait for each answer [s]; None: forever. After a Timeout the server may still do
+                     what it was asked for
     """
 
     def __init__(self, endpoint: str, *, observer: bool = False, name: str = "python",
@@ -116,8 +118,9 @@ class Supervisor:
         self._next_id += 1
         self._connection.send(
             v1.ClientMessage(request=v1.Request(id=self._next_id, **request)))
+        wait = Wait(self._wait_timeout, "answer")
         while True:
-            message = self._connection.receive(self._wait_timeout)
+            message = self._connection.receive(wait)
             kind = message.WhichOneof("message")
             if kind == "response" and message.response.id == self._next_id:
                 if message.response.HasField("error"):

@@ -13,7 +13,7 @@ import { BarrierPanel } from "./panels/barrier";
 import { CameraPanel } from "./panels/camera";
 import { Change } from "./panels/change";
 import { Devices } from "./panels/devices";
-import { icon, make, setText } from "./panels/element";
+import { icon, longText, make, setText } from "./panels/element";
 import { Header } from "./panels/header";
 import { fillHelp } from "./panels/help";
 import { Layers } from "./panels/layers";
@@ -80,10 +80,10 @@ app.onSettings = () => {
 view.stage.controls.addEventListener("end", () => app.looked());
 
 app.onNotice = ({ level, text }) => {
-  const notice = make(`div.notice.${level}`, { click: () => notice.remove() }, text);
+  const notice = make(`div.notice.${level}`, { click: () => notice.remove() }, longText("span", text));
   part("notices").append(notice);
   while (part("notices").childElementCount > 4) part("notices").firstElementChild!.remove();
-  setTimeout(() => notice.remove(), level === "error" ? 12_000 : 6_000);
+  setTimeout(() => { if (!notice.querySelector(".open")) notice.remove(); }, level === "error" ? 12_000 : 6_000);
 };
 
 const overlay = part("overlay");

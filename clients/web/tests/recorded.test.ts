@@ -35,7 +35,8 @@ function world(change: Record<string, unknown> = {}): Uint8Array {
 }
 
 /** A recording in which a box rises by 1 mm a tick, from 1 s on. */
-async function write(ticks: number, firstWorld = world(), chunkSize = 4096): Promise<Uint8Array> {
+async function write(ticks: number, firstWorld = world(), chunkSize = 4096,
+                     more: [topic: string, tick: number, data: Uint8Array][] = []): Promise<Uint8Array> {
   const memory = new Memory();
   const writer = new McapWriter({ writable: memory, chunkSize,
     compressChunk: (data) => ({ compression: "lz4", compressedData: new Uint8Array(compress(data)) }) });
@@ -56,6 +57,7 @@ async function write(ticks: number, firstWorld = world(), chunkSize = 4096): Pro
   for (let tick = 0; tick <= ticks; ++tick) {
     await put("/poses", tick, encode("ziggurat.v1.Poses", { tick: BigInt(10 + tick), generation: 1n,
       positions: [0, 0, 0.001 * tick], orientations: [1, 0, 0, 0], ledColors: [0xff0000] }));
+    for (const [topic, at, data] of more) if (at === tick) await put(topic, tick, data);
     if (tick === 5) await put("/log", tick, encode("foxglove.Log", { level: 4, name: "robot", message: "<b>lost</b>" }));
   }
   await writer.end();
@@ -132,6 +134,65 @@ test("a place in a large recording is found without reading the rest", async () 
   assert.equal(frame.tick, 15_010);
   assert.ok(read < bytes.length / 2, `${read} of ${bytes.length} bytes were read`);
   assert.ok(took < 200, `${took.toFixed(0)} ms`);
+});
+
+/** So many empty parts, of two bytes each. */
+function parts(tag: number, count: number): Uint8Array {
+  return Uint8Array.from({ length: 2 * count }, (_, i) => (i % 2 === 0 ? tag : 0));
+}
+
+test("messages of many small parts are told with topic and time, and the rest is shown", async () => {
+  const links = encode("ziggurat.v1.World", { links: [{}] })[0];
+  const recorded = await open(await write(60, world(), 4096, [
+    ["/log", 20, parts(1 << 3 | 2, 5_000_000)], ["/world", 40, parts(links, 12_000_000)], ["/contacts", 50, new Uint8Array([8])]]));
+  const heard = new Heard();
+  recorded.start(heard);
+  for (const sequence of [60, 20, 40, 50]) assert.equal((await until(() => recorded.at(sequence))).tick, 10 + sequence);
+  await until(() => heard.notices.length === 3);
+  const told = (text: RegExp): void => assert.ok(heard.notices.some((notice) => text.test(notice)), `${text}: ${heard.notices.join("\n")}`);
+  told(/^run.mcap: \/log at 2.00 s has parts that take more than 256 MiB of memory, which none of a run does. It is left out.$/);
+  told(/\/world at 4.00 s has parts that take more than 1024 MiB/);
+  told(/\/contacts at 5.00 s is damaged/);
+  assert.ok(!recorded.at(20)?.messages.has("/log") && recorded.at(20)?.messages.has("/poses"));
+  await until(() => heard.lines.length === 1);
+  assert.deepEqual(heard.notices.length, 3); // each once
+  recorded.close();
+});
+
+test("a first world of many small parts: the next one is shown, or the file is refused", async () => {
+  const bomb = parts(encode("ziggurat.v1.World", { links: [{}] })[0], 12_000_000);
+  await assert.rejects(open(await write(5, bomb)), /^Error: run.mcap can't be read: its \/world at 0.00 s has parts that take more than 1024 MiB/);
+  const recorded = await open(await write(5, bomb, 4096, [["/world", 1, world()]]));
+  recorded.start(new Heard());
+  assert.equal((await until(() => recorded.at(3))).tick, 13);
+  recorded.close();
+});
+
+/** A file with one chunk, not compressed, of such records. */
+function fileOf(records: Uint8Array): Uint8Array {
+  const head = new DataView(new ArrayBuffer(9 + 40));
+  head.setUint8(0, 6); // a chunk
+  head.setBigUint64(1, BigInt(40 + records.length), true);
+  head.setBigUint64(9, 0n, true);
+  head.setBigUint64(17, 1n, true); // times
+  head.setBigUint64(25, BigInt(records.length), true);
+  head.setBigUint64(41, BigInt(records.length), true);
+  return new Uint8Array(Buffer.concat([Buffer.from("\x89MCAP0\r\n", "latin1"), new Uint8Array(head.buffer), records]));
+}
+
+test("a chunk of very many messages, and schemas of very many bytes, are refused", async () => {
+  const messages = new Uint8Array(31 * 1_000_001);
+  for (let at = 0; at < messages.length; at += 31) messages.set([5, 22], at); // empty ones
+  await assert.rejects(open(fileOf(messages)), /a chunk has more than 1000000 messages/);
+  const schemas = Array.from({ length: 17 }, (_, id) => {
+    const record = new DataView(new ArrayBuffer(9 + 14 + 4e6));
+    record.setUint8(0, 3);
+    record.setBigUint64(1, BigInt(14 + 4e6), true);
+    record.setUint16(9, id, true);
+    record.setUint32(19, 4e6, true);
+    return new Uint8Array(record.buffer);
+  });
+  await assert.rejects(open(fileOf(new Uint8Array(Buffer.concat(schemas)))), /its schemas and channels are too large/);
 });
 
 test("a recording that was cut off is shown up to there, and the user is told", async () => {

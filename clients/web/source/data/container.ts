@@ -10,6 +10,8 @@ import { decompress as decompressLz4 } from "lz4js";
 const { Opcode } = McapConstants;
 const largestChunk = 256 * 1024 * 1024; // [B] compressed, and decompressed
 const mostChunks = 2_000_000;
+const mostMessages = 1_000_000; // of a chunk
+const mostDefinitions = 64 * 1024 * 1024; // [B] all schemas and channels
 
 export interface Chunk {
   readonly offset: number; // of its record in the file
@@ -61,6 +63,7 @@ export class Container {
   readonly schemas = new Map<number, Schema>();
   /** The file ends in the middle, or has no summary. */
   isCut = false;
+  private definitions = 0; // their bytes, as far as they stand outside of the summary
 
   private constructor(private readonly file: IReadable) {}
 
@@ -117,8 +120,11 @@ export class Container {
 
   private takeRecord(opcode: number, record: Bytes): void {
     const id = record.u16();
+    if ((opcode === Opcode.SCHEMA ? this.schemas : this.channels).has(id)) return; // they are the same everywhere
+    this.definitions += record.left;
+    if (this.definitions > mostDefinitions) throw new Error("its schemas and channels are too large");
     if (opcode === Opcode.SCHEMA) {
-      this.schemas.set(id, { name: record.text(), encoding: record.text(), data: record.take(record.u32()) });
+      this.schemas.set(id, { name: record.text(), encoding: record.text(), data: record.take(record.u32()).slice() });
     } else {
       const schema = record.u16();
       this.channels.set(id, { topic: record.text(), encoding: record.text(), schema });
@@ -145,6 +151,7 @@ export class Container {
         inner.at += 4; // its number
         const timeNs = inner.u64();
         inner.at += 8; // when it was published
+        if (messages.length === mostMessages) throw new Error(`a chunk has more than ${mostMessages} messages`);
         messages.push({ channel, timeNs, data: inner.take(inner.left) });
       } else if (opcode === Opcode.SCHEMA || opcode === Opcode.CHANNEL) {
         this.takeRecord(opcode, inner);

@@ -8,9 +8,17 @@ import {
 } from "@bufbuild/protobuf";
 import { BinaryReader, WireType } from "@bufbuild/protobuf/wire";
 import { FileDescriptorSetSchema } from "@bufbuild/protobuf/wkt";
+import { boundOf, fieldsOf, fits, isPacked, ofSchemas, weigh, wireOf } from "./extent";
 import type { Value } from "./source";
 
-export type Decoder = (bytes: Uint8Array) => Value;
+/** What a message says. @throws Error that is the end of a sentence which begins with the message */
+export interface Decoder {
+  (bytes: Uint8Array): Value;
+  /** The memory that it will take [bytes]. @throws Unreadable if that is too much, or the message is damaged */
+  weigh(bytes: Uint8Array): number;
+  /** The same of a message that was weighed. */
+  decode(bytes: Uint8Array): Value;
+}
 
 /**
  * @param schema  a FileDescriptorSet
@@ -18,29 +26,31 @@ export type Decoder = (bytes: Uint8Array) => Value;
  * @throws Error if the schema does not have the type
  */
 export function makeDecoder(schema: Uint8Array, name: string): Decoder {
+  weigh(schema, FileDescriptorSetSchema, ofSchemas);
   const registry: Registry = createFileRegistry(fromBinary(FileDescriptorSetSchema, schema));
   const type = registry.getMessage(name);
   if (!type) throw new Error(`the schema has no type ${name}`);
-  return (bytes) => decodeMessage(type, new BinaryReader(bytes), bytes.length);
+  const decode = (bytes: Uint8Array): Value => decodeMessage(type, new BinaryReader(bytes), bytes.length);
+  const weighed = (bytes: Uint8Array): number => weigh(bytes, type, boundOf(name));
+  return Object.assign((bytes: Uint8Array) => {
+    weighed(bytes);
+    return decode(bytes);
+  }, { weigh: weighed, decode });
 }
 
-interface Layout {
-  fields: Map<number, DescField>;
-  empty: [string, () => unknown][]; // what absent fields without presence are
-}
-const layouts = new WeakMap<DescMessage, Layout>();
+type Empty = [string, () => unknown][]; // what absent fields without presence are
+const empties = new WeakMap<DescMessage, Empty>();
 
-function layoutOf(type: DescMessage): Layout {
-  let layout = layouts.get(type);
-  if (layout) return layout;
-  layout = { fields: new Map(), empty: [] };
+function emptyOf(type: DescMessage): Empty {
+  let empty = empties.get(type);
+  if (empty) return empty;
+  empty = [];
   for (const field of type.fields) {
-    layout.fields.set(field.number, field);
-    const empty = emptyValue(field);
-    if (empty !== undefined) layout.empty.push([field.localName, empty]);
+    const value = emptyValue(field);
+    if (value !== undefined) empty.push([field.localName, value]);
   }
-  layouts.set(type, layout);
-  return layout;
+  empties.set(type, empty);
+  return empty;
 }
 
 function emptyValue(field: DescField): (() => unknown) | undefined {
@@ -57,13 +67,13 @@ function emptyValue(field: DescField): (() => unknown) | undefined {
 }
 
 function decodeMessage(type: DescMessage, reader: BinaryReader, end: number): Value {
-  const { fields, empty } = layoutOf(type);
+  const fields = fieldsOf(type);
   const value: Value = {};
-  for (const [name, make] of empty) value[name] = make();
+  for (const [name, make] of emptyOf(type)) value[name] = make();
   while (reader.pos < end) {
     const [number, wire] = reader.tag();
     const field = fields.get(number);
-    if (!field) {
+    if (!field || !fits(field, wire)) {
       reader.skip(wire, number);
       continue;
     }
@@ -85,9 +95,7 @@ function readOne(field: DescField, reader: BinaryReader): unknown {
 
 function readList(field: DescField, reader: BinaryReader, wire: WireType, list: unknown[]): unknown {
   const scalar = field.scalar ?? (field.enum ? ScalarType.INT32 : undefined);
-  const isPacked = wire === WireType.LengthDelimited && scalar !== undefined
-      && scalar !== ScalarType.STRING && scalar !== ScalarType.BYTES;
-  if (!isPacked) {
+  if (scalar === undefined || !isPacked(field, wire)) {
     list.push(readOne(field, reader));
     return list;
   }
@@ -112,12 +120,12 @@ function readEntry(field: DescField & { fieldKind: "map" }, reader: BinaryReader
   let value: unknown;
   while (reader.pos < end) {
     const [number, wire] = reader.tag();
-    if (number === 1) {
+    if (number === 1 && wire === wireOf(field.mapKey)) {
       key = readScalar(field.mapKey, reader);
-    } else if (number === 2 && field.message) {
+    } else if (number === 2 && field.message && wire === WireType.LengthDelimited) {
       const inner = reader.uint32() + reader.pos;
       value = decodeMessage(field.message, reader, inner);
-    } else if (number === 2) {
+    } else if (number === 2 && !field.message && wire === wireOf(field.scalar ?? ScalarType.INT32)) {
       value = readScalar(field.scalar ?? ScalarType.INT32, reader);
     } else {
       reader.skip(wire, number);

@@ -35,6 +35,7 @@ export class LiveSource implements Source {
   private subscriptions = new Map<string, { id: number; channel: number }>();
   private bySubscription = new Map<number, { topic: string; decoder: Decoder }>();
   private pending = new Map<number, Pending>();
+  private unread = new Set<string>(); // topics of which a message could not be read
   private nextCall = 1;
   private delay = firstDelay;
   private timer = 0;
@@ -122,7 +123,8 @@ export class LiveSource implements Source {
       const held = this.bySubscription.get(subscriptionId);
       if (!held) return;
       const bytes = new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
-      this.listener.message(new Held(held.topic, timestamp, bytes, held.decoder));
+      const message = this.hold(held, timestamp, bytes);
+      if (message) this.listener.message(message);
     });
     client.on("advertiseServices", (services) => {
       for (const service of services) this.services.set(service.name, service);
@@ -138,6 +140,19 @@ export class LiveSource implements Source {
     client.on("status", ({ level, message }) => {
       this.listener.notice(level === 2 ? "error" : level === 1 ? "warning" : "info", message);
     });
+  }
+
+  /** null: it can't be read, which is told once for each topic. */
+  private hold({ topic, decoder }: { topic: string; decoder: Decoder }, timeNs: bigint, bytes: Uint8Array): Held | null {
+    try {
+      return new Held(topic, timeNs, bytes, decoder);
+    } catch (error) {
+      if (!this.unread.has(topic)) {
+        this.listener.notice("warning", `${topic} at ${(Number(timeNs) * 1e-9).toFixed(2)} s ${(error as Error).message}. It is left out.`);
+      }
+      this.unread.add(topic);
+      return null;
+    }
   }
 
   private subscribe(): void {

@@ -34,6 +34,7 @@ const fragmentShader = `
 
 /** The pattern for a payload: an integer from 0 to the number of patterns; null if it is none. */
 export function patternOf(payload: Uint8Array, patterns: number[]): number | null {
+  if (payload.length > 3) return null;
   const text = new TextDecoder().decode(payload);
   if (!/^\d{1,3}$/.test(text)) return null;
   return patterns[Number(text)] ?? null;

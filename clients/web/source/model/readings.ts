@@ -1,6 +1,9 @@
 // What one robot senses and is told, device by device, with the place of each number in its message,
 // so that it can be plotted.
 import type { Command, Description, Floats, Observation } from "./messages";
+import { beginning } from "./texts";
+
+const mostLetters = 200; // of bytes that are text
 
 export interface Reading {
   label: string;
@@ -15,8 +18,9 @@ export interface Group { device: string; readings: Reading[] }
 export function bytesText(bytes: Uint8Array): string {
   const hex = Array.from(bytes.slice(0, 48), (byte) => byte.toString(16).padStart(2, "0")).join(" ");
   const more = bytes.length > 48 ? " …" : "";
-  const isPrintable = bytes.length > 0 && bytes.every((byte) => byte >= 32 && byte < 127);
-  return isPrintable ? `“${new TextDecoder().decode(bytes)}”  ${hex}${more}` : hex + more || "(empty)";
+  const first = bytes.subarray(0, mostLetters + 1);
+  const isPrintable = first.length > 0 && first.every((byte) => byte >= 32 && byte < 127);
+  return isPrintable ? `“${beginning(new TextDecoder().decode(first), mostLetters)}”  ${hex}${more}` : hex + more || "(empty)";
 }
 
 /** With so many digits; a zero has no sign: what stands on the floor is pressed in by some nanometres. */

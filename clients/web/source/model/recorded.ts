@@ -3,18 +3,25 @@
 // read once, for log lines, collisions and plots.
 import type { IReadable } from "@mcap/core";
 import { Container, type Chunk, type RawMessage } from "../data/container";
-import { makeDecoder, type Decoder } from "../data/decode";
+import type { Decoder } from "../data/decode";
+import { ofAllWorlds } from "../data/extent";
 import { Held } from "../data/held";
 import type { Listener, Message, Source, Value } from "../data/source";
 import { areWhole, checkWorld } from "./check";
 import { Collisions } from "./collisions";
+import { decoderIn, endOf, findWorld } from "./first_world";
 import type { Contacts, Log, Poses, World } from "./messages";
+import { Pieces } from "./pieces";
 import type { Series } from "./series";
+import { kept, mostShown } from "./texts";
 import { newestMessage, type Frame, type Frames, type Mark } from "./timeline";
 
 const mostBytes = 192 * 1024 * 1024; // of frames in memory
 const mostFrames = 1e8;
 const mostPoints = 6000; // of a plot
+const mostTold = 3; // messages that are left out; further ones are told together
+const mostLeftOut = 100_000; // that are remembered
+const ofMessage = 300; // memory beside its bytes
 
 interface Part {
   readonly chunk: Chunk;
@@ -41,6 +48,9 @@ export class Recorded implements Source, Frames {
   private readonly bySchema = new Map<number, Decoder | null>();
   private readonly startNs: bigint;
   private tickNs: number;
+  private worldMemory = 0;
+  private readonly missing = new Set<number>(); // generations without a world that can be read
+  private readonly leftOut = new Set<string>();
   private bytes = 0;
   private calls = 0;
   private listener: Listener | null = null;
@@ -49,13 +59,14 @@ export class Recorded implements Source, Frames {
   private hasRead = false; // log and collisions
   private isClosed = false;
 
-  private constructor(readonly name: string, readonly container: Container, first: World) {
+  private constructor(readonly name: string, readonly container: Container, first: World, memory: number) {
     this.startNs = container.chunks[0].startNs;
     const endNs = container.chunks.reduce((end, chunk) => (chunk.endNs > end ? chunk.endNs : end), this.startNs);
     const length = Number(endNs - this.startNs);
     this.tickNs = Math.max(first.tickNs, length / mostFrames);
     this.last = Math.round(length / this.tickNs);
     this.worlds.set(first.generation, first);
+    this.worldMemory = memory;
     for (const chunk of container.chunks) {
       this.parts.push({ chunk, first: this.sequenceOf(chunk.startNs), last: this.sequenceOf(chunk.endNs),
                         state: "away", frames: [], bytes: 0, used: 0 });
@@ -66,8 +77,8 @@ export class Recorded implements Source, Frames {
   static async open(file: IReadable, name: string): Promise<Recorded> {
     try {
       const container = await Container.open(file);
-      const world = await findWorld(container);
-      return new Recorded(name, container, world);
+      const { world, memory } = await findWorld(container);
+      return new Recorded(name, container, world, memory);
     } catch (error) {
       const text = (error as Error).message;
       throw new Error(/^(is|has) /.test(text) ? `${name} ${text}.` : `${name} can't be read: ${text}.`);
@@ -80,7 +91,8 @@ export class Recorded implements Source, Frames {
   get seconds(): number { return this.last * this.tickNs * 1e-9; }
 
   /** When a frame is, from the beginning of the recording [s]. */
-  secondsOf(frame: Frame): number { return Number(frame.timeNs - this.startNs) * 1e-9; }
+  secondsOf(frame: Frame): number { return this.secondsAt(frame.timeNs); }
+  private secondsAt(timeNs: bigint): number { return Number(timeNs - this.startNs) * 1e-9; }
 
   // --- a source that answers nothing ----------------------------------------------------------------
 
@@ -164,7 +176,7 @@ export class Recorded implements Source, Frames {
     try {
       const messages = await this.container.read(part.chunk);
       await this.knowWorlds(part, messages);
-      this.makeFrames(part, messages);
+      await this.makeFrames(part, messages);
       part.state = "here";
     } catch (error) {
       part.state = "damaged";
@@ -182,7 +194,7 @@ export class Recorded implements Source, Frames {
       if (topic === "/world") this.takeWorld(message);
       if (topic === "/poses") generations.add(this.decode<Poses>(message)?.generation ?? 0);
     }
-    const isUnknown = (): boolean => [...generations].some((generation) => !this.worlds.has(generation));
+    const isUnknown = (): boolean => [...generations].some((generation) => !this.worlds.has(generation) && !this.missing.has(generation));
     for (let i = this.parts.indexOf(part) - 1; i >= 0 && isUnknown(); --i) {
       const { channels } = this.parts[i].chunk;
       if (channels && ![...channels].some((id) => this.container.channels.get(id)?.topic === "/world")) continue;
@@ -190,21 +202,29 @@ export class Recorded implements Source, Frames {
         if (this.container.channels.get(message.channel)?.topic === "/world") this.takeWorld(message);
       }
     }
+    for (const generation of generations) if (!this.worlds.has(generation)) this.missing.add(generation);
   }
 
   private takeWorld(message: RawMessage): void {
     const world = this.decode<World>(message);
     if (!world || this.worlds.has(world.generation)) return;
     checkWorld(world);
+    const memory = this.decoderOf(message.channel)?.weigh(message.data) ?? 0;
+    if (this.worldMemory + memory > ofAllWorlds) return this.leaveOut(message, "has no place in memory beside the worlds before it");
+    this.worldMemory += memory;
     this.worlds.set(world.generation, world);
   }
 
-  private makeFrames(part: Part, messages: RawMessage[]): void {
+  private async makeFrames(part: Part, messages: RawMessage[]): Promise<void> {
     let frame: Frame | undefined;
+    const pieces = new Pieces();
     for (const message of messages) {
+      await pieces.next();
       const channel = this.container.channels.get(message.channel);
       const decoder = this.decoderOf(message.channel);
       if (!channel || !decoder) continue;
+      const held = this.hold(channel.topic, message, decoder);
+      if (!held) continue;
       const sequence = this.sequenceOf(message.timeNs);
       if (frame?.sequence !== sequence) frame = this.frames.get(sequence);
       if (!frame) {
@@ -212,7 +232,6 @@ export class Recorded implements Source, Frames {
         this.frames.set(sequence, frame);
         part.frames.push(sequence);
       }
-      const held = new Held(channel.topic, message.timeNs, message.data, decoder);
       if (channel.topic === "/poses") {
         const poses = held.read<Poses>();
         const world = this.worlds.get(poses.generation);
@@ -221,8 +240,9 @@ export class Recorded implements Source, Frames {
         frame.tick = poses.tick;
       }
       frame.messages.set(channel.topic, held);
-      part.bytes += message.data.byteLength;
+      part.bytes += message.data.byteLength + ofMessage;
     }
+    part.bytes = Math.max(part.bytes, messages[0]?.data.buffer.byteLength ?? 0); // all of the chunk, if any of it is kept
     part.frames.sort((a, b) => a - b);
     this.bytes += part.bytes;
   }
@@ -251,8 +271,37 @@ export class Recorded implements Source, Frames {
     return decoder;
   }
 
+  /** null: it can't be read. */
   private decode<T>(message: RawMessage): T | null {
-    return (this.decoderOf(message.channel)?.(message.data) as T | undefined) ?? null;
+    if (this.leftOut.has(keyOf(message))) return null;
+    try {
+      return (this.decoderOf(message.channel)?.(message.data) as T | undefined) ?? null;
+    } catch (error) {
+      this.leaveOut(message, endOf(error));
+      return null;
+    }
+  }
+
+  private hold(topic: string, message: RawMessage, decoder: Decoder): Held | null {
+    if (this.leftOut.has(keyOf(message))) return null;
+    try {
+      return new Held(topic, message.timeNs, message.data, decoder);
+    } catch (error) {
+      this.leaveOut(message, endOf(error));
+      return null;
+    }
+  }
+
+  /** @param why  the end of a sentence that begins with the message */
+  private leaveOut(message: RawMessage, why: string): void {
+    if (this.leftOut.size > mostLeftOut) return;
+    const count = this.leftOut.add(keyOf(message)).size;
+    const topic = this.container.channels.get(message.channel)?.topic ?? "";
+    if (count <= mostTold) {
+      this.listener?.notice("error", `${this.name}: ${topic} at ${this.secondsAt(message.timeNs).toFixed(2)} s ${why}. It is left out.`);
+    } else if (count === mostTold + 1) {
+      this.listener?.notice("error", `${this.name}: further messages can't be read, and are left out.`);
+    }
   }
 
   // --- all of the file, once ------------------------------------------------------------------------
@@ -285,12 +334,14 @@ export class Recorded implements Source, Frames {
     for (const part of this.parts) {
       if (this.isClosed) return;
       const begin = performance.now();
+      const pieces = new Pieces();
       let messages: RawMessage[] = [];
       try {
         messages = await this.container.read(part.chunk);
         for (const message of messages) {
           const topic = this.container.channels.get(message.channel)?.topic ?? "";
           if (!topics.has(topic)) continue;
+          await pieces.next();
           const sequence = this.sequenceOf(message.timeNs);
           if (isFirst) this.note(topic, sequence, message, collisions);
           for (const one of series) {
@@ -323,32 +374,9 @@ export class Recorded implements Source, Frames {
   }
 
   private mark(sequence: number, kind: Mark["kind"], text: string): void {
-    if (this.marks.length < 20_000) this.marks.push({ sequence, kind, text: text.slice(0, 300) });
+    if (this.marks.length < 20_000) this.marks.push({ sequence, kind, text: kept(text, mostShown) });
   }
 }
 
-function decoderIn(container: Container, id: number): Decoder | null {
-  const channel = container.channels.get(id);
-  const schema = channel && container.schemas.get(channel.schema);
-  if (!channel || !schema || channel.encoding !== "protobuf" || schema.encoding !== "protobuf") return null;
-  try {
-    return makeDecoder(schema.data, schema.name);
-  } catch {
-    return null;
-  }
-}
-
-/** The first world of the file. */
-async function findWorld(container: Container): Promise<World> {
-  for (const chunk of container.chunks.slice(0, 20)) {
-    for (const message of await container.read(chunk)) {
-      if (container.channels.get(message.channel)?.topic !== "/world") continue;
-      const world = decoderIn(container, message.channel)?.(message.data) as unknown as World | undefined;
-      if (!world) throw new Error("the type of its topic /world is unknown or damaged");
-      if (!(world.tickNs > 0)) throw new Error("its world has no tick");
-      checkWorld(world);
-      return world;
-    }
-  }
-  throw new Error("has no topic /world: it is no recording of Ziggurat");
-}
+/** Of a message in the file. */
+function keyOf({ channel, timeNs, data }: RawMessage): string { return `${channel} ${timeNs} ${data.byteOffset}`; }

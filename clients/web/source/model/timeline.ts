@@ -2,6 +2,7 @@
 // stay encoded, so that an hour of a small world fits.
 import type { Message } from "../data/source";
 import type { Poses, World } from "./messages";
+import { kept, mostShown } from "./texts";
 
 export const mostBytes = 192 * 1024 * 1024;
 export const mostFrames = 40_000;
@@ -159,7 +160,7 @@ export class Timeline implements Frames {
   private world(): World | null { return this.worlds.get(this.generation) ?? null; }
 
   mark(kind: MarkKind, text: string): void {
-    this.marks.push({ sequence: Math.max(this.last, 0), kind, text });
+    this.marks.push({ sequence: Math.max(this.last, 0), kind, text: kept(text, mostShown) });
     if (this.marks.length > 5000) this.marks.splice(0, 1000);
   }
 

@@ -8,11 +8,13 @@ import { Playback } from "../model/playback";
 import { Recorded } from "../model/recorded";
 import { nameOf, Series, type SeriesName } from "../model/series";
 import type { Settings, Tab } from "../model/settings";
+import { beginning, kept } from "../model/texts";
 import { Timeline, type Frame, type Frames } from "../model/timeline";
 
-export interface LogEntry { sequence: number; seconds: number; name: string; level: number; text: string }
+export interface LogEntry { sequence: number; seconds: number; name: string; level: number; text: string; length: number }
 export interface Notice { level: "info" | "warning" | "error"; text: string }
 
+const mostName = 200; // characters of who logged a line
 /** With more robots than this, only what is selected or plotted is subscribed. */
 const mostRobotsAtOnce = 12;
 /** A frame that began less than this before may not be whole [ms]: its messages arrive one by one. */
@@ -123,7 +125,7 @@ export class App implements Listener {
   }
 
   logged({ level, message: text, name }: Log, sequence: number, seconds: number): void {
-    this.log.push({ sequence, seconds, name, level, text });
+    this.log.push({ sequence, seconds, name: kept(name, mostName), level, text: kept(text), length: text.length });
     if (this.log.length > 5000) this.log.splice(0, 1000);
   }
 
@@ -131,9 +133,9 @@ export class App implements Listener {
     const line = message.read<Log>();
     const { level, message: text, name } = line;
     this.logged(line, this.seen.last, Number(message.timeNs) * 1e-9);
-    this.seen.mark(level >= 4 ? "error" : level === 3 ? "warning" : "log", `${name}: ${text}`);
+    this.seen.mark(level >= 4 ? "error" : level === 3 ? "warning" : "log", `${beginning(name)}: ${beginning(text)}`);
     if (this.pauseOnText !== "" && text.includes(this.pauseOnText)) {
-      this.onNotice({ level: "info", text: `Paused: ${name} logged “${text}”` });
+      this.onNotice({ level: "info", text: `Paused: ${beginning(name)} logged “${text}”` });
       this.pauseOnText = "";
       void this.call("/pause");
     }

@@ -1,10 +1,13 @@
 // The barrier: which controllers the tick waits for, how fast they answer, where the time of a tick goes.
 import type { App } from "../page/app";
 import type { Barrier, Phases, Session } from "../model/messages";
+import { beginning } from "../model/texts";
 import { make } from "./element";
 import type { Panel } from "./panel";
 
 const states = ["?", "ready", "waited for", "answered", "paused", "draining", "lost"];
+const mostSessions = 200; // in the table
+const mostRobots = 50; // of a session, when the mouse is over it
 const phases = ["exchange", "physics", "recording", "pacing"] as const;
 
 function seconds(value: number): string {
@@ -26,12 +29,12 @@ export class BarrierPanel implements Panel {
     const { status, histograms } = barrier;
     const waiting = status.sessions.filter(({ state }) => state === 2 || state === 6);
     this.element.replaceChildren(
-      make("h2", {}, waiting.length > 0 ? `Waits for ${waiting.map(({ client }) => client).join(", ")}`
+      make("h2", {}, waiting.length > 0 ? `Waits for ${waiting.slice(0, 12).map(({ client }) => client).join(", ")}`
         : status.freeRobots.length > 0 ? "Waits for controllers" : "Waits for no controller"),
       status.freeRobots.length > 0 ? make("p.warn", {}, `Without controller: ${status.freeRobots.slice(0, 12).join(", ")}`) : "",
       status.goneRobots.length > 0 ? make("p.muted", {}, `Left for good: ${status.goneRobots.slice(0, 12).join(", ")}`) : "",
       this.phases(), make("h3", {}, "Controllers"), this.sessions(status.sessions),
-      histograms.length > 0 ? make("h3", {}, "Time to answer") : "", ...histograms.map((one) => this.histogram(one)));
+      histograms.length > 0 ? make("h3", {}, "Time to answer") : "", ...histograms.slice(0, mostSessions).map((one) => this.histogram(one)));
   }
 
   /** The mean over the last frames, as a bar. */
@@ -56,9 +59,9 @@ export class BarrierPanel implements Panel {
 
   private sessions(sessions: Session[]): HTMLElement {
     const head = make("tr", {}, ...["client", "state", "median", "99 %", "missed"].map((text) => make("th", {}, text)));
-    return make("table.sessions", {}, head, ...sessions.map((session) => make(
-      `tr${session.state === 2 || session.state === 6 ? ".waiting" : ""}`, { title: session.robots.join(", ") },
-      make("td", {}, `${session.client} (${session.robots.length})`),
+    return make("table.sessions", {}, head, ...sessions.slice(0, mostSessions).map((session) => make(
+      `tr${session.state === 2 || session.state === 6 ? ".waiting" : ""}`, { title: session.robots.slice(0, mostRobots).join(", ") },
+      make("td", {}, `${beginning(session.client)} (${session.robots.length})`),
       make("td", {}, (states[session.state] ?? "?") + (session.wallWaitingS > 0 ? ` ${seconds(session.wallWaitingS)}` : "")),
       make("td.number", {}, session.wallLatency ? seconds(session.wallLatency.p50) : "–"),
       make("td.number", {}, session.wallLatency ? seconds(session.wallLatency.p99) : "–"),

@@ -5,7 +5,7 @@ import type { App } from "../page/app";
 import type { Camera, Detections, SeenByCamera } from "../model/messages";
 import { compose, poseAt } from "../model/pose";
 import { bytesText } from "../model/readings";
-import { make, setText } from "./element";
+import { make, setLines, setText } from "./element";
 import type { Panel } from "./panel";
 
 const toScreen = Uint8ClampedArray.from({ length: 256 }, (_, i) => {
@@ -13,6 +13,7 @@ const toScreen = Uint8ClampedArray.from({ length: 256 }, (_, i) => {
   return 255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055);
 });
 const mostLines = 30; // of detections
+const mostOfTag = 60; // bytes of its payload, in the picture
 const hex = (color: number): string => `#${color.toString(16).padStart(6, "0")}`;
 
 interface Shown { index: number; camera: Camera; canvas: HTMLCanvasElement; caption: HTMLElement; list: HTMLElement;
@@ -104,10 +105,12 @@ export class CameraPanel implements Panel {
   private listDetections(list: HTMLElement, seen: SeenByCamera | undefined): void {
     const at = ({ u, v }: { u: number; v: number }): string => `at ${u.toFixed(1)}, ${v.toFixed(1)} px`;
     const light = (kind: string) => (one: { color: number; u: number; v: number }) => `${kind} ${hex(one.color)} ${at(one)}`;
-    const lines = seen ? [...seen.leds.map(light("LED")), ...seen.directionalLeds.map(light("directional LED")),
-      ...seen.tags.map((tag) => `tag ${bytesText(tag.payload)} ${at(tag)}`)] : [];
-    const more = lines.length > mostLines ? [`… and ${lines.length - mostLines} more`] : [];
-    setText(list, [...lines.slice(0, mostLines), ...more].join("\n"));
+    const lines = seen ? [...seen.leds.slice(0, mostLines).map(light("LED")),
+      ...seen.directionalLeds.slice(0, mostLines).map(light("directional LED")),
+      ...seen.tags.slice(0, mostLines).map((tag) => `tag ${bytesText(tag.payload)} ${at(tag)}`)].slice(0, mostLines) : [];
+    const count = seen ? seen.leds.length + seen.directionalLeds.length + seen.tags.length : 0;
+    const more = count > lines.length ? [`… and ${count - lines.length} more`] : [];
+    setLines(list, [...lines, ...more]);
   }
 
   private drawDetections(draw: CanvasRenderingContext2D, seen: SeenByCamera | undefined): void {
@@ -129,7 +132,7 @@ export class CameraPanel implements Panel {
       for (let i = 0; i < 4; ++i) draw.lineTo(tag.corners[2 * i], tag.corners[2 * i + 1]);
       draw.closePath();
       draw.stroke();
-      draw.fillText(new TextDecoder().decode(tag.payload), tag.u + 4 * size, tag.v - 4 * size);
+      draw.fillText(new TextDecoder().decode(tag.payload.subarray(0, mostOfTag)), tag.u + 4 * size, tag.v - 4 * size);
     }
   }
 }

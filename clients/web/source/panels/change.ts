@@ -7,6 +7,7 @@ import type { Panel } from "./panel";
 
 interface Choice { label: string; xml: (id: string, body: string) => string }
 
+const mostName = 300; // characters of a model or controller that can be chosen
 const plain: Choice[] = [
   { label: "box", xml: (id, body) => `<box id="${id}" size="0.05,0.05,0.05" movable="true" mass="0.1">${body}</box>` },
   { label: "cylinder", xml: (id, body) => `<cylinder id="${id}" radius="0.025" height="0.05" movable="true" mass="0.1">${body}</cylinder>` },
@@ -18,7 +19,7 @@ function escape(text: string): string {
 
 /** What can be spawned in a world. */
 function choicesOf(world: World): Choice[] {
-  const models = world.models.map(({ id: model, kind }) => ({
+  const models = world.models.filter(({ id }) => id.length <= mostName).map(({ id: model, kind }) => ({
     label: `${model} (${kindName(kind)})`,
     xml: (id: string, body: string) => `<${kindName(kind)} id="${id}" model="${escape(model)}">${body}</${kindName(kind)}>`,
   }));
@@ -26,7 +27,7 @@ function choicesOf(world: World): Choice[] {
   const robots = new Map<string, Choice>();
   for (const { kind, robot } of world.entities) {
     const described = robot === undefined ? undefined : world.robots[robot]?.description;
-    if (!described || (kind !== Kind.footBot && kind !== Kind.ePuck)) continue;
+    if (!described || described.controller.length > mostName || (kind !== Kind.footBot && kind !== Kind.ePuck)) continue;
     const { controller, battery } = described;
     const label = `${kindName(kind)} with ${controller}`;
     const more = `${battery ? "<battery/>" : ""}<controller config="${escape(controller)}"/>`;

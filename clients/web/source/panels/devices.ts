@@ -4,12 +4,15 @@ import { kindName, type Command, type Observation, type Poses, type World } from
 import { commanded, fixed, number, observed, type Group, type Limits, type Reading } from "../model/readings";
 import { nameOf } from "../model/series";
 import type { Frame } from "../model/timeline";
-import { icon, make, setText } from "./element";
+import { icon, longText, make, restOf, setText } from "./element";
 import type { Panel } from "./panel";
 
 interface Row { text: HTMLElement; bar: HTMLElement | null; plot: HTMLElement | null; reading: Reading }
 
+interface Listed extends Group { count: number } // of all its readings
+
 const mostBesideFan = 12;
+const mostRows = 300; // of a device, and of parameters
 
 export class Devices implements Panel {
   readonly element = make("section.devices");
@@ -43,7 +46,7 @@ export class Devices implements Panel {
     this.drawFan();
   }
 
-  private groups(): [string, Group[]][] {
+  private groups(): [string, Listed[]][] {
     const robot = this.app.selectedRobot?.description;
     const { frame, selected } = this.app;
     if (!robot || !frame || !selected || !this.app.world) return [];
@@ -56,7 +59,8 @@ export class Devices implements Panel {
       const command = { tagPayloads: this.payloads(this.app.world, frame), ...told.read<Command>() };
       found.push(["Commands", commanded(told.topic, robot, command, limits)]);
     }
-    return found;
+    return found.map(([title, list]) => [title, list.map(
+      ({ device, readings }) => ({ device, readings: readings.slice(0, mostRows), count: readings.length }))]);
   }
 
   /** What the robot's tags show: servers leave it out of commands, which other viewers could not read with it. */
@@ -73,7 +77,7 @@ export class Devices implements Panel {
     };
   }
 
-  private rebuild(shape: string, groups: [string, Group[]][]): void {
+  private rebuild(shape: string, groups: [string, Listed[]][]): void {
     const { app } = this;
     const { entity } = app.selected!;
     this.shape = shape;
@@ -91,22 +95,24 @@ export class Devices implements Panel {
       this.pose);
     for (const [title, list] of groups) {
       if (list.length > 0) this.element.append(make("h3", {}, title));
-      for (const { device, readings } of list) this.addGroup(title, device, readings);
+      for (const group of list) this.addGroup(title, group);
     }
     if (robot && robot.params.length > 0) {
-      this.element.append(make("h3", {}, "Params"), make("table.params", {}, ...robot.params.map(({ name, value }) =>
-        make("tr", {}, make("td", {}, name), make("td", {}, value)))));
+      this.element.append(make("h3", {}, "Params"), make("table.params", {}, ...robot.params.slice(0, mostRows).map(
+        ({ name, value }) => make("tr", {}, make("td", {}, name), longText("td", value)))),
+        restOf(robot.params.length, mostRows) ?? "");
     }
   }
 
-  private addGroup(title: string, device: string, readings: Reading[]): void {
+  private addGroup(title: string, { device, readings, count }: Listed): void {
     const rows = readings.map((reading) => this.makeRow(title, device, reading));
     const hasFan = device === "Proximity" && title === "Senses" && this.levelSensors().length > 2;
     // What the fan shows is not listed at once: other devices would be far below.
     const list = hasFan && rows.length > mostBesideFan
       ? [make("details.values", {}, make("summary.muted", {}, "Numbers"), ...rows)] : rows;
     this.element.append(make("details.device", { open: true }, make("summary", {}, device,
-      make("span.muted", {}, readings.length > 3 ? ` ${readings.length}` : "")), hasFan ? this.fan : null, ...list));
+      make("span.muted", {}, count > 3 ? ` ${count}` : "")), hasFan ? this.fan : null, ...list,
+      restOf(count, mostRows)));
   }
 
   private makeRow(title: string, device: string, reading: Reading): HTMLElement {

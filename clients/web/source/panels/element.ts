@@ -1,4 +1,9 @@
 // Elements of the page, made in one expression.
+import { beginning, mostKept, mostShown } from "../model/texts";
+
+const mostText = 1000; // characters of any text; longText() shows more
+const mostTitle = 2000;
+const wordLength = 8; // of the pieces of long words
 
 type Child = Node | string | null;
 interface Options {
@@ -16,10 +21,45 @@ export function make(what: string, options: Options = {}, ...children: Child[]):
   for (const [name, value] of Object.entries(options)) {
     if (name === "style") element.style.cssText = String(value); // an attribute is against the security policy
     else if (name === "click") element.addEventListener("click", value as EventListener);
+    else if (name === "title") element.title = beginning(String(value), mostTitle);
     else if (value !== undefined && value !== false) element.setAttribute(name, value === true ? "" : String(value));
   }
-  element.append(...children.filter((child) => child !== null));
+  element.append(...children.filter((child) => child !== null)
+    .map((child) => (typeof child === "string" ? beginning(child, mostText) : child)));
   return element;
+}
+
+/** A text that somebody else wrote: its beginning; a click shows what is kept of it. @param length  of all of it */
+export function longText(what: string, text: string, length = text.length): HTMLElement {
+  const element = make(what, {}, beginning(text));
+  if (length <= mostShown) return element;
+  const more = make("button.more", { title: "Show more of it, or less", click: (event) => {
+    event.stopPropagation();
+    fill(!more.classList.contains("open"));
+  } });
+  const fill = (isOpen: boolean): void => {
+    more.classList.toggle("open", isOpen);
+    more.textContent = isOpen ? "less" : `${length} characters`;
+    const rest = length > mostKept ? ` … and ${length - mostKept} more ` : " ";
+    element.replaceChildren(...(isOpen ? [...breakable(text.slice(0, mostKept)), rest] : [beginning(text), " "]), more);
+  };
+  fill(false);
+  return element;
+}
+
+/** Long words with places where a line may end: the browser needs seconds to find some by itself. */
+function breakable(text: string): Node[] {
+  const parts = text.match(new RegExp(`\\S{${wordLength}}|[^]`, "gu")) ?? [];
+  const nodes: Node[] = [];
+  let line = "";
+  for (const part of parts) {
+    line += part;
+    if (part.length < wordLength) continue;
+    nodes.push(document.createTextNode(line), document.createElement("wbr"));
+    line = "";
+  }
+  nodes.push(document.createTextNode(line));
+  return nodes;
 }
 
 const paths: Record<string, string> = {
@@ -43,7 +83,19 @@ export function icon(name: keyof typeof paths): SVGElement {
   return svg;
 }
 
-/** Sets the text if it differs: cheap for what is often the same. */
-export function setText(element: Element, text: string): void {
+/** The same of several lines, each with its beginning. */
+export function setLines(element: Element, lines: string[]): void {
+  const text = lines.map((line) => beginning(line, mostText)).join("\n");
   if (element.textContent !== text) element.textContent = text;
+}
+
+/** “… and N more”, if a list of so many has more than are shown. */
+export function restOf(count: number, shown: number): HTMLElement | null {
+  return count > shown ? make("p.muted", {}, `… and ${count - shown} more`) : null;
+}
+
+/** Sets the text, or its beginning, if it differs: cheap for what is often the same. */
+export function setText(element: Element, text: string): void {
+  const shown = beginning(text, mostText);
+  if (element.textContent !== shown) element.textContent = shown;
 }

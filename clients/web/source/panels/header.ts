@@ -1,5 +1,6 @@
 // The top line: what runs, how it goes, connection, theme and help.
 import type { App } from "../page/app";
+import { beginning } from "../model/texts";
 import { make, setText } from "./element";
 import type { Panel } from "./panel";
 
@@ -25,7 +26,7 @@ export class Header implements Panel {
     const world = app.world;
     setText(this.scene, world ? world.scene.split("/").pop() ?? "" : "");
     if (world) {
-      this.scene.title = `${world.scene}\nhash ${world.sceneHash}\nseed ${world.seed}\n`
+      this.scene.title = `${beginning(world.scene)}\nhash ${beginning(world.sceneHash)}\nseed ${world.seed}\n`
           + `${world.entities.filter(({ removed }) => !removed).length} entities, ${world.links.length} links`;
     }
     const phase = app.recorded ? "recording" : String(app.parameters.get("phase") ?? "");

@@ -1,6 +1,6 @@
 // What robots and the server logged.
 import type { App, LogEntry } from "../page/app";
-import { make, setText } from "./element";
+import { longText, make } from "./element";
 import type { Panel } from "./panel";
 
 const mostLines = 300;
@@ -12,6 +12,8 @@ export class LogPanel implements Panel {
   private readonly pauseOn = make("input", { placeholder: "Pause when a line contains …", "aria-label": "Pause when a line contains" }) as HTMLInputElement;
   private readonly only = make("input", { type: "checkbox" }) as HTMLInputElement;
   private key = "";
+  private last: LogEntry | undefined;
+  private shown: LogEntry[] = [];
 
   constructor(private readonly app: App) {
     this.pauseOn.addEventListener("change", () => { app.pauseOnText = this.pauseOn.value; });
@@ -22,24 +24,37 @@ export class LogPanel implements Panel {
   update(): void {
     const { app } = this;
     if (document.activeElement !== this.pauseOn) this.pauseOn.value = app.pauseOnText;
-    const last = app.log[app.log.length - 1];
-    const key = `${app.log.length}|${last?.sequence}|${this.filter.value}|${this.only.checked}|${app.settings.selected}|${app.pinned}`;
-    if (key === this.key) return;
+    const last = app.log.at(-1);
+    const key = `${this.filter.value}|${this.only.checked}|${app.settings.selected}|${app.pinned}`;
+    if (key === this.key && last === this.last) return;
     this.key = key;
+    this.last = last;
     const until = app.pinned ?? Infinity;
     const text = this.filter.value.toLowerCase();
     const shown = app.log.filter((entry) => entry.sequence <= until
       && (!this.only.checked || entry.name === app.settings.selected)
       && (text === "" || `${entry.name} ${entry.text}`.toLowerCase().includes(text))).slice(-mostLines);
     const isAtEnd = this.lines.scrollTop + this.lines.clientHeight > this.lines.scrollHeight - 30;
-    this.lines.replaceChildren(...shown.map((entry) => this.line(entry)));
-    if (shown.length === 0) this.lines.append(make("p.empty", {}, "No lines."));
+    this.show(shown);
     if (isAtEnd) this.lines.scrollTop = this.lines.scrollHeight;
   }
 
+  /** Adds what is new at the end, if what is shown stays. */
+  private show(entries: LogEntry[]): void {
+    const first = entries.length > 0 ? this.shown.indexOf(entries[0]) : -1;
+    const stay = first < 0 ? [] : this.shown.slice(first);
+    if (stay.length > 0 && stay.every((entry, i) => entry === entries[i])) {
+      for (let i = 0; i < first; ++i) this.lines.firstElementChild!.remove();
+      this.lines.append(...entries.slice(stay.length).map((entry) => this.line(entry)));
+    } else {
+      this.lines.replaceChildren(...entries.map((entry) => this.line(entry)));
+      if (entries.length === 0) this.lines.append(make("p.empty", {}, "No lines."));
+    }
+    this.shown = entries;
+  }
+
   private line(entry: LogEntry): HTMLElement {
-    const text = make("span.text");
-    setText(text, entry.text);
+    const text = longText("span.text", entry.text, entry.length);
     return make(`div.line.level${entry.level}`, { title: "Show this moment", click: () => this.app.pin(entry.sequence) },
       make("span.number.muted", {}, entry.seconds.toFixed(2)), make("span.who", {}, entry.name), text);
   }

@@ -7,6 +7,8 @@ import type { Panel } from "./panel";
 
 const strokes = ["#3d8bfd", "#e0642c", "#2a9d5f", "#a050c8", "#c9a000", "#d6336c", "#14a0b8", "#7a7f87"];
 
+const mostTopics = 5000; // to choose from
+
 interface Drawn { series: Series; chart: uPlot; value: HTMLElement; box: HTMLElement }
 
 export class Plots implements Panel {
@@ -15,7 +17,7 @@ export class Plots implements Panel {
   private readonly topic = make("select", { "aria-label": "Topic" }) as HTMLSelectElement;
   private readonly path = make("select", { "aria-label": "Number" }) as HTMLSelectElement;
   private drawn = new Map<string, Drawn>();
-  private topics = "";
+  private topics: string[] = [];
 
   constructor(private readonly app: App) {
     this.topic.addEventListener("change", () => this.listNumbers());
@@ -88,12 +90,12 @@ export class Plots implements Panel {
   }
 
   private listTopics(): void {
-    const key = this.app.topicNames.join();
-    if (key === this.topics) return;
-    this.topics = key;
+    const { topicNames } = this.app;
+    if (topicNames === this.topics) return;
+    this.topics = topicNames;
     const chosen = this.topic.value;
     this.topic.replaceChildren(make("option", { value: "" }, "Topic …"),
-      ...this.app.topicNames.map((topic) => make("option", { value: topic }, topic)));
+      ...topicNames.slice(0, mostTopics).map((topic) => make("option", { value: topic }, topic)));
     this.topic.value = chosen;
     this.listNumbers();
   }

@@ -1,10 +1,11 @@
 // The tree of entities, links and devices, with search.
 import type { App } from "../page/app";
 import { kindName, type Entity, type World } from "../model/messages";
-import { make, setText } from "./element";
+import { make, restOf, setText } from "./element";
 import type { Panel } from "./panel";
 
 const mostRows = 400;
+const mostParts = 400; // of an entity
 
 export class Tree implements Panel {
   readonly element = make("section.tree");
@@ -86,6 +87,8 @@ export class Tree implements Panel {
       make("span.id", {}, entity.id), make("span.muted", {}, kindName(entity.kind)));
     row.addEventListener("dblclick", () => app.look(entity.id));
     if (!isOpen) return [row];
-    return [row, ...this.partsOf(world, entity).map((part) => make("div.part", {}, part))];
+    const parts = this.partsOf(world, entity);
+    const rest = restOf(parts.length, mostParts);
+    return [row, ...parts.slice(0, mostParts).map((part) => make("div.part", {}, part)), ...(rest ? [rest] : [])];
   }
 }

@@ -173,6 +173,45 @@ class Supervising(unittest.TestCase):
                 self.assertEqual(caught.exception.code, "FORBIDDEN")
 
 
+class Waiting(unittest.TestCase):
+    """A server that lives sends heartbeats: they do not extend a wait."""
+
+    def timed(self, function):
+        """How long it takes until its Timeout [s], and what that says."""
+        began = time.monotonic()
+        with self.assertRaises(ziggurat.Timeout) as caught:
+            function()
+        return time.monotonic() - began, str(caught.exception)
+
+    def check(self, waited, told):
+        took, text = waited()
+        self.assertRegex(text, told)
+        self.assertGreaterEqual(took, 2.5)
+        self.assertLess(took, 20)
+
+    def test_who_waits_for_others_waits_for_wait_timeout(self):
+        with serve("--allow-director") as server:
+            slow = ziggurat.connect(server.endpoint, ["arm1", "arm2", "arm3"])
+            fast = ziggurat.connect(server.endpoint, "arm0", wait_timeout=2.5)
+            world = ziggurat.direct("judge", server.endpoint, wait_timeout=2.5)
+            supervisor = ziggurat.supervise(server.endpoint, wait_timeout=2.5)
+            for session in (slow, fast, world):
+                self.assertEqual(next(session).number, 0)
+            waits = [(aside(lambda each=each: self.timed(each)), told) for each, told in (
+                (lambda: next(fast), "no observation for 2.5 s"),
+                (lambda: next(world), "no observation for 2.5 s"),
+                (supervisor.pause, "no answer for 2.5 s"))]
+            for waited, told in waits:
+                self.check(waited, told)
+            slow.close()
+            world.close()
+            self.assertEqual(supervisor.status().phase, "paused")  # the late answer to pause() is none to this
+            supervisor.resume()
+            self.assertGreaterEqual(next(fast).number, 1)  # the session went on
+            fast.close()
+            supervisor.close()
+
+
 class Holding(unittest.TestCase):
     def test_a_takeover_displaces_the_owner(self):
         with serve() as server:
