@@ -9,6 +9,7 @@ namespace ziggurat::scene {
 namespace {
 
 constexpr const char* name_of_additions = "spawn";
+constexpr std::size_t most_attributes_added = 1000;  // of an element that is added
 
 void read_addition(Draft& draft, std::string text,
                    const std::function<bool(const std::string&)>& is_taken, Entity& entity) {
@@ -87,6 +88,7 @@ Addition Additions::read(std::string text, const Scene& scene, std::size_t max_s
   options.variation = {};  // it was for the scene
   Draft draft(report, around, options);
   draft.budget = budget_for(max_size);
+  draft.budget.attributes = most_attributes_added;
   draft.defaults = parts_->defaults;
   draft.has_engine = parts_->has_engine;
   draft.models = parts_->models;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 #include "scene/malformed.h"
@@ -13,6 +14,7 @@ namespace ziggurat::scene {
 namespace {
 
 constexpr std::size_t smallest_average_element = 32;  // [bytes], with its closing tag
+constexpr std::size_t most_attributes = 100'000;      // of an element
 
 /// The offset of the first byte that is not well-formed UTF-8, or npos.
 std::size_t first_bad_utf8(std::string_view text) {
@@ -93,7 +95,7 @@ std::string complaint(const pugi::xml_parse_result& result, bool at_end) {
 }  // namespace
 
 ReadBudget budget_for(std::size_t max_size) {
-  return {max_size, 2 * std::max<std::size_t>(1'000'000, max_size / smallest_average_element)};
+  return {max_size, 2 * std::max<std::size_t>(1'000'000, max_size / smallest_average_element), most_attributes};
 }
 
 Document::Document(std::string text, std::size_t file, bool lenient, ReadBudget& budget,
@@ -107,7 +109,7 @@ Document::Document(std::string text, std::size_t file, bool lenient, ReadBudget&
   for (std::size_t i = 0; i < source_.size(); ++i) {
     if (source_[i] == '\n') line_starts_.push_back(i + 1);
   }
-  if (check_text(budget)) parse();
+  if (check_text(budget)) parse(budget.attributes);
 }
 
 bool Document::check_text(ReadBudget& budget) {
@@ -143,7 +145,7 @@ bool Document::check_text(ReadBudget& budget) {
   return true;
 }
 
-void Document::parse() {
+void Document::parse(std::size_t most_attributes) {
   buffer_ = source_;
   constexpr unsigned options = pugi::parse_default | pugi::parse_doctype;
   const pugi::xml_parse_result result =
@@ -173,12 +175,33 @@ void Document::parse() {
                  "begin with it, or remove it");
   }
   check_outside();
+  if (!check_attributes(most_attributes)) return;
   root_ = tree_.document_element();
   for (pugi::xml_node node = root_.next_sibling(); node; node = node.next_sibling()) {
     if (node.type() != pugi::node_element) continue;
     report_.fault(locate(node.name() - 1),
                   fmt::format("a second root element, <{}>; a file has one", node.name()));
   }
+}
+
+bool Document::check_attributes(std::size_t most) const {
+  struct Search : pugi::xml_tree_walker {
+    explicit Search(std::size_t most) : most(most) {}
+    const std::size_t most;
+    pugi::xml_node found;
+    bool for_each(pugi::xml_node& node) override {
+      const auto attributes = node.attributes();
+      if (static_cast<std::size_t>(std::distance(attributes.begin(), attributes.end())) <= most) return true;
+      found = node;
+      return false;
+    }
+  } search(most);
+  pugi::xml_node all = tree_;
+  all.traverse(search);
+  if (!search.found) return true;
+  report_.fault(locate(search.found.name() - 1),
+                fmt::format("<{}> has more than {} attributes; write fewer", search.found.name(), most));
+  return false;
 }
 
 void Document::check_outside() {

@@ -20,7 +20,8 @@ namespace ziggurat::scene {
 /// What a scene and its includes may still take.
 struct ReadBudget {
   std::size_t bytes;
-  std::size_t tags;  ///< opening and closing ones
+  std::size_t tags;        ///< opening and closing ones
+  std::size_t attributes;  ///< of each element
 };
 
 /// The budget of a scene of at most so many bytes.
@@ -64,7 +65,8 @@ class Document {
   Report& report() const { return report_; }
 
  private:
-  void parse();
+  void parse(std::size_t most_attributes);
+  bool check_attributes(std::size_t most) const;
   bool check_text(ReadBudget& budget);
   void check_outside();
   void check_doctype();

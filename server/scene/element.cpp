@@ -98,11 +98,14 @@ Location Element::where(const char* attribute) const {
 std::optional<std::string> Element::take(const char* attribute) {
   asked_attributes_.push_back(attribute);
   const pugi::xml_attribute found = node_.attribute(attribute);
-  if (found.empty()) return std::nullopt;
-  check_references(*document_, name(), found);
-  auto value = document_->value(found);
+  return found.empty() ? std::nullopt : take(found);
+}
+
+std::optional<std::string> Element::take(const pugi::xml_attribute& attribute) {
+  check_references(*document_, name(), attribute);
+  auto value = document_->value(attribute);
   if (const Wrong* wrong = std::get_if<1>(&value)) {
-    fault_at(attribute, wrong->text);
+    report().fault(document_->locate_value(attribute), sentence(attribute.name(), attribute, wrong->text));
     return std::nullopt;
   }
   return std::get<0>(std::move(value));
@@ -112,7 +115,7 @@ std::vector<std::pair<std::string, std::string>> Element::all_attributes() {
   any_attribute_ = true;
   std::vector<std::pair<std::string, std::string>> result;
   for (const pugi::xml_attribute attribute : node_.attributes()) {
-    if (auto value = take(attribute.name())) {
+    if (auto value = take(attribute)) {
       result.emplace_back(attribute.name(), std::move(*value));
     }
   }
@@ -223,9 +226,13 @@ void Element::unknown_in(std::string_view parent, std::span<const std::string_vi
 }
 
 std::string Element::sentence(const char* attribute, std::string_view text) const {
-  const pugi::xml_attribute found = node_.attribute(attribute);
-  return fmt::format("{}={} of <{}> {}{}", attribute, in_quotes(trimmed(found.value())), name(), text,
-                     document_->origin(found));
+  return sentence(attribute, node_.attribute(attribute), text);
+}
+
+std::string Element::sentence(std::string_view name, const pugi::xml_attribute& attribute,
+                              std::string_view text) const {
+  return fmt::format("{}={} of <{}> {}{}", name, in_quotes(trimmed(attribute.value())), this->name(), text,
+                     document_->origin(attribute));
 }
 
 void Element::fault_at(const char* attribute, std::string_view text,

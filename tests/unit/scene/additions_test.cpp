@@ -141,6 +141,17 @@ TEST_F(Additions, HaveALimitedSize) {
   EXPECT_NE(fault(small, 100).find("is one too many"), std::string::npos);
 }
 
+TEST_F(Additions, HaveElementsOf1000AttributesAtMost) {
+  std::string params;
+  for (int i = 0; i < 1000; ++i) params += " a" + std::to_string(i) + "='1'";
+  const auto robot = [&](const std::string& more) {
+    return "<prototype id='p' model='block'><body position='0,0,3'/><controller config='lua'><params" + params + more +
+           "/></controller></prototype>";
+  };
+  EXPECT_TRUE(add(robot("")).ok());
+  EXPECT_EQ(fault(robot(" b='1'")), "spawn:1:82: <params> has more than 1000 attributes; write fewer");
+}
+
 TEST(AdditionsOf, ASceneWithoutEngineAreRefused) {
   SceneText text;
   text.engines = "<physics_engines/>";
