@@ -129,8 +129,6 @@ class Element {
 
  private:
   std::optional<std::string> take(const char* attribute);
-  std::optional<std::string> take(const pugi::xml_attribute& attribute);
-  std::string sentence(std::string_view name, const pugi::xml_attribute& attribute, std::string_view text) const;
 
   Document* document_;
   pugi::xml_node node_;
