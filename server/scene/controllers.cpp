@@ -4,6 +4,7 @@
 #include <array>
 
 #include "scene/draft.h"
+#include "scene/memory.h"
 #include "text/names.h"
 
 namespace ziggurat::scene {
@@ -80,6 +81,7 @@ void read_controller(Draft& draft, Element& element, bool included,
     read_params(*params, controller);
   }
   controller.params = with_parameters(std::move(controller.params), draft.parameters);
+  take_memory(draft, element, memory_of(controller.params), element.size());
   element.done();
   draft.missing_parts = nullptr;
   draft.report.subject.clear();
@@ -258,7 +260,10 @@ void check_sections(const Draft& draft, const Controller& controller, const Enti
   }
 }
 
+}  // namespace
+
 void check_use(Draft& draft, const Entity& entity) {
+  if (!entity.controller) return;
   const Controller& controller = draft.scene.controllers[*entity.controller];
   ControllerUse& use = draft.uses[*entity.controller];
   report_missing(draft, use.missing_parts);
@@ -269,6 +274,8 @@ void check_use(Draft& draft, const Entity& entity) {
   check.check_anchors();
   check.check_components();
 }
+
+namespace {
 
 void read_list(Draft& draft, Element& controllers, bool included) {
   const auto deadline = read_deadline(controllers, std::nullopt);
@@ -341,7 +348,10 @@ void give_controller(Draft& draft, const ControllerChoice& choice, Entity& entit
     return;
   }
   entity.controller = found->second;
-  check_use(draft, entity);
+}
+
+const Controller* controller_of(const Draft& draft, const Entity& entity) {
+  return entity.controller ? &draft.scene.controllers[*entity.controller] : nullptr;
 }
 
 }  // namespace ziggurat::scene

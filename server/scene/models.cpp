@@ -3,6 +3,7 @@
 #include <array>
 
 #include "scene/draft.h"
+#include "scene/memory.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -39,6 +40,7 @@ void read_model(Draft& draft, Element& element, EntityKind kind) {
   if (may_have_controller(kind)) model.controller = read_controller_choice(draft, element);
   model.names = element.asked();
   element.done();
+  take_memory(draft, element, memory_of(model.entity, nullptr), model.size);
   draft.report.subject.clear();
   take_id(draft, element, id);
   model.anchors = std::move(draft.anchors);

@@ -8,7 +8,7 @@
 namespace ziggurat::scene {
 namespace {
 
-constexpr std::size_t most_faults = 1000;
+constexpr std::size_t most_faults = 1000, most_notices = 1000;
 
 }  // namespace
 
@@ -26,7 +26,8 @@ void Report::fault(Location where, std::string text, std::vector<std::string_vie
 }
 
 void Report::notice(Location where, std::string text) {
-  if (!noticed_.insert(text).second) return;
+  if (noticed_.size() > most_notices || !noticed_.insert(text).second) return;
+  if (noticed_.size() > most_notices) text = fmt::format("{} notices; others are not told", most_notices);
   entries_.push_back(
       {{Problem::Severity::notice, files_[where.file], where, std::move(text)}, {}});
 }
