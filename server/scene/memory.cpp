@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t of_entity = 2000, of_link = 2000, of_joint = 600, of_corner = 100;
 constexpr std::size_t of_led = 350, of_directional_led = 450, of_tag = 550, of_radio = 400, of_magnet = 1100;
 constexpr std::size_t of_proximity = 250, of_range_and_bearing = 1000, of_param = 200;
+constexpr std::size_t of_ancestor = 20;  // of a link, that moves by a joint of its own
 constexpr std::size_t of_joint_use = 300, of_camera = 600, of_imu = 500, of_contact_sensor = 300;
 constexpr std::size_t copies_of_text = 4;
 
@@ -53,6 +54,17 @@ std::size_t memory_of(const Devices& devices) {
   return sum;
 }
 
+/// Equations of motion have a term for each joint and each that carries it.
+std::size_t memory_of_tree(const Entity& entity) {
+  std::vector<std::size_t> moving(entity.links.size(), 0);  // joints from the root to each link
+  std::size_t pairs = 0;
+  for (const Joint& joint : entity.joints) {
+    moving[joint.child] = moving[joint.parent] + (joint.type == JointType::fixed ? 0 : 1);
+    pairs += moving[joint.child];
+  }
+  return of_ancestor * pairs;
+}
+
 std::string megabytes(std::size_t bytes) { return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6); }
 
 }  // namespace
@@ -73,7 +85,7 @@ std::size_t memory_of(const ControllerDevices& devices) {
 
 std::size_t memory_of(const Entity& entity, const Controller* controller) {
   std::size_t sum = of_entity + memory_of_text(entity.id) + memory_of(entity.devices) +
-                    memory_of_each(entity.joints, of_joint);
+                    memory_of_each(entity.joints, of_joint) + memory_of_tree(entity);
   for (const Link& link : entity.links) sum += memory_of(link);
   if (!controller) return sum;
   return sum + memory_of(controller->devices) + memory_of(entity.overrides_params ? entity.params : controller->params);

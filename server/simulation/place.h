@@ -18,7 +18,7 @@ using TellPlaced = std::function<void(std::size_t placed, std::size_t all)>;
 struct Patience {
   std::size_t attempts = 10'000'000;  ///< that fail
   std::size_t effort = 100'000'000;   ///< of those; see physics::Placement; an attempt takes 16, or thousands among thousands of bodies
-  std::size_t all_effort = 500'000'000;  ///< of those that find a place, too
+  std::size_t all_effort = 2'000'000'000;  ///< of those that find a place, too
 };
 
 /// All entities of the scene at their poses, in scene order: the placed ones, then the

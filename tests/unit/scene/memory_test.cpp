@@ -92,6 +92,22 @@ TEST(Memory, LinksOfCopiesCount) {
             std::string::npos);
 }
 
+TEST(Memory, LongChainsCountWithTheSquareOfTheirLength) {
+  const auto chain = [](int count) {
+    std::string links = link_of_prototype, joints;
+    for (int i = 1; i < count; ++i) {
+      const std::string n = std::to_string(i);
+      links += "<link id='l" + n + "' geometry='sphere' radius='1' mass='1'/>";
+      joints += "<joint type='spherical'><parent link='l" + std::to_string(i - 1) + "' position='0,0,0' orientation='0,0,0'/>"
+                "<child position='0,0,0' orientation='0,0,0' link='l" + n + "'/></joint>";
+    }
+    return scene_with("<prototype id='p'><body position='0,0,0'/><links ref='l0'>" + links + "</links><joints>" + joints +
+                      "</joints></prototype>");
+  };
+  expect_good(chain(10'000));
+  EXPECT_NE(only_fault(chain(30'000)).find("<prototype> takes some 9079.7 MB of memory"), std::string::npos) << only_fault(chain(30'000));
+}
+
 TEST(Memory, ParametersOfRobotsCountForEach) {
   SceneText text = scene_with(distributed(5000, "<e-puck id='e'><controller config='c'/></e-puck>"));
   text.controllers = "<controllers><lua_controller id='c'><actuators/><sensors/><params script='x.lua' large='" +
