@@ -169,11 +169,11 @@ struct Check {
     const auto found = joints.find(id);
     if (found == joints.end()) {
       std::vector<std::string> known;
-      for (const Joint& joint : entity.joints) known.push_back(joint.id);
+      for (std::size_t i = 0; i < std::min(entity.joints.size(), most_compared); ++i) known.push_back(entity.joints[i].id);
       blame(where,
             fmt::format("joint {} does not exist in {} {}; {}", in_quotes(id), kind_of(entity),
                         in_quotes(entity.id),
-                        known.empty() ? "it has none; write <joints> into it" : advice(id, known)),
+                        known.empty() ? "it has none; write <joints> into it" : draft.report.advice(id, known)),
             {"joints", "joint", "links", "link", "id", duplicate});
       return;
     }
@@ -222,7 +222,7 @@ struct Check {
       if (anchor.empty() || anchor == "origin" || draft.anchors.contains(anchor)) continue;
       blame(device.where, fmt::format("anchor {} of {} does not exist in {} {}; {}",
                                       in_quotes(anchor), device.device, kind_of(entity),
-                                      in_quotes(entity.id), advice(anchor, anchor_names(draft))),
+                                      in_quotes(entity.id), draft.report.advice(anchor, anchor_names(draft))),
             {"links", "link", "id", duplicate});
     }
   }
@@ -325,12 +325,13 @@ std::optional<ControllerChoice> read_controller_choice(Draft& draft, Element& el
   if (choice.id.empty()) return std::nullopt;
   if (!draft.controllers.contains(choice.id)) {
     std::vector<std::string> known;
-    for (const Controller& controller : draft.scene.controllers) known.push_back(controller.id);
+    const auto& all = draft.scene.controllers;
+    for (std::size_t i = 0; i < std::min(all.size(), most_compared); ++i) known.push_back(all[i].id);
     choice.unknown = {
         user->where("config"),
         user->sentence("config", known.empty()
                                      ? "names no controller; write it in <controllers>"
-                                     : "names no controller; " + advice(choice.id, known)),
+                                     : "names no controller; " + draft.report.advice(choice.id, known)),
         {"controllers", "lua_controller", "external_controller", "include", "id"}};
   }
   return choice;

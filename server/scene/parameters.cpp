@@ -15,7 +15,9 @@ constexpr std::size_t longest_text = 1 << 20;  // of an attribute, with its para
 
 std::vector<std::string> names_of(const Parameters& parameters) {
   std::vector<std::string> names;
-  for (const Parameter& parameter : parameters) names.push_back(parameter.name);
+  for (const Parameter& parameter : parameters) {
+    if (names.size() < most_compared) names.push_back(parameter.name);
+  }
   return names;
 }
 

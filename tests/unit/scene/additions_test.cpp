@@ -152,6 +152,19 @@ TEST_F(Additions, HaveElementsOf1000AttributesAtMost) {
   EXPECT_EQ(fault(robot(" b='1'")), "spawn:1:82: <params> has more than 1000 attributes; write fewer");
 }
 
+TEST_F(Additions, WithManyMistakesAreNotReadToTheirEnd) {
+  std::string links, joints;
+  for (int i = 0; i < 300; ++i) {
+    const std::string name = std::string(60, 'x') + std::to_string(i);
+    links += "<link id='" + name + "' geometry='sphere' radius='1' mass='1'/>";
+    joints += "<joint type='fixed'><parent link='y" + name + "'/><child link='z" + name + "'/></joint>";
+  }
+  const Addition addition = add("<prototype id='p'><body position='0,0,0'/><links ref='" + std::string(60, 'x') + "0'>" + links +
+                                "</links><joints>" + joints + "</joints></prototype>");
+  ASSERT_EQ(addition.problems.size(), 21u);
+  EXPECT_NE(to_string(addition.problems.back()).find("20 faults; the rest"), std::string::npos);
+}
+
 TEST(AdditionsOf, ASceneWithoutEngineAreRefused) {
   SceneText text;
   text.engines = "<physics_engines/>";
