@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 
 #include "scene/scene.h"
 #include "world/layout.h"
@@ -15,14 +17,15 @@ struct Carrier {
   std::size_t index;                        ///< into Layout::entities, where it stands already
   const scene::ControllerDevices& enabled;  ///< by its controller; nothing without one
   double substep;                           ///< [s]
+  mutable std::unordered_map<std::string_view, int> links = {};  ///< of the entity, by id, once one was looked for
 
   /// @param id  of a link, or "origin"; the reader has checked that it exists
   scene::Anchor anchor(const std::string& id) const {
-    scene::Anchor found;
-    for (std::size_t i = 0; i < entity.links.size(); ++i) {
-      if (entity.links[i].id == id) found.link = static_cast<int>(i);
+    if (links.empty()) {
+      for (std::size_t i = 0; i < entity.links.size(); ++i) links.emplace(entity.links[i].id, static_cast<int>(i));
     }
-    return found;
+    const auto found = links.find(id);
+    return found == links.end() ? scene::Anchor{} : scene::Anchor{found->second};
   }
 
   world::Mount mount(const scene::Anchor& anchor, const math::Pose& pose,

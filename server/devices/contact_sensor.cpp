@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <unordered_map>
 #include <vector>
 
 #include "devices/kind.h"
@@ -31,11 +32,10 @@ class ContactSensors final : public Kind {
     tick_length_ = setting.substep * setting.scene.physics.iterations;
     for (const world::RobotLayout& robot : setting.new_robots()) {
       const world::Range& sensors = robot.contact_sensors;
+      std::unordered_map<std::size_t, std::size_t> first_of;  // sensor of each link
       for (std::size_t i = sensors.begin; i < sensors.end(); ++i) {
-        std::size_t first = sensors.begin;
-        const auto& list = setting.layout.contact_sensors;
-        while (list[first].link != list[i].link) ++first;
-        first_of_link_.push_back(first);
+        const std::size_t link = setting.layout.contact_sensors[i].link;
+        first_of_link_.push_back(first_of.emplace(link, i).first->second);
         setting.physics.watch_contacts(robot.entity, link_in_entity(setting.layout, i));
       }
     }

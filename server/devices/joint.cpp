@@ -1,6 +1,8 @@
 // Joint encoders and motors.
 
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "devices/kind.h"
@@ -8,11 +10,11 @@
 namespace ziggurat::devices {
 namespace {
 
-/// Index into Entity::joints; the reader has checked that it exists.
-std::size_t find_joint(const scene::Entity& entity, const std::string& id) {
-  std::size_t joint = 0;
-  while (entity.joints[joint].id != id) ++joint;
-  return joint;
+/// Indices into Entity::joints by id. The reader has checked that those of a controller exist.
+std::unordered_map<std::string_view, std::size_t> joints_of(const scene::Entity& entity) {
+  std::unordered_map<std::string_view, std::size_t> joints;
+  for (std::size_t i = 0; i < entity.joints.size(); ++i) joints.emplace(entity.joints[i].id, i);
+  return joints;
 }
 
 /// What a motor may give in a substep [N s] or [N m s].
@@ -46,14 +48,16 @@ class Joints final : public Kind {
     for (const world::RobotLayout& robot : setting.new_robots()) {
       const scene::Entity& entity = setting.entity(robot.entity);
       const scene::JointsUse& joints = setting.enabled(robot).joints;
+      if (joints.actuators.empty() && joints.sensors.empty()) continue;
+      const auto by_id = joints_of(entity);
       for (const scene::JointActuator& actuator : joints.actuators) {
         actuators_.push_back(
-            setting.physics.joint(robot.entity, find_joint(entity, actuator.joint)));
+            setting.physics.joint(robot.entity, by_id.at(actuator.joint)));
         setting.physics.add_motor(actuators_.back(), actuator.mode,
                                   impulse_of(actuator, setting.substep));
       }
       for (const scene::JointSensor& sensor : joints.sensors) {
-        const std::size_t joint = find_joint(entity, sensor.joint);
+        const std::size_t joint = by_id.at(sensor.joint);
         if (sensor.mode == scene::JointMode::disabled ||
             !scene::has_coordinate(entity.joints[joint].type)) {
           sensors_.push_back({{}, false, true});

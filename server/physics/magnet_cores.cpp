@@ -44,9 +44,10 @@ void set_magnet_cores(Body& body, const scene::Entity& entity) {
   for (const Magnet& magnet : body.magnets) balls.push_back(ball_of(body, entity, magnet.scene));
   const bool several =
       std::ranges::any_of(balls, [&](const Ball& ball) { return ball.part != balls[0].part; });
+  const bool any_turns = std::ranges::any_of(balls, &Ball::turns);
   for (std::size_t i = 0; i < balls.size() && !several; ++i) {
     double radius = balls[i].radius;
-    for (std::size_t j = 0; j < balls.size(); ++j) {  // those that act on each other stay apart
+    for (std::size_t j = 0; j < balls.size() && any_turns; ++j) {  // those that act on each other stay apart
       if (j == i || !(balls[i].turns || balls[j].turns)) continue;
       radius = std::min(radius, (balls[i].centre - balls[j].centre).norm() / 2);
     }

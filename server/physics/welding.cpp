@@ -12,11 +12,10 @@ using math::Vector3;
 /// X_ES of a shape's centre.
 Pose centre(const LinkBody& link, const Pose& assembled) { return assembled * link.center; }
 
-std::vector<LinkBody*> links_of(std::vector<LinkBody>& links, std::size_t part) {
-  std::vector<LinkBody*> found;
-  for (LinkBody& link : links) {
-    if (link.part == part) found.push_back(&link);
-  }
+/// The links of each part.
+std::vector<std::vector<LinkBody*>> by_part(std::vector<LinkBody>& links, std::size_t parts) {
+  std::vector<std::vector<LinkBody*>> found(parts);
+  for (LinkBody& link : links) found[link.part].push_back(&link);
   return found;
 }
 
@@ -76,9 +75,9 @@ std::vector<Part> weld(std::vector<LinkBody>& links, const scene::Entity& entity
     child.in_part =
         math::inverse(centre(links[root], assembled[root])) * centre(child, assembled[joint.child]);
   }
+  const auto welded = by_part(links, parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const std::vector<LinkBody*> welded = links_of(links, i);
-    if (parts[i].moves && welded.size() > 1) balance(parts[i], welded);
+    if (parts[i].moves && welded[i].size() > 1) balance(parts[i], welded[i]);
   }
   return parts;
 }

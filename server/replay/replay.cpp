@@ -16,7 +16,7 @@
 namespace ziggurat::replay {
 namespace {
 
-constexpr std::size_t most_spawned_bytes = std::size_t{64} << 20;  // of an element, models included
+constexpr std::size_t most_spawned_bytes = std::size_t{64} << 20;  // since a reset, models written out
 constexpr std::size_t most_snapshots = 1024;  // as the server keeps
 constexpr std::size_t most_snapshot_bytes = std::size_t{1} << 30;  // of all of them
 constexpr double farthest = 1e6;                                   // [m], as in scenes
@@ -150,10 +150,12 @@ void Replay::remove(const std::string& id) {
 void Replay::spawn(const std::string& xml) {
   const auto& entities = world_.simulation.layout().entities;
   const auto is_taken = [&](const std::string& id) { return find(id).has_value(); };
-  scene::Addition addition =
-      world_.additions.read(xml, world_.scene, most_spawned_bytes, is_taken, open_);
+  const std::size_t left = most_spawned_bytes - std::min(most_spawned_bytes, spawned_bytes_);
+  scene::Addition addition = world_.additions.read(xml, world_.scene, left, is_taken, open_);
   try {
     if (!addition.ok()) throw scene::SceneError(std::move(addition.problems));
+    spawned_bytes_ += addition.size;
+    spawned_sizes_[xml] = addition.size;
     ++changes_;
     if (links_) {  // wherever others were when the world was built
       simulation::repeat(world_.simulation, world_.scene,
@@ -176,6 +178,7 @@ void Replay::reset(std::uint64_t seed) {
   }
   world_.seed = seed;
   names_ = {};
+  spawned_bytes_ = 0;
   ++changes_;
 }
 
@@ -225,6 +228,11 @@ void Replay::restore_to(const simulation::Snapshot& snapshot) {
   }
   world_.seed = snapshot.seed;
   names_ = {};
+  spawned_bytes_ = 0;
+  for (const simulation::Act& act : snapshot.history.acts) {
+    const auto size = spawned_sizes_.find(act.xml);
+    if (act.kind == simulation::Act::Kind::spawn) spawned_bytes_ += size == spawned_sizes_.end() ? act.xml.size() : size->second;
+  }
   ++changes_;
 }
 

@@ -119,6 +119,8 @@ class Replay {
   Links links_;  // empty: it is simulated
   std::uint64_t hash_ = 0, changes_ = 0;
   std::size_t common_robots_ = 0;
+  std::size_t spawned_bytes_ = 0;  // of what is spawned in this world
+  std::unordered_map<std::string, std::size_t> spawned_sizes_;  // by element
   std::uint64_t epoch_ = 0, tick_ = 0;  // of the present state
   bool has_commands_ = false, acted_ = false;
   struct Names {

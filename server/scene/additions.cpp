@@ -9,6 +9,8 @@ namespace ziggurat::scene {
 namespace {
 
 constexpr const char* name_of_additions = "spawn";
+constexpr std::size_t most_attributes_added = 1000;  // of an element that is added
+constexpr std::size_t most_faults_of_addition = 20;    // it is read while the world waits
 
 void read_addition(Draft& draft, std::string text,
                    const std::function<bool(const std::string&)>& is_taken, Entity& entity) {
@@ -68,7 +70,7 @@ Addition Additions::read(std::string text, const Scene& scene, std::size_t max_s
   around.models = scene.models;
   around.physics = scene.physics;
   around.media = scene.media;
-  Report report(around.files);
+  Report report(around.files, most_faults_of_addition);
   if (text.size() > max_size) {
     addition.problems = {
         {Problem::Severity::fault, name_of_additions, {}, "the file " + too_large(max_size)}};
@@ -87,6 +89,7 @@ Addition Additions::read(std::string text, const Scene& scene, std::size_t max_s
   options.variation = {};  // it was for the scene
   Draft draft(report, around, options);
   draft.budget = budget_for(max_size);
+  draft.budget.attributes = most_attributes_added;
   draft.defaults = parts_->defaults;
   draft.has_engine = parts_->has_engine;
   draft.models = parts_->models;

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "scene/draft.h"
+#include "scene/memory.h"
 #include "text/names.h"
 
 namespace ziggurat::scene {
@@ -80,6 +81,7 @@ void read_controller(Draft& draft, Element& element, bool included,
     read_params(*params, controller);
   }
   controller.params = with_parameters(std::move(controller.params), draft.parameters);
+  take_memory(draft, element, memory_of(controller.params), element.size());
   element.done();
   draft.missing_parts = nullptr;
   draft.report.subject.clear();
@@ -167,11 +169,11 @@ struct Check {
     const auto found = joints.find(id);
     if (found == joints.end()) {
       std::vector<std::string> known;
-      for (const Joint& joint : entity.joints) known.push_back(joint.id);
+      for (std::size_t i = 0; i < std::min(entity.joints.size(), most_compared); ++i) known.push_back(entity.joints[i].id);
       blame(where,
             fmt::format("joint {} does not exist in {} {}; {}", in_quotes(id), kind_of(entity),
                         in_quotes(entity.id),
-                        known.empty() ? "it has none; write <joints> into it" : advice(id, known)),
+                        known.empty() ? "it has none; write <joints> into it" : draft.report.advice(id, known)),
             {"joints", "joint", "links", "link", "id", duplicate});
       return;
     }
@@ -220,7 +222,7 @@ struct Check {
       if (anchor.empty() || anchor == "origin" || draft.anchors.contains(anchor)) continue;
       blame(device.where, fmt::format("anchor {} of {} does not exist in {} {}; {}",
                                       in_quotes(anchor), device.device, kind_of(entity),
-                                      in_quotes(entity.id), advice(anchor, anchor_names(draft))),
+                                      in_quotes(entity.id), draft.report.advice(anchor, anchor_names(draft))),
             {"links", "link", "id", duplicate});
     }
   }
@@ -258,7 +260,10 @@ void check_sections(const Draft& draft, const Controller& controller, const Enti
   }
 }
 
+}  // namespace
+
 void check_use(Draft& draft, const Entity& entity) {
+  if (!entity.controller) return;
   const Controller& controller = draft.scene.controllers[*entity.controller];
   ControllerUse& use = draft.uses[*entity.controller];
   report_missing(draft, use.missing_parts);
@@ -269,6 +274,8 @@ void check_use(Draft& draft, const Entity& entity) {
   check.check_anchors();
   check.check_components();
 }
+
+namespace {
 
 void read_list(Draft& draft, Element& controllers, bool included) {
   const auto deadline = read_deadline(controllers, std::nullopt);
@@ -318,12 +325,13 @@ std::optional<ControllerChoice> read_controller_choice(Draft& draft, Element& el
   if (choice.id.empty()) return std::nullopt;
   if (!draft.controllers.contains(choice.id)) {
     std::vector<std::string> known;
-    for (const Controller& controller : draft.scene.controllers) known.push_back(controller.id);
+    const auto& all = draft.scene.controllers;
+    for (std::size_t i = 0; i < std::min(all.size(), most_compared); ++i) known.push_back(all[i].id);
     choice.unknown = {
         user->where("config"),
         user->sentence("config", known.empty()
                                      ? "names no controller; write it in <controllers>"
-                                     : "names no controller; " + advice(choice.id, known)),
+                                     : "names no controller; " + draft.report.advice(choice.id, known)),
         {"controllers", "lua_controller", "external_controller", "include", "id"}};
   }
   return choice;
@@ -341,7 +349,10 @@ void give_controller(Draft& draft, const ControllerChoice& choice, Entity& entit
     return;
   }
   entity.controller = found->second;
-  check_use(draft, entity);
+}
+
+const Controller* controller_of(const Draft& draft, const Entity& entity) {
+  return entity.controller ? &draft.scene.controllers[*entity.controller] : nullptr;
 }
 
 }  // namespace ziggurat::scene

@@ -279,7 +279,7 @@ Anchor read_anchor(Draft& draft, Element& element) {
   if (id.empty() || id == "origin") return {};
   const auto found = draft.anchors.find(id);
   if (found != draft.anchors.end()) return {static_cast<int>(found->second)};
-  element.fault_at("anchor", "names no anchor; " + advice(id, anchor_names(draft)),
+  element.fault_at("anchor", "names no anchor; " + draft.report.advice(id, anchor_names(draft)),
                    {"links", "link", "id", duplicate});
   return {};
 }
@@ -287,7 +287,9 @@ Anchor read_anchor(Draft& draft, Element& element) {
 std::vector<std::string> anchor_names(const Draft& draft) {
   // Of links with the same id only the first is an anchor: their numbers may have gaps.
   std::map<std::size_t, std::string> by_link;
-  for (const auto& [id, link] : draft.anchors) by_link.emplace(link, id);
+  for (const auto& [id, link] : draft.anchors) {
+    if (link <= most_compared) by_link.emplace(link, id);
+  }
   std::vector<std::string> names{"origin"};
   for (auto& [link, id] : by_link) names.push_back(std::move(id));
   return names;

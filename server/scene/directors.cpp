@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "scene/draft.h"
+#include "scene/memory.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -18,6 +19,7 @@ void read_director(Draft& draft, Element& element, Director director) {
     given->done();
   }
   director.params = with_parameters(std::move(params), draft.parameters);
+  take_memory(draft, element, memory_of(director.params), element.size());
   element.done();
   if (!director.script.empty() && !director.command.empty()) {
     element.fault("has a script and a command; write one of them");

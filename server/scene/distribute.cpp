@@ -1,9 +1,11 @@
 // <distribute>: how many copies of one entity, and how their poses are drawn.
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
 #include "scene/draft.h"
+#include "scene/memory.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -101,9 +103,12 @@ void take_ids(Draft& draft, Element& pattern, const std::string& id, const Distr
   }
 }
 
-void read_pattern(Draft& draft, Element& pattern, Distribution& out) {
+/// @param entity  the parent of the pattern
+void read_pattern(Draft& draft, const Element& entity, Element& pattern, Distribution& out) {
   if (entity_kind(pattern.name())) {
     out.entity = read_entity(draft, pattern, Placement::distributed);
+    const std::size_t each = memory_of(out.entity, controller_of(draft, out.entity));
+    take_copies(draft, entity, each, std::max(out.quantity, 1u) - 1);
     take_ids(draft, pattern, out.entity.id, out);
     draft.scene.distributions.push_back(std::move(out));
   } else if (pattern.name() == "light") {
@@ -145,7 +150,7 @@ void read_distribution(Draft& draft, Element& element) {
     return;
   }
   draft.copies += out.quantity;
-  read_pattern(draft, patterns.front(), out);
+  read_pattern(draft, *entity, patterns.front(), out);
 }
 
 }  // namespace ziggurat::scene

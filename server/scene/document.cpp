@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 #include "scene/malformed.h"
@@ -13,6 +14,8 @@ namespace ziggurat::scene {
 namespace {
 
 constexpr std::size_t smallest_average_element = 32;  // [bytes], with its closing tag
+constexpr std::size_t of_set_attribute = 64;          // of an attribute that a setting sets, beside its value
+constexpr std::size_t most_attributes = 100'000;      // of an element
 
 /// The offset of the first byte that is not well-formed UTF-8, or npos.
 std::size_t first_bad_utf8(std::string_view text) {
@@ -93,7 +96,7 @@ std::string complaint(const pugi::xml_parse_result& result, bool at_end) {
 }  // namespace
 
 ReadBudget budget_for(std::size_t max_size) {
-  return {max_size, 2 * std::max<std::size_t>(1'000'000, max_size / smallest_average_element)};
+  return {max_size, 2 * std::max<std::size_t>(1'000'000, max_size / smallest_average_element), most_attributes, false};
 }
 
 Document::Document(std::string text, std::size_t file, bool lenient, ReadBudget& budget,
@@ -101,30 +104,31 @@ Document::Document(std::string text, std::size_t file, bool lenient, ReadBudget&
     : source_(std::move(text)),
       file_(file),
       lenient_(lenient),
+      budget_(budget),
       report_(report),
       parameters_(parameters) {
   line_starts_.push_back(0);
   for (std::size_t i = 0; i < source_.size(); ++i) {
     if (source_[i] == '\n') line_starts_.push_back(i + 1);
   }
-  if (check_text(budget)) parse();
+  if (check_text()) parse();
 }
 
-bool Document::check_text(ReadBudget& budget) {
-  budget.bytes -= source_.size();
+bool Document::check_text() {
+  budget_.bytes -= source_.size();
   if (trimmed(source_).empty()) {
     report_.fault({file_, 0, 0}, "the file is empty; a scene begins with <argos-configuration>");
     return false;
   }
   const auto tags = static_cast<std::size_t>(std::count(source_.begin(), source_.end(), '<'));
-  if (tags > budget.tags) {
+  if (tags > budget_.tags) {
     report_.fault({file_, 0, 0},
                   fmt::format("the file has more than {} elements; split the scene, or raise "
                               "--max-scene-size",
-                              budget.tags / 2));
+                              budget_.tags / 2));
     return false;
   }
-  budget.tags -= tags;
+  budget_.tags -= tags;
   if (const std::size_t nul = source_.find('\0'); nul != std::string::npos) {
     const bool is_recording = source_.starts_with("\x89MCAP0\r\n");
     report_.fault(at(nul), is_recording ? "this is a recording, not a scene; 'ziggurat replay' repeats it"
@@ -173,12 +177,33 @@ void Document::parse() {
                  "begin with it, or remove it");
   }
   check_outside();
+  if (!check_attributes(budget_.attributes)) return;
   root_ = tree_.document_element();
   for (pugi::xml_node node = root_.next_sibling(); node; node = node.next_sibling()) {
     if (node.type() != pugi::node_element) continue;
     report_.fault(locate(node.name() - 1),
                   fmt::format("a second root element, <{}>; a file has one", node.name()));
   }
+}
+
+bool Document::check_attributes(std::size_t most) const {
+  struct Search : pugi::xml_tree_walker {
+    explicit Search(std::size_t most) : most(most) {}
+    const std::size_t most;
+    pugi::xml_node found;
+    bool for_each(pugi::xml_node& node) override {
+      const auto attributes = node.attributes();
+      if (static_cast<std::size_t>(std::distance(attributes.begin(), attributes.end())) <= most) return true;
+      found = node;
+      return false;
+    }
+  } search(most);
+  pugi::xml_node all = tree_;
+  all.traverse(search);
+  if (!search.found) return true;
+  report_.fault(locate(search.found.name() - 1),
+                fmt::format("<{}> has more than {} attributes; write fewer", search.found.name(), most));
+  return false;
 }
 
 void Document::check_outside() {
@@ -240,19 +265,28 @@ Location Document::locate_value(const pugi::xml_attribute& attribute) const {
 
 Value<std::size_t> Document::set(const Setting& setting) {
   if (!root_) return std::size_t{0};
+  if (budget_.bytes < of_set_attribute) return Wrong{"is one too many: the scene is too large; raise --max-scene-size"};
   auto found = attributes_at(root_, setting.path);
   if (const Wrong* wrong = std::get_if<1>(&found)) return *wrong;
+  const std::size_t size = std::get<0>(found).size() * (of_set_attribute + setting.value.size());
+  if (size > budget_.bytes) {
+    budget_.bytes = 0;
+    return Wrong{fmt::format("matches {} attributes, with whose values the scene is too large; name fewer, or raise "
+                             "--max-scene-size",
+                             std::get<0>(found).size())};
+  }
+  budget_.bytes -= size;
   for (Attribute& each : std::get<0>(found)) {
     each.attribute.set_value(setting.value.c_str());
     set_.insert_or_assign(each.attribute.hash_value(),
-                          Set{setting, locate(each.element.name() - 1)});
+                          Set{&setting, locate(each.element.name() - 1)});
   }
   return std::get<0>(found).size();
 }
 
 const Setting* Document::setting_of(const pugi::xml_attribute& attribute) const {
   const auto found = set_.find(attribute.hash_value());
-  return found == set_.end() ? nullptr : &found->second.setting;
+  return found == set_.end() ? nullptr : found->second.setting;
 }
 
 std::string Document::origin(const pugi::xml_attribute& attribute) const {
@@ -269,7 +303,16 @@ std::string Document::origin(const pugi::xml_attribute& attribute) const {
 Value<std::string> Document::value(const pugi::xml_attribute& attribute) const {
   const std::string_view text = trimmed(attribute.value());
   if (parameters_ == nullptr || text.find("${") == std::string_view::npos) return std::string(text);
-  return expand(text, *parameters_);
+  const Wrong too_large{"makes the scene too large, with its parameters written out; use shorter values, or raise --max-scene-size"};
+  if (budget_.is_spent) return too_large;
+  auto expanded = expand(text, *parameters_);
+  const std::string* result = std::get_if<std::string>(&expanded);
+  if (result == nullptr) return expanded;
+  const std::size_t more = result->size() - std::min(result->size(), text.size());
+  budget_.is_spent = more > budget_.bytes;
+  if (budget_.is_spent) return too_large;
+  budget_.bytes -= more;
+  return expanded;
 }
 
 std::string_view Document::raw(const pugi::xml_attribute& attribute) const {

@@ -20,7 +20,9 @@ namespace ziggurat::scene {
 /// What a scene and its includes may still take.
 struct ReadBudget {
   std::size_t bytes;
-  std::size_t tags;  ///< opening and closing ones
+  std::size_t tags;        ///< opening and closing ones
+  std::size_t attributes;  ///< of each element
+  bool is_spent = false;   ///< a value with parameters was too large
 };
 
 /// The budget of a scene of at most so many bytes.
@@ -31,7 +33,8 @@ class Document {
  public:
   /// Parses; what is wrong with the text itself (not UTF-8, malformed, …) is a fault.
   /// @param file  its index in Scene::files
-  /// @param budget  at least the text's size; the text is taken from it
+  /// @param budget  at least the text's size; the text, settings and values of parameters are taken from it; must
+  ///     outlive this
   /// @param parameters  what ${name} stands for; must outlive this; null: none
   Document(std::string text, std::size_t file, bool lenient, ReadBudget& budget, Report& report,
            const Parameters* parameters = nullptr);
@@ -42,6 +45,7 @@ class Document {
   pugi::xml_node root() const { return root_; }
 
   /// Sets attributes. @returns how many; what is wrong with the path
+  /// @param setting  must outlive this
   Value<std::size_t> set(const Setting& setting);
 
   /// Where a character of the parsed text stands.
@@ -57,7 +61,7 @@ class Document {
   const Setting* setting_of(const pugi::xml_attribute& attribute) const;
   /// How the attribute got its value, if not as written: continues a message.
   std::string origin(const pugi::xml_attribute& attribute) const;
-  /// Its value with parameters, trimmed.
+  /// Its value with parameters, which count as if they were written out, trimmed.
   Value<std::string> value(const pugi::xml_attribute& attribute) const;
 
   bool lenient() const { return lenient_; }
@@ -65,7 +69,8 @@ class Document {
 
  private:
   void parse();
-  bool check_text(ReadBudget& budget);
+  bool check_attributes(std::size_t most) const;
+  bool check_text();
   void check_outside();
   void check_doctype();
   Location at(std::size_t offset) const;
@@ -74,13 +79,14 @@ class Document {
   std::string buffer_;  ///< what the parser works in: same offsets, changed characters
   std::size_t file_;
   bool lenient_;
+  ReadBudget& budget_;
   Report& report_;
   const Parameters* parameters_;
   std::vector<std::size_t> line_starts_;
   pugi::xml_document tree_;
   pugi::xml_node root_;
   struct Set {
-    Setting setting;
+    const Setting* setting;
     Location where;  ///< of the element
   };
   std::unordered_map<std::size_t, Set> set_;  ///< by xml_attribute::hash_value(); only looked up

@@ -167,8 +167,12 @@ std::optional<DeadlinePolicy> read_deadline(Element& element,
 /// Reads `<controller>` of an entity or a model.
 std::optional<ControllerChoice> read_controller_choice(Draft& draft, Element& element);
 
-/// Gives an entity its controller and checks that it has what the controller needs.
+/// Gives an entity its controller.
 void give_controller(Draft& draft, const ControllerChoice& choice, Entity& entity);
+/// Checks that an entity has what its controller needs.
+void check_use(Draft& draft, const Entity& entity);
+/// The controller of an entity, or null.
+const Controller* controller_of(const Draft& draft, const Entity& entity);
 
 // --- entities -----------------------------------------------------------------------------------
 

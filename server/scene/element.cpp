@@ -40,6 +40,26 @@ void check_references(const Document& document, std::string_view element,
   }
 }
 
+/// `name="value" of <element> <text>`.
+std::string sentence_on(const Document& document, std::string_view element, std::string_view name,
+                        const pugi::xml_attribute& attribute, std::string_view text) {
+  return fmt::format("{}={} of <{}> {}{}", name, in_quotes(trimmed(attribute.value())), element, text,
+                     document.origin(attribute));
+}
+
+/// The attribute's value; nothing, after a fault, if it has none.
+std::optional<std::string> take_value(const Document& document, std::string_view element,
+                                      const pugi::xml_attribute& attribute) {
+  check_references(document, element, attribute);
+  auto value = document.value(attribute);
+  if (const Wrong* wrong = std::get_if<1>(&value)) {
+    document.report().fault(document.locate_value(attribute),
+                            sentence_on(document, element, attribute.name(), attribute, wrong->text));
+    return std::nullopt;
+  }
+  return std::get<0>(std::move(value));
+}
+
 void check_repeated_attributes(const Document& document, const pugi::xml_node& node) {
   std::vector<std::pair<std::string_view, const char*>> names;
   for (const pugi::xml_attribute attribute : node.attributes()) {
@@ -98,21 +118,14 @@ Location Element::where(const char* attribute) const {
 std::optional<std::string> Element::take(const char* attribute) {
   asked_attributes_.push_back(attribute);
   const pugi::xml_attribute found = node_.attribute(attribute);
-  if (found.empty()) return std::nullopt;
-  check_references(*document_, name(), found);
-  auto value = document_->value(found);
-  if (const Wrong* wrong = std::get_if<1>(&value)) {
-    fault_at(attribute, wrong->text);
-    return std::nullopt;
-  }
-  return std::get<0>(std::move(value));
+  return found.empty() ? std::nullopt : take_value(*document_, name(), found);
 }
 
 std::vector<std::pair<std::string, std::string>> Element::all_attributes() {
   any_attribute_ = true;
   std::vector<std::pair<std::string, std::string>> result;
   for (const pugi::xml_attribute attribute : node_.attributes()) {
-    if (auto value = take(attribute.name())) {
+    if (auto value = take_value(*document_, name(), attribute)) {
       result.emplace_back(attribute.name(), std::move(*value));
     }
   }
@@ -223,9 +236,7 @@ void Element::unknown_in(std::string_view parent, std::span<const std::string_vi
 }
 
 std::string Element::sentence(const char* attribute, std::string_view text) const {
-  const pugi::xml_attribute found = node_.attribute(attribute);
-  return fmt::format("{}={} of <{}> {}{}", attribute, in_quotes(trimmed(found.value())), name(), text,
-                     document_->origin(found));
+  return sentence_on(*document_, this->name(), attribute, node_.attribute(attribute), text);
 }
 
 void Element::fault_at(const char* attribute, std::string_view text,

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "scene/draft.h"
+#include "scene/memory.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -179,6 +180,9 @@ Entity read_entity(Draft& draft, Element& element, Placement placement) {
     if (needs_controller(entity.kind) && !controller) element.required_child("controller");
     if (controller) give_controller(draft, *controller, entity);
   }
+  const std::size_t of_model = entity.model ? draft.models[*entity.model].size : 0;
+  take_memory(draft, element, memory_of(entity, controller_of(draft, entity)), element.size() + of_model);
+  check_use(draft, entity);
   if (entity.model) {
     element.done(elsewhere, draft.models[*entity.model].names);
   } else {

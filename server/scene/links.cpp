@@ -42,7 +42,7 @@ std::optional<std::size_t> read_link_name(Element& element, const char* attribut
   if (found != draft.anchors.end()) return found->second;
   std::vector<std::string> links = anchor_names(draft);
   links.erase(links.begin());
-  element.fault_at(attribute, "names no link; " + advice(id, links),
+  element.fault_at(attribute, "names no link; " + draft.report.advice(id, links),
                    {"links", "link", "id", duplicate});
   return std::nullopt;
 }

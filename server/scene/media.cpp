@@ -61,13 +61,13 @@ std::optional<std::size_t> read_medium(Draft& draft, Element& element, MediumKin
   if (found == draft.media.end()) {
     std::vector<std::string> candidates;
     for (const Medium& medium : draft.scene.media) {
-      if (medium.kind == kind) candidates.push_back(medium.id);
+      if (medium.kind == kind && candidates.size() < most_compared) candidates.push_back(medium.id);
     }
     fault(candidates.empty() || draft.missing_parts
               ? fmt::format("names no medium{}; write <{} id={}/> in <media>",
                             draft.missing_parts ? " of the scene" : "", to_string(kind),
                             in_quotes(id))
-              : "names no medium; " + advice(id, candidates));
+              : "names no medium; " + draft.report.advice(id, candidates));
     return std::nullopt;
   }
   const MediumKind is = draft.scene.media[found->second].kind;

@@ -1,8 +1,10 @@
 // <models>: what many entities have in common, written once. Each is read once, and copied.
 
+#include <algorithm>
 #include <array>
 
 #include "scene/draft.h"
+#include "scene/memory.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -39,6 +41,7 @@ void read_model(Draft& draft, Element& element, EntityKind kind) {
   if (may_have_controller(kind)) model.controller = read_controller_choice(draft, element);
   model.names = element.asked();
   element.done();
+  take_memory(draft, element, memory_of(model.entity, nullptr), model.size);
   draft.report.subject.clear();
   take_id(draft, element, id);
   model.anchors = std::move(draft.anchors);
@@ -52,11 +55,12 @@ std::optional<std::size_t> find_model(const Draft& draft, const Element& element
   const auto found = draft.model_ids.find(name);
   if (found == draft.model_ids.end()) {
     std::vector<std::string> known;
-    for (const auto& model : draft.scene.models) known.push_back(model.id);
+    const auto& all = draft.scene.models;
+    for (std::size_t i = 0; i < std::min(all.size(), most_compared); ++i) known.push_back(all[i].id);
     element.fault_at("model",
                      known.empty()
                          ? "names no model; define it in <models>, or <include> a file that does"
-                         : "names no model; " + advice(name, known),
+                         : "names no model; " + draft.report.advice(name, known),
                      {"models", "include", "id", element.name()});
     return std::nullopt;
   }

@@ -13,7 +13,6 @@ namespace ziggurat::scene {
 namespace {
 
 constexpr std::size_t longest_compared = 64;  // characters of a name
-constexpr std::size_t most_compared = 256;    // candidates
 
 using Reason = std::pair<std::string_view, std::string_view>;
 using Reasons = std::span<const Reason>;
@@ -98,10 +97,12 @@ std::optional<std::string_view> nearest(std::string_view name,
 }
 
 std::string advice(std::string_view name, std::span<const std::string_view> candidates) {
+  const auto meant = nearest(name, candidates);
+  return meant ? fmt::format("did you mean {}?", in_quotes(*meant)) : list_known(candidates);
+}
+
+std::string list_known(std::span<const std::string_view> candidates) {
   constexpr std::size_t listed = 12;
-  if (const auto meant = nearest(name, candidates)) {
-    return fmt::format("did you mean {}?", in_quotes(*meant));
-  }
   if (candidates.empty()) return "none is known here";
   std::string list;
   for (const std::string_view candidate : candidates.first(std::min(listed, candidates.size()))) {

@@ -12,6 +12,9 @@
 
 namespace ziggurat::scene {
 
+/// How many candidates are compared with a name: more need not be collected.
+constexpr std::size_t most_compared = 256;
+
 /// The candidate that was probably meant, if one is near enough; the first of equally near ones.
 std::optional<std::string_view> nearest(std::string_view name,
                                         std::span<const std::string_view> candidates);
@@ -19,6 +22,8 @@ std::optional<std::string_view> nearest(std::string_view name,
 /// `did you mean "x"?`, otherwise `known here: a, b, c`, otherwise `none is known here`.
 std::string advice(std::string_view name, std::span<const std::string_view> candidates);
 std::string advice(std::string_view name, const std::vector<std::string>& candidates);
+/// `known here: a, b, c`, otherwise `none is known here`.
+std::string list_known(std::span<const std::string_view> candidates);
 
 /// The element that an element belongs in, if there is only one of that name.
 std::optional<std::string_view> home_of(std::string_view element);

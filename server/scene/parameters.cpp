@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <unordered_set>
 
 #include "scene/draft.h"
 #include "text/shortened.h"
@@ -14,13 +15,10 @@ constexpr std::size_t longest_text = 1 << 20;  // of an attribute, with its para
 
 std::vector<std::string> names_of(const Parameters& parameters) {
   std::vector<std::string> names;
-  for (const Parameter& parameter : parameters) names.push_back(parameter.name);
+  for (const Parameter& parameter : parameters) {
+    if (names.size() < most_compared) names.push_back(parameter.name);
+  }
   return names;
-}
-
-const Parameter* find(const Parameters& parameters, std::string_view name) {
-  const auto found = std::ranges::find(parameters, name, &Parameter::name);
-  return found == parameters.end() ? nullptr : &*found;
 }
 
 Wrong unknown(std::string_view name, const Parameters& parameters) {
@@ -69,6 +67,23 @@ std::string doubt(const Parameter& declared, const std::string& given) {
 
 }  // namespace
 
+const Parameter* Parameters::find(std::string_view name) const {
+  const auto found = index_.find(std::string(name));
+  return found == index_.end() ? nullptr : &list_[found->second];
+}
+
+void Parameters::declare(std::string name, std::string value) {
+  if (index_.emplace(name, list_.size()).second) list_.push_back({std::move(name), std::move(value)});
+}
+
+bool Parameters::give(std::string_view name, std::string value) {
+  const auto found = index_.find(std::string(name));
+  if (found == index_.end()) return false;
+  list_[found->second].value = std::move(value);
+  list_[found->second].given = true;
+  return true;
+}
+
 Value<std::string> expand(std::string_view text, const Parameters& parameters) {
   std::string result;
   for (std::size_t begin = 0;;) {
@@ -89,7 +104,7 @@ Value<std::string> expand(std::string_view text, const Parameters& parameters) {
       return Wrong{"has ${ without }; write ${name}, or $${ for a literal ${"};
     }
     const std::string_view name = text.substr(found + 2, end - found - 2);
-    const Parameter* parameter = find(parameters, name);
+    const Parameter* parameter = parameters.find(name);
     if (!parameter) return unknown(name, parameters);
     result += parameter->value;
     begin = end + 1;
@@ -97,14 +112,14 @@ Value<std::string> expand(std::string_view text, const Parameters& parameters) {
 }
 
 Params with_parameters(Params params, const Parameters& parameters) {
+  if (parameters.empty()) return params;
+  std::unordered_set<std::string> own;
+  for (auto& [name, value] : params) {
+    own.insert(name);
+    if (const Parameter* same = parameters.find(name); same && same->given) value = same->value;
+  }
   for (const Parameter& parameter : parameters) {
-    const auto same =
-        std::ranges::find(params, parameter.name, &Params::value_type::first);
-    if (same == params.end()) {
-      params.emplace_back(parameter.name, parameter.value);
-    } else if (parameter.given) {
-      same->second = parameter.value;
-    }
+    if (!own.contains(parameter.name)) params.emplace_back(parameter.name, parameter.value);
   }
   return params;
 }
@@ -112,18 +127,16 @@ Params with_parameters(Params params, const Parameters& parameters) {
 void read_parameters(Draft& draft, Element& root) {
   if (auto element = root.child("parameters")) {
     for (auto& [name, value] : element->all_attributes()) {
-      draft.parameters.push_back({std::move(name), std::move(value)});
+      draft.parameters.declare(std::move(name), std::move(value));
     }
     element->done();
   }
   for (const auto& [name, value] : draft.options.variation.parameters) {
-    const auto found = std::ranges::find(draft.parameters, name, &Parameter::name);
-    if (found != draft.parameters.end()) {
-      if (auto text = doubt(*found, value); !text.empty()) {
+    if (const Parameter* declared = draft.parameters.find(name)) {
+      if (auto text = doubt(*declared, value); !text.empty()) {
         draft.report.warn(root.where(), "parameter", std::move(text));
       }
-      found->value = value;
-      found->given = true;
+      draft.parameters.give(name, value);
       continue;
     }
     draft.report.fault(

@@ -2,8 +2,10 @@
 // Parameters of a scene: `<parameters gain="0.5"/>` declares them with their usual values, `--param`
 // gives others, and `${gain}` in any attribute stands for the value.
 
+#include <cstddef>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -16,8 +18,26 @@ struct Parameter {
   bool given = false;  ///< by the command line: otherwise as the scene declares it
 };
 
-/// In the order of their declaration.
-using Parameters = std::vector<Parameter>;
+/// In the order of their declaration, found by name.
+class Parameters {
+ public:
+  bool empty() const { return list_.empty(); }
+  std::size_t size() const { return list_.size(); }
+  auto begin() const { return list_.begin(); }
+  auto end() const { return list_.end(); }
+
+  /// The parameter of that name, or null.
+  const Parameter* find(std::string_view name) const;
+  /// Of several with the same name, the first counts.
+  void declare(std::string name, std::string value);
+  /// A value of the command line. @returns whether a parameter has that name
+  bool give(std::string_view name, std::string value);
+
+ private:
+  std::vector<Parameter> list_;
+  std::unordered_map<std::string, std::size_t> index_;  ///< by name; only looked up
+};
+
 /// Names and values, as of <params>.
 using Params = std::vector<std::pair<std::string, std::string>>;
 

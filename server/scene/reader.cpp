@@ -105,7 +105,21 @@ void read_scene(Draft& draft, File file, const std::string& name) {
   root.done();
 }
 
+ReadResult refuse(const std::string& name, std::string text) {
+  ReadResult result;
+  result.scene.files = {name};
+  result.problems = {{Problem::Severity::fault, name, {}, std::move(text)}};
+  return result;
+}
+
+/// Each goes through all of the scene.
+constexpr std::size_t most_settings = 256;
+
 ReadResult read(File file, const std::string& name, const ReadOptions& options) {
+  if (options.variation.settings.size() > most_settings) {
+    return refuse(name, fmt::format("--set is given {} times; at most {} are allowed, so change the scene itself",
+                                    options.variation.settings.size(), most_settings));
+  }
   ReadResult result;
   result.scene.variation = options.variation;
   Report report(result.scene.files);
@@ -117,13 +131,6 @@ ReadResult read(File file, const std::string& name, const ReadOptions& options) 
   }
   result.problems = report.problems();
   result.additions = Additions(draft);
-  return result;
-}
-
-ReadResult refuse(const std::string& name, std::string text) {
-  ReadResult result;
-  result.scene.files = {name};
-  result.problems = {{Problem::Severity::fault, name, {}, std::move(text)}};
   return result;
 }
 

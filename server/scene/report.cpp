@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "scene/names.h"
+
 namespace ziggurat::scene {
 namespace {
 
-constexpr std::size_t most_faults = 1000;
+constexpr std::size_t most_notices = 1000;
+constexpr std::size_t most_advised = 50;  // comparing long names with many takes milliseconds
 
 }  // namespace
 
@@ -17,7 +20,7 @@ void Report::fault(Location where, std::string text, std::vector<std::string_vie
   const std::string& file = files_[where.file];
   entries_.push_back(
       {{Problem::Severity::fault, file, where, std::move(text)}, std::move(causes)});
-  if (++faults_ < most_faults) return;
+  if (++faults_ < most_faults_) return;
   entries_.push_back(
       {{Problem::Severity::fault, file, where,
         fmt::format("{} faults; the rest of the file was not read", faults_)},
@@ -26,7 +29,8 @@ void Report::fault(Location where, std::string text, std::vector<std::string_vie
 }
 
 void Report::notice(Location where, std::string text) {
-  if (!noticed_.insert(text).second) return;
+  if (noticed_.size() > most_notices || !noticed_.insert(text).second) return;
+  if (noticed_.size() > most_notices) text = fmt::format("{} notices; others are not told", most_notices);
   entries_.push_back(
       {{Problem::Severity::notice, files_[where.file], where, std::move(text)}, {}});
 }
@@ -39,6 +43,12 @@ void Report::warn(Location where, std::string_view kind, std::string text) {
   ++known->second.more;
   Problem& first = entries_[known->second.entry].problem;
   if (where < first.where) first = std::move(problem);
+}
+
+std::string Report::advice(std::string_view name, const std::vector<std::string>& candidates) {
+  if (++advised_ <= most_advised) return scene::advice(name, candidates);
+  const std::vector<std::string_view> views(candidates.begin(), candidates.end());
+  return list_known(views);
 }
 
 void Report::no_effect_yet(Location where, std::string_view plural) {

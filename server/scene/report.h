@@ -21,7 +21,9 @@ struct TooManyFaults {};
 class Report {
  public:
   /// @param files  what Location::file counts; must outlive this and may grow
-  explicit Report(const std::vector<std::string>& files) : files_(files) {}
+  /// @param most_faults  that are found before the reading ends
+  explicit Report(const std::vector<std::string>& files, std::size_t most_faults = 1000)
+      : files_(files), most_faults_(most_faults) {}
   Report(const Report&) = delete;
   Report& operator=(const Report&) = delete;
 
@@ -34,6 +36,9 @@ class Report {
   /// Only the first of each kind is told, with how many there are.
   /// @param kind  static text
   void warn(Location where, std::string_view kind, std::string text);
+
+  /// `did you mean "x"?` for the first names that nothing has; afterwards what is known.
+  std::string advice(std::string_view name, const std::vector<std::string>& candidates);
 
   /// Notice that something is read and checked, and does nothing yet: each subject once.
   /// @param plural  of what, for example "radios"
@@ -59,6 +64,8 @@ class Report {
   bool follows(const Entry& entry) const;
 
   const std::vector<std::string>& files_;
+  std::size_t most_faults_;
+  std::size_t advised_ = 0;
   std::vector<Entry> entries_;
   std::set<std::string, std::less<>> left_out_;
   struct Count {

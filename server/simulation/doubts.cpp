@@ -18,6 +18,8 @@ namespace {
 using math::Vector3;
 
 constexpr std::size_t most_compared = 5000;  // placed entities, for overlaps
+constexpr std::size_t most_pairs = 100'000'000;  // of what may fall with what may hold it
+constexpr std::size_t most_effort = 10'000'000;  // of physics::Placement
 constexpr double deep = 1e-3;                // in the floor [m]
 constexpr double huge_movable = 10, huge_fixed = 100;  // times the arena's longest side
 
@@ -134,6 +136,7 @@ class Doubts {
     }
     for (const scene::Entity& entity : scene_.entities) {
       if (!entity.movable) continue;
+      if (placement.effort() > most_effort) return;
       if (const std::string other = placement.overlapped_by(entity); !other.empty()) {
         doubt(overlap_, entity,
               fmt::format("overlaps {} at the start, and both are pushed apart; move one of them",
@@ -177,6 +180,8 @@ class Doubts {
     for (std::size_t e = 0; e < entities_.size(); ++e) {
       if (!entities_[e].movable) fixed.push_back(extents_[e]);
     }
+    const std::size_t movable = entities_.size() - fixed.size();
+    if (fixed.size() * movable > most_pairs) return;
     for (std::size_t e = 0; e < entities_.size(); ++e) {
       if (!entities_[e].movable) continue;
       Extent below = extents_[e];

@@ -123,6 +123,19 @@ std::string limit_of(const Search& search) {
   throw scene::SceneError({problem});
 }
 
+/// Ends a search that takes too long though it finds places.
+void check_effort(const Search& search, const scene::Distribution& group, unsigned placed, std::size_t effort) {
+  if (effort < search.patience.all_effort) return;
+  scene::Problem problem;
+  problem.file = search.scene.files.empty() ? "" : search.scene.files[group.where.file];
+  problem.where = group.where;
+  problem.text = fmt::format(
+      "<distribute>: it takes too long to find places, after {} of {} were found: too many bodies, or parts of them, are "
+      "near each other, or are long and thin; place fewer, or farther apart",
+      placed, group.quantity);
+  throw scene::SceneError({problem});
+}
+
 void distribute(Search& search, const scene::Distribution& group, math::RandomStream& random,
                 physics::Placement& placement, std::vector<scene::Entity>& entities) {
   Draw position(group.position, random), orientation(group.orientation, random);
@@ -146,6 +159,7 @@ void distribute(Search& search, const scene::Distribution& group, math::RandomSt
     placement.add(entity);
     entities.push_back(std::move(entity));
     search.succeed();
+    check_effort(search, group, i + 1, placement.effort());
   }
 }
 

@@ -14,11 +14,11 @@ namespace ziggurat::simulation {
 /// How many of all entities that are to be distributed have their places.
 using TellPlaced = std::function<void(std::size_t placed, std::size_t all)>;
 
-/// When the search for free places ends, whatever 'max_trials' says: both of all attempts that fail, of all
-/// entities together.
+/// When the search for free places ends, whatever 'max_trials' says, of all entities together.
 struct Patience {
-  std::size_t attempts = 10'000'000;
-  std::size_t effort = 100'000'000;  ///< see physics::Placement; an attempt takes 16, or thousands among thousands of bodies
+  std::size_t attempts = 10'000'000;  ///< that fail
+  std::size_t effort = 100'000'000;   ///< of those; see physics::Placement; an attempt takes 16, or thousands among thousands of bodies
+  std::size_t all_effort = 2'000'000'000;  ///< of those that find a place, too
 };
 
 /// All entities of the scene at their poses, in scene order: the placed ones, then the

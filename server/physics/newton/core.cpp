@@ -230,10 +230,9 @@ std::optional<std::size_t> NewtonCore::overlapped_by(
 }
 
 JointIndex NewtonCore::joint(std::size_t entity, std::size_t joint) const {
-  std::size_t i = static_cast<std::size_t>(
-      std::ranges::lower_bound(joints_, entity, {}, &CoordinateJoint::entity) - joints_.begin());
-  while (joints_[i].entity != entity || joints_[i].index != joint) ++i;
-  return {i};
+  const auto place = [](const CoordinateJoint& of) { return std::pair(of.entity, of.index); };
+  const auto found = std::ranges::lower_bound(joints_, std::pair(entity, joint), {}, place);
+  return {static_cast<std::size_t>(found - joints_.begin())};
 }
 
 void NewtonCore::add_motor(JointIndex index, scene::JointMode mode, double max_impulse) {

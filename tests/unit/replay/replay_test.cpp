@@ -204,5 +204,23 @@ TEST(Replay, SpawnsReadNoFileFromTheDisk) {
   EXPECT_NE(error_of(bad).find("not in the recording"), std::string::npos) << error_of(bad);
 }
 
+TEST(Replay, AllThatIsSpawnedHasABoundUntilAReset) {
+  testing::Recorder run;
+  const auto spawn = [&](int i) {
+    const std::string xml = "<box id='s" + std::to_string(i) + "' size='.1,.1,.1' movable='false'><body position='5," +
+                            std::to_string(i) + ",1'/><!--" + std::string(1'000'000, 'x') + "--></box>";
+    run.inputs().add_acts()->mutable_spawn()->set_xml(xml);
+  };
+  for (int i = 0; i < 66; ++i) spawn(i);
+  run.inputs().add_acts()->mutable_reset()->set_seed(4);
+  spawn(66);
+  spawn(67);
+  EXPECT_EQ(error_of(run.recording).find("larger than"), std::string::npos) << error_of(run.recording);
+  spawn(0);
+  for (int i = 100; i < 166; ++i) spawn(i);
+  EXPECT_NE(error_of(run.recording).find("an entity cannot be spawned: spawn: the file is larger than"), std::string::npos)
+      << error_of(run.recording);
+}
+
 }  // namespace
 }  // namespace ziggurat::replay

@@ -59,6 +59,24 @@ TEST(EmbeddedScene, ItsSettingsAreCheckedAsThoseOfOptions) {
   EXPECT_THROW(set(std::string(1 << 20, '/')), scene::SceneError);
 }
 
+TEST(EmbeddedScene, TakesNoMoreMemoryThanOneOnTheDisk) {
+  EmbeddedFiles embedded;
+  embedded.add("scenes/small.argos",
+               R"(<argos><framework><experiment ticks_per_second="10"/></framework><controllers>)"
+               R"(<external_controller id="c"><actuators/><sensors/><params large=")" + std::string(1'000'000, 'x') +
+               R"("/></external_controller></controllers><media/><physics_engines><dynamics3d id="d"/></physics_engines>)"
+               R"(<arena size="9,9,9"><distribute><position method="uniform" min="0,0,0" max="9,9,9"/>)"
+               R"(<orientation method="constant" values="0,0,0"/><entity quantity="5000" max_trials="1"><e-puck id="e">)"
+               R"(<controller config="c"/></e-puck></entity></distribute></arena></argos>)");
+  try {
+    read_scene(start(), embedded);
+    ADD_FAILURE();
+  } catch (const scene::SceneError& error) {
+    EXPECT_NE(std::string(error.what()).find("is too many: each of these entities takes some 4.0 MB"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(EmbeddedScene, HasTheRecordedHash) {
   const EmbeddedFiles embedded = files();
   v1::RunStart run = start();

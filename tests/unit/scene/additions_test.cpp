@@ -141,6 +141,30 @@ TEST_F(Additions, HaveALimitedSize) {
   EXPECT_NE(fault(small, 100).find("is one too many"), std::string::npos);
 }
 
+TEST_F(Additions, HaveElementsOf1000AttributesAtMost) {
+  std::string params;
+  for (int i = 0; i < 1000; ++i) params += " a" + std::to_string(i) + "='1'";
+  const auto robot = [&](const std::string& more) {
+    return "<prototype id='p' model='block'><body position='0,0,3'/><controller config='lua'><params" + params + more +
+           "/></controller></prototype>";
+  };
+  EXPECT_TRUE(add(robot("")).ok());
+  EXPECT_EQ(fault(robot(" b='1'")), "spawn:1:82: <params> has more than 1000 attributes; write fewer");
+}
+
+TEST_F(Additions, WithManyMistakesAreNotReadToTheirEnd) {
+  std::string links, joints;
+  for (int i = 0; i < 300; ++i) {
+    const std::string name = std::string(60, 'x') + std::to_string(i);
+    links += "<link id='" + name + "' geometry='sphere' radius='1' mass='1'/>";
+    joints += "<joint type='fixed'><parent link='y" + name + "'/><child link='z" + name + "'/></joint>";
+  }
+  const Addition addition = add("<prototype id='p'><body position='0,0,0'/><links ref='" + std::string(60, 'x') + "0'>" + links +
+                                "</links><joints>" + joints + "</joints></prototype>");
+  ASSERT_EQ(addition.problems.size(), 21u);
+  EXPECT_NE(to_string(addition.problems.back()).find("20 faults; the rest"), std::string::npos);
+}
+
 TEST(AdditionsOf, ASceneWithoutEngineAreRefused) {
   SceneText text;
   text.engines = "<physics_engines/>";

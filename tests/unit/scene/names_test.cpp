@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <string>
+#include <vector>
+
+#include "scene/report.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -21,6 +25,13 @@ TEST(Ids, NumbersUnnamedElementsFromZero) {
   EXPECT_TRUE(ids.add("magnet_1"));
   EXPECT_EQ(ids.next("magnet"), "magnet_2");
   EXPECT_FALSE(ids.add("magnet_0"));
+}
+
+TEST(Names, OnlyTheFirstMistakesGetASuggestion) {
+  const std::vector<std::string> files{"scene"}, known{"left", "right"};
+  Report report(files);
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(report.advice("rigth", known), "did you mean \"right\"?");
+  EXPECT_EQ(report.advice("rigth", known), "known here: left, right");
 }
 
 }  // namespace

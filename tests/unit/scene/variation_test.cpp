@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <string>
+
 #include "model_files.h"
 #include "scene/parameters.h"
 #include "scene/settings.h"
@@ -188,11 +191,13 @@ TEST(Parameters, MustBeDeclared) {
 }
 
 TEST(Parameters, ADoubledDollarIsOne) {
-  const Parameters parameters{{"a", "1"}};
+  Parameters parameters;
+  parameters.declare("a", "1");
   EXPECT_EQ(std::get<0>(expand("$${a} ${a}$a$", parameters)), "${a} 1$a$");
   EXPECT_TRUE(std::holds_alternative<Wrong>(expand("${a", parameters)));
   EXPECT_TRUE(std::holds_alternative<Wrong>(expand("${b}", parameters)));
-  const Parameters large{{"a", std::string(1000, 'x')}};
+  Parameters large;
+  large.declare("a", std::string(1000, 'x'));
   std::string text;
   for (int i = 0; i < 2000; ++i) text += "${a}";
   EXPECT_TRUE(std::holds_alternative<Wrong>(expand(text, large)));
@@ -208,6 +213,33 @@ TEST(Parameters, ReachControllers) {
             (Params{{"script", "x.lua"}, {"speed", "3"}, {"half", "5"}, {"gain", "2"}}));
   EXPECT_EQ(text.read(with_param("speed", "9")).scene.controllers[0].params,
             (Params{{"script", "x.lua"}, {"speed", "9"}, {"half", "9"}, {"gain", "2"}}));
+}
+
+/// `a0="${value}" a1="${value}" …`
+std::string many_attributes(int count, const std::string& value) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += " a" + std::to_string(i) + "=\"" + value + "\"";
+  return text;
+}
+
+TEST(Parameters, ManyTakeATimeInProportion) {
+  SceneText text;
+  text.rest = "<parameters" + many_attributes(100'000, "1") + "/>\n";
+  text.controllers = R"(<controllers><lua_controller id="c"><actuators/><sensors/><params)" +
+                     many_attributes(100'000, "${a99999}") + "/></lua_controller></controllers>";
+  const auto begin = std::chrono::steady_clock::now();
+  const auto result = text.read();
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  ASSERT_TRUE(result.ok()) << all_problems(result);
+  EXPECT_EQ(result.scene.controllers[0].params.size(), 100'000u);
+  EXPECT_EQ(result.scene.controllers[0].params[7].second, "1");
+  EXPECT_LT(taken.count(), 10) << "a minute where each is compared with all";
+}
+
+TEST(Parameters, OfOneElementAre100000AtMost) {
+  SceneText text;
+  text.rest = "<parameters" + many_attributes(100'001, "1") + "/>\n";
+  EXPECT_EQ(only_fault(text.read()), "test.argos:7:1: <parameters> has more than 100000 attributes; write fewer");
 }
 
 }  // namespace

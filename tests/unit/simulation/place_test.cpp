@@ -22,6 +22,15 @@ scene::Scene full(const std::string& max_trials) {
   return text.read();
 }
 
+/// Ten boxes in a row.
+scene::Scene free_of_overlaps() {
+  SmallScene text;
+  text.arena = R"(<distribute><position method="grid" center="0,0,9" distances="1,1,1" layout="10,1,1"/>)"
+               R"(<orientation method="constant" values="0,0,0"/><entity quantity="10" max_trials="1">)"
+               R"(<box id="b" size=".1,.1,.1" movable="false"/></entity></distribute>)";
+  return text.read();
+}
+
 std::string fault_of(const scene::Scene& scene, Patience patience) {
   try {
     place(scene, 1, {}, patience);
@@ -49,6 +58,13 @@ TEST(Place, GivesUpWhenFailingTakesTooMuch) {
   EXPECT_NE(fault.find("no free place for 'b0' in 100 attempts, each so long that a scene has no more, after 0 of 2"), std::string::npos)
       << fault;
   EXPECT_NE(fault.find("widen the range or place fewer"), std::string::npos) << fault;
+}
+
+TEST(Place, GivesUpWhenSucceedingTakesTooMuch) {
+  const scene::Scene sound = free_of_overlaps();
+  EXPECT_EQ(fault_of(sound, {}), "");
+  const std::string fault = fault_of(sound, {1000, 1600, 20});
+  EXPECT_NE(fault.find("<distribute>: it takes too long to find places, after 4 of 10 were found"), std::string::npos) << fault;
 }
 
 TEST(Place, TellsHowFarItIsWhileItTries) {
