@@ -5,6 +5,7 @@
 #include <span>
 
 #include "scene/draft.h"
+#include "scene/memory.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -192,6 +193,7 @@ void read_mounted(const Enabling& e, std::string_view name, std::vector<Device>&
         {fmt::format("{} {}", name, in_quotes(device.id)), device.anchor, element.where("anchor")});
     read(element, device);
     element.done();
+    e.devices.mounted_memory += memory_of_mounted(device.id);
     devices.push_back(std::move(device));
   }
   if (devices.empty()) {

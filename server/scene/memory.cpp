@@ -16,7 +16,7 @@ constexpr std::size_t of_entity = 2000, of_link = 2000, of_joint = 600, of_corne
 constexpr std::size_t of_led = 350, of_directional_led = 450, of_tag = 550, of_radio = 400, of_magnet = 1100;
 constexpr std::size_t of_proximity = 250, of_range_and_bearing = 1000, of_param = 200;
 constexpr std::size_t of_ancestor = 20;  // of a link, that moves by a joint of its own
-constexpr std::size_t of_joint_use = 300, of_camera = 600, of_imu = 500, of_contact_sensor = 300;
+constexpr std::size_t of_joint_use = 300, of_camera = 600, of_mounted = 500;
 constexpr std::size_t copies_of_text = 4;
 
 std::size_t memory_of_text(const std::string& text) { return copies_of_text * text.size(); }
@@ -75,9 +75,10 @@ std::size_t memory_of(const Params& params) {
   return sum;
 }
 
+std::size_t memory_of_mounted(const std::string& id) { return of_mounted + memory_of_text(id); }
+
 std::size_t memory_of(const ControllerDevices& devices) {
-  std::size_t sum = of_joint_use * (devices.joints.actuators.size() + devices.joints.sensors.size()) +
-                    memory_of_each(devices.imus, of_imu) + memory_of_each(devices.contact_sensors, of_contact_sensor);
+  std::size_t sum = of_joint_use * (devices.joints.actuators.size() + devices.joints.sensors.size()) + devices.mounted_memory;
   if (!devices.cameras) return sum;
   for (const Camera& camera : devices.cameras->cameras) sum += memory_of(camera);
   return sum;
