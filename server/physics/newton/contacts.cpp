@@ -346,7 +346,8 @@ void Contacts::emit(const Pair& pair) {
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
   const dynamics::Contact law = law_of(a, b, pair.normal, pair.count);
-  dynamics::fetch(contacts_.data() + contacts_.size() + ahead, pair.count * sizeof(dynamics::Contact));
+  const std::size_t count = static_cast<std::size_t>(pair.count), next = contacts_.size() + ahead;
+  if (next + count <= contacts_.capacity()) dynamics::fetch(contacts_.data() + next, count * sizeof(dynamics::Contact));
   for (int i = 0; i < pair.count; ++i) {
     dynamics::Contact& contact = contacts_.emplace_back(law);
     contact.point = pair.points[i].point;
