@@ -126,7 +126,7 @@ TEST(NewtonRebound, FlatOnWhatCarriesAnotherDoesNotTurn) {
         falling.links[0].surface.restitution = 0.8;
         world.add(falling);
         for (int i = 0; i < std::floor(0.25 * hz) + 1; ++i) world.step();
-        const world::LinkState& link = state_of(world).links.back();
+        const world::LinkState link = state_of(world).links.back();
         EXPECT_NEAR(link.velocity.z(), 0.8 * earth * time - (1 - phase) * earth / hz, 1e-3) << hz << ' ' << phase << ' ' << cylinder;
         EXPECT_LT(link.angular_velocity.norm(), 1e-3) << hz << ' ' << phase << ' ' << cylinder;
       }
@@ -185,7 +185,7 @@ TEST(NewtonRebound, AfterAPushOfOneSubstep) {
       const world::Push push{1, Vector3(0.5 * hz, 0.3 * hz, 0), Vector3::Zero()};
       set_pushes(world, std::span(&push, 1));
       world.step();
-      const world::LinkState& link = state_of(world).links.back();
+      const world::LinkState link = state_of(world).links.back();
       EXPECT_NEAR(link.velocity.x(), -2.5, 1e-6) << hz << ' ' << gap;
       EXPECT_NEAR(link.velocity.y(), 3, 1e-6) << hz << ' ' << gap;
     }
