@@ -9,7 +9,7 @@ namespace ziggurat::dynamics {
 
 inline void fetch(const void* memory, std::size_t bytes) {
   constexpr std::size_t line = 64;  // of the cache [bytes]
-  if (bytes == 0) return;
+  if (!memory || bytes == 0) return;
   const char* const first = static_cast<const char*>(memory);
   for (std::size_t at = 0; at < bytes; at += line) __builtin_prefetch(first + at);
   __builtin_prefetch(first + bytes - 1);  // it need not begin where a line does
