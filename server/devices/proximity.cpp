@@ -152,7 +152,7 @@ class Proximity final : public Kind {
   std::vector<Sensor> sensors_;         // parallel to Layout::proximity
   std::vector<Robot> robots_;           // that have sensors
   std::vector<Segment> segments_;       // of the robot under way
-  physics::Candidates candidates_;  // of these
+  physics::Candidates candidates_;      // of these
 };
 
 }  // namespace

@@ -8,7 +8,8 @@ namespace ziggurat::dynamics {
 /// Solves an island's problem, all of whose blocks are there, for its velocities. Contacts with restitution seek the speeds with
 /// which they rebound.
 ///
-/// What carries a body still does in the impact; what nothing carries falls freely before and after it, and is pushed before it. Limits hold at
+/// What carries a body still does in the impact; what nothing carries falls freely before and after it. A push that
+/// is small beside its speed acts likewise, a larger one before it. Limits hold at
 /// the bound that the speeds pass.
 Outcome solve_velocities(Problem& problem, Solver& solver);
 

@@ -105,10 +105,11 @@ bool is_crossed(const Problem& problem, const Block& block, double allowed) {
     if (place < 0 || !problem.trees[place]->free_root) return Vector3::Zero();
     return problem.trees[place]->gravity;
   };
+  const double pull = block.frame.col(0).dot(fall(block.a) - fall(block.b));
+  if (pull <= 0) return false;  // as for all that lies on something
   double u[Block::most_rows];
   problem.speeds(block, u);
-  const double pull = block.frame.col(0).dot(fall(block.a) - fall(block.b));
-  return pull > 0 && block.gap + problem.length * (u[0] - problem.length / 2 * pull) < -allowed;
+  return block.gap + problem.length * (u[0] - problem.length / 2 * pull) < -allowed;
 }
 
 /// Notes which trees of an island nothing but motors of joints acts on: what they come near does not hold them.

@@ -360,7 +360,7 @@ void Problem::harden() {
 bool Problem::turn_into_displacement() {
   const auto bounces = [&](const Block& block) { return rebounded(block); };
   const auto needs_it = [&](const Block& block) {
-    const bool overlaps = block.kind != Block::Source::servo && block.gap < -allowed_overlap;
+    const bool overlaps = block.kind != Block::Source::servo && block.law != Block::Law::off && block.gap < -allowed_overlap;
     return overlaps || bounces(block);
   };
   if (std::none_of(blocks.begin(), blocks.end(), needs_it)) return false;
@@ -369,6 +369,7 @@ bool Problem::turn_into_displacement() {
     return rebounding && (block.kind == Block::Source::servo ? block.is_obeyed() : block.impulse[0] > 0);
   };
   for (Block& block : blocks) {
+    if (block.law == Block::Law::off) continue;
     if (block.kind == Block::Source::servo && !holds(block)) {
       block.law = Block::Law::off;
       block.impulse.fill(0);  // sweeps begin with what all impulses do

@@ -25,8 +25,9 @@ double push(const Problem& problem, Workspace& work, std::vector<double>& start,
     const int n = tree.dofs;
     work.scratch.resize(n);
     external_forces(tree, work, work.scratch, true, false);
-    const Eigen::VectorXd impulse = problem.length * Eigen::Map<const Eigen::VectorXd>(work.scratch.data(), n);
-    if (impulse.isZero(0)) continue;
+    const Eigen::Map<const Eigen::VectorXd> force(work.scratch.data(), n);
+    if (force.isZero(0)) continue;
+    const Eigen::VectorXd impulse = problem.length * force;
     const Eigen::MatrixXd mass = Eigen::Map<const Eigen::MatrixXd>(problem.mass_of(i), n, n);
     Eigen::Map<Eigen::VectorXd> before(start.data() + problem.offset[i], n), faster(change.data() + problem.offset[i], n);
     faster = mass.llt().solve(impulse);

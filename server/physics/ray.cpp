@@ -311,6 +311,7 @@ std::optional<RayHit> Rays::cast(const RayQuery& query) const {
   return flight.end();
 }
 
+/// Goes through the tree itself, because Bullet's search cannot end when there are too many.
 void Rays::find(const Vector3& low, const Vector3& high, std::span<const std::size_t> ignored,
                 Candidates& out) const {
   constexpr std::size_t few = 32;

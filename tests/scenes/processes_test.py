@@ -18,6 +18,15 @@ ENDLESS = ("--duration", "0")
 OTHER_USER = 54321  # has no processes
 
 
+STUCK_IN_LIBRARY = """function init() end
+function step()
+   if robot.id == "r1" then
+      return (("a"):rep(1000000)):find(".-.-b")
+   end
+end
+"""
+
+
 class Killed(SceneTest):
     def assert_reports_the_kill(self, outcome, robots):
         self.assertEqual(outcome.code, CONTROLLER_FAILED, outcome.err)
@@ -189,23 +198,11 @@ end
         self.expect_waiting_for_line_4()
 
     def test_a_stuck_library_function_is_named_with_file_and_line(self):
-        self.write("swing.lua", """function init() end
-function step()
-   if robot.id == "r1" then
-      return (("a"):rep(1000000)):find(".-.-b")
-   end
-end
-""")
+        self.write("swing.lua", STUCK_IN_LIBRARY)
         self.expect_waiting_for_line_4()
 
     def test_the_end_of_a_process_names_the_script_that_ran(self):
-        self.write("swing.lua", """function init() end
-function step()
-   if robot.id == "r1" then
-      return (("a"):rep(1000000)):find(".-.-b")
-   end
-end
-""")
+        self.write("swing.lua", STUCK_IN_LIBRARY)
         summary = self.folder / "s.json"
         outcome = self.run_scene("--lua-processes", 1, "--summary", summary, code=CONTROLLER_FAILED)
         sentence = r"ended with exit code 3 at tick 1; it controlled robots r0, r1, r2; it ran the script of r1: .*swing\.lua:4$"

@@ -113,15 +113,19 @@ TEST(Session, AResumedOneBeginsWithWhatWasCommanded) {
   EXPECT_FALSE(session.next());
 }
 
+v1::ServerMessage warning(v1::Error::Code code) {
+  v1::ServerMessage message;
+  message.mutable_error()->set_code(code);
+  message.mutable_error()->set_severity(v1::Error::WARNING);
+  return message;
+}
+
 TEST(Session, IsToldOfRobotsThatWereRemovedOrTakenOver) {
   FakeServer server([](FakeServer& self) {
     self.welcome();
     for (const char* id : {"b", "of another client"}) {
-      v1::ServerMessage message;
-      v1::Error& error = *message.mutable_error();
-      error.set_code(v1::Error::NOT_YOURS);
-      error.set_severity(v1::Error::WARNING);
-      error.set_robot(id);
+      v1::ServerMessage message = warning(v1::Error::NOT_YOURS);
+      message.mutable_error()->set_robot(id);
       self.send(message);
     }
     self.observe(4, {0, 0, 0, 0});
@@ -139,11 +143,8 @@ TEST(Session, IsToldOfRobotsThatWereRemovedOrTakenOver) {
 TEST(Session, IsToldOfDroppedAndSpawnedRobots) {
   FakeServer server([](FakeServer& self) {
     self.welcome();
-    v1::ServerMessage message;
-    v1::Error& error = *message.mutable_error();
-    error.set_code(v1::Error::ROBOTS_DROPPED);
-    error.set_severity(v1::Error::WARNING);
-    error.mutable_dropped()->add_robots(1);
+    v1::ServerMessage message = warning(v1::Error::ROBOTS_DROPPED);
+    message.mutable_error()->mutable_dropped()->add_robots(1);
     self.send(message);
     message.mutable_robot_spawned()->set_robot("c");
     message.mutable_robot_spawned()->set_controller("swarm");

@@ -327,5 +327,19 @@ TEST(NewtonPress, StopsAtAWallThatIsNearlyAlongItsWay) {
   }
 }
 
+// What overlaps across the ways of both is not undone, and holds neither.
+TEST(NewtonPress, TwoSlidesThatOverlapAcrossTheirWaysMove) {
+  World world(newton(), 0.01);
+  for (const double side : {-1.0, 1.0}) {
+    scene::Entity slide = prototype("slide", at(0, side * 1.0, 0), false, {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1), link("head", scene::Box{{0.1, 0.1, 0.1}}, 1)});
+    slide.joints.push_back(joint(scene::JointType::prismatic, Vector3::UnitZ(), at(0, -side * 0.951, 0), {}));
+    world.add(with_friction(slide, 1));
+  }
+  world.add_motor(world.joint(1, 0), scene::JointMode::velocity, 1);
+  run(world, 0.5, 0.01);
+  EXPECT_NEAR(world.position(world.joint(0, 0)), -earth * 0.25 / 2, 0.02);
+  EXPECT_NEAR(world.position(world.joint(1, 0)), 0, 1e-6);
+}
+
 }  // namespace
 }  // namespace ziggurat::physics
