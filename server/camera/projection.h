@@ -29,7 +29,7 @@ std::array<math::Vector3, 8> frustum(const world::CameraLayout& camera, const ma
 
 /// A box along the world's axes [m], with its surface.
 struct Bounds {
-  math::Vector3 low, high;
+  math::Vector3 low = math::Vector3::Zero(), high = math::Vector3::Zero();
 };
 
 /// The box that holds all points that in_view() can accept.

@@ -64,7 +64,7 @@ class ShapedMagnets {
     const Kernel& kernel;
     const Row& first_moment;
     const Row& second_moment;
-    Vector3 separation;  // first minus second centre
+    Vector3 separation = Vector3::Zero();  // first minus second centre
   };
 
   void add_class(const Shape& shape);

@@ -10,9 +10,9 @@ namespace ziggurat::magnetism {
 /// A shape with its moment somewhere in the world.
 struct PlacedShape {
   const Shape* shape;
-  Vector3 position;          ///< of the centre [m]
-  Eigen::Matrix3d rotation;  ///< from the shape's axes to the world
-  Vector3 moment;            ///< in the world [A m^2]
+  Vector3 position = Vector3::Zero();                      ///< of the centre [m]
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< from the shape's axes to the world
+  Vector3 moment = Vector3::Zero();                        ///< in the world [A m^2]
 };
 
 /// @param first, second  at least one box or cylinder

@@ -16,7 +16,7 @@ struct Sphere {
 };
 
 struct Box {
-  Vector3 size;  ///< full edge lengths, > 0 [m]
+  Vector3 size = Vector3::Zero();  ///< full edge lengths, > 0 [m]
 };
 
 struct Cylinder {

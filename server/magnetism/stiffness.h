@@ -11,10 +11,10 @@ namespace ziggurat::magnetism {
 
 /// A body that may be bonded to another of its kind, face to face.
 struct BondedBody {
-  Vector3 half_extents;  ///< of the collision box around the body's origin [m]
-  Vector3 offset;        ///< of the box's centre from the body's origin [m]
-  double mass;           ///< > 0 [kg]
-  Vector3 inertia;       ///< principal, along the body's axes, > 0 [kg m^2]
+  Vector3 half_extents = Vector3::Zero();  ///< of the collision box around the body's origin [m]
+  Vector3 offset = Vector3::Zero();        ///< of the box's centre from the body's origin [m]
+  double mass;                             ///< > 0 [kg]
+  Vector3 inertia = Vector3::Zero();       ///< principal, along the body's axes, > 0 [kg m^2]
 };
 
 struct Bond {

@@ -37,7 +37,7 @@ class SpatialIndex {
   using Cell = std::array<std::int64_t, 3>;
 
   struct Item {
-    math::Vector3 point;
+    math::Vector3 point = math::Vector3::Zero();
     std::uint32_t index;
   };
 

@@ -12,10 +12,10 @@ namespace ziggurat::physics {
 class Pushes final : public Plugin {
  public:
   struct Push {
-    std::size_t entity = 0;  ///< in order of adding
-    std::size_t link = 0;    ///< into Body::links
-    math::Vector3 force;     ///< at the link's centre of mass, in W [N]
-    math::Vector3 torque;    ///< in W [N m]
+    std::size_t entity = 0;                        ///< in order of adding
+    std::size_t link = 0;                          ///< into Body::links
+    math::Vector3 force = math::Vector3::Zero();   ///< at the link's centre of mass, in W [N]
+    math::Vector3 torque = math::Vector3::Zero();  ///< in W [N m]
   };
 
   /// Those of the substeps from the next one on.

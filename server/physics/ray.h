@@ -20,7 +20,7 @@ struct RayHit {
 
 /// A segment in W, and what it does not see.
 struct RayQuery {
-  math::Vector3 start, end;              ///< [m]
+  math::Vector3 start = math::Vector3::Zero(), end = math::Vector3::Zero();  ///< [m]
   std::span<const std::size_t> ignored;  ///< entities that it passes through
   bool sees_floor = false;
 };

@@ -24,10 +24,10 @@ struct Layers {
 /// A pinhole camera. A point (X, Y, Z) of its frame, Z > 0, is at u = fx X / Z + cx,
 /// v = fy Y / Z + cy; (0, 0) is the top left corner of the picture, not the centre of a pixel.
 struct View {
-  math::Pose camera;               ///< X_WC: +z forward, +x right, +y down in the picture
-  math::Vector2 focal_length;      ///< fx, fy [px], > 0
-  math::Vector2 principal_point;   ///< cx, cy [px]
-  unsigned width = 0, height = 0;  ///< [px], > 0
+  math::Pose camera;  ///< X_WC: +z forward, +x right, +y down in the picture
+  math::Vector2 focal_length = math::Vector2::Zero();     ///< fx, fy [px], > 0
+  math::Vector2 principal_point = math::Vector2::Zero();  ///< cx, cy [px]
+  unsigned width = 0, height = 0;                         ///< [px], > 0
   /// Each pixel is the mean of so many by so many rendered ones, >= 1. Each of these has four
   /// samples for the outlines of things in any case, and tags have more.
   unsigned oversampling = 2;

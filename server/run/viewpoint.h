@@ -23,7 +23,7 @@ struct ViewOptions {
 
 /// A box along the world's axes.
 struct Extent {
-  math::Vector3 low, high;  ///< [m]
+  math::Vector3 low = math::Vector3::Zero(), high = math::Vector3::Zero();  ///< [m]
 };
 
 /// The arena. If the scene has a floor: from the floor up to the highest point of any link.

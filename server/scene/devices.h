@@ -27,8 +27,8 @@ struct Color {
 struct Led {
   std::string id;
   Anchor anchor;
-  math::Vector3 offset;  ///< in the anchor frame [m]
-  Color color;           ///< black is off
+  math::Vector3 offset = math::Vector3::Zero();  ///< in the anchor frame [m]
+  Color color;                                   ///< black is off
   Location where;
 };
 
@@ -54,8 +54,8 @@ struct Tag {
 struct Radio {
   std::string id;
   Anchor anchor;
-  math::Vector3 position;  ///< in the anchor frame [m]
-  double range;            ///< of sending [m]
+  math::Vector3 position = math::Vector3::Zero();  ///< in the anchor frame [m]
+  double range;                                    ///< of sending [m]
   Location where;
 };
 
@@ -71,7 +71,7 @@ struct MagnetShape {
 struct Magnet {
   std::string id;
   Anchor anchor;
-  math::Vector3 offset;                                 ///< in the anchor frame [m]
+  math::Vector3 offset = math::Vector3::Zero();         ///< in the anchor frame [m]
   math::Vector3 passive_field = math::Vector3::Zero();  ///< the dialect's unit (docs/magnetism.md)
   math::Vector3 active_field = math::Vector3::Zero();   ///< added per unit of current
   Location where;
@@ -92,11 +92,11 @@ struct Response {
 
 struct ProximitySensor {
   Anchor anchor;
-  math::Vector3 offset;              ///< start of the ray in the anchor frame [m]
-  math::Vector3 direction;           ///< unit, in the anchor frame
-  double range;                      ///< length of the ray [m]
-  std::optional<bool> sees_floor;    ///< none: that of the controller's sensor
-  std::optional<Response> response;  ///< none: that of the controller's sensor
+  math::Vector3 offset = math::Vector3::Zero();     ///< start of the ray in the anchor frame [m]
+  math::Vector3 direction = math::Vector3::Zero();  ///< unit, in the anchor frame
+  double range;                                     ///< length of the ray [m]
+  std::optional<bool> sees_floor;                   ///< none: that of the controller's sensor
+  std::optional<Response> response;                 ///< none: that of the controller's sensor
   Location where;
 };
 
@@ -165,13 +165,13 @@ struct Detector {
 
 struct Camera {
   std::string id;
-  std::string anchor;                    ///< resolved against each entity that uses the controller
-  math::Pose pose;                       ///< in the anchor frame; +z forward, +x right, +y down
-  double near = 0, far = 0;              ///< range along the optical axis [m]
-  math::Vector2 focal_length;            ///< fx, fy [px]
-  math::Vector2 principal_point;         ///< cx, cy [px]
-  std::array<unsigned, 2> resolution{};  ///< width, height [px]
-  bool image = false;                    ///< it takes a picture at every tick
+  std::string anchor;        ///< resolved against each entity that uses the controller
+  math::Pose pose;           ///< in the anchor frame; +z forward, +x right, +y down
+  double near = 0, far = 0;  ///< range along the optical axis [m]
+  math::Vector2 focal_length = math::Vector2::Zero();     ///< fx, fy [px]
+  math::Vector2 principal_point = math::Vector2::Zero();  ///< cx, cy [px]
+  std::array<unsigned, 2> resolution{};                   ///< width, height [px]
+  bool image = false;                                     ///< it takes a picture at every tick
   std::vector<Detector> detectors;
   Location where;
 };
@@ -277,7 +277,8 @@ struct ControllerDevices {
   std::optional<CamerasUse> cameras;
   std::vector<Imu> imus;
   std::vector<ContactSensor> contact_sensors;
-  std::size_t mounted_memory = 0;  ///< about what those that are fixed to an anchor take in each robot [bytes]
+  std::size_t mounted_memory =
+      0;  ///< about what those that are fixed to an anchor take in each robot [bytes]
 };
 
 }  // namespace ziggurat::scene

@@ -17,7 +17,7 @@
 namespace ziggurat::scene {
 
 struct Box {
-  math::Vector3 size;  ///< full extents along x, y, z [m]
+  math::Vector3 size = math::Vector3::Zero();  ///< full extents along x, y, z [m]
 };
 struct Cylinder {
   double radius;  ///< [m]
@@ -35,8 +35,8 @@ struct Capsule {
 /// A convex solid with flat faces, in the link's frame, and its mass properties.
 struct Polyhedron {
   struct Face {
-    math::Vector3 normal;              ///< unit, outwards
-    double offset;                     ///< normal . x of its points [m]
+    math::Vector3 normal = math::Vector3::Zero();  ///< unit, outwards
+    double offset;                                 ///< normal . x of its points [m]
     std::vector<std::size_t> corners;  ///< into `vertices`, counterclockwise seen from outside
   };
   std::vector<math::Vector3> vertices;  ///< [m]
@@ -56,7 +56,7 @@ using Geometry = std::variant<Box, Cylinder, Sphere, Capsule, Hull>;
 
 /// The box about a shape, along the axes of its frame [m].
 struct Bounds {
-  math::Vector3 low, high;
+  math::Vector3 low = math::Vector3::Zero(), high = math::Vector3::Zero();
   math::Vector3 size() const { return high - low; }
   math::Vector3 center() const { return (low + high) / 2; }
 };

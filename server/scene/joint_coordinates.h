@@ -13,9 +13,9 @@ double position_of(const Joint& joint, const math::Pose& parent, const math::Pos
 
 /// Of a link's frame.
 struct LinkMotion {
-  math::Pose pose;                 ///< X_WL
-  math::Vector3 velocity;          ///< of the frame's origin, in W [m/s]
-  math::Vector3 angular_velocity;  ///< in W [rad/s]
+  math::Pose pose;                                         ///< X_WL
+  math::Vector3 velocity = math::Vector3::Zero();          ///< of the frame's origin, in W [m/s]
+  math::Vector3 angular_velocity = math::Vector3::Zero();  ///< in W [rad/s]
 };
 
 /// The rate of position_of(). @return [m/s] or [rad/s]; 0 of fixed and spherical joints

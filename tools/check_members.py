@@ -1,0 +1,44 @@
+#!/usr/bin/env python3
+"""Checks that vectors, quaternions and matrices in our headers have an initial value.
+
+usage: check_members.py [ROOT]     ROOT is the top of the checkout (default: this file's)
+
+Eigen leaves them as memory was: an entity that code builds and fills in part would differ from run to
+run. A local one that the next line fills with << is left out. Each member without an initial value is
+printed as file:line: text; the exit code is 1 if there is any.
+"""
+
+import pathlib
+import re
+import sys
+
+MEMBER = re.compile(r"\s+(?:math::|Eigen::)?(Vector\d|Quaternion|Matrix\d|Vector\dd|Quaterniond|Matrix\dd)"
+                    r"\s+\w+(, \w+)*;")
+
+
+def check(root):
+    """All members without an initial value under root, as file:line: text."""
+    found = []
+    for top in ("server", "clients/cpp", "protocol"):
+        for path in sorted((root / top).rglob("*.h")):
+            lines = path.read_text(encoding="utf-8").splitlines()
+            for number, (line, after) in enumerate(zip(lines, lines[1:] + [""]), 1):
+                if MEMBER.match(line) and "<<" not in after:
+                    found.append(f"{path.relative_to(root)}:{number}: give '{line.strip()}' an initial value: "
+                                 "= …::Zero() or = …::Identity()")
+    return found
+
+
+def main():
+    arguments = sys.argv[1:]
+    if len(arguments) > 1 or arguments[:1] in (["-h"], ["--help"]):
+        print(__doc__)
+        return 0 if len(arguments) == 1 else 1
+    root = pathlib.Path(arguments[0]) if arguments else pathlib.Path(__file__).resolve().parents[1]
+    found = check(root.resolve())
+    print("\n".join(found) or "every vector, quaternion and matrix of a header has an initial value")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
