@@ -70,6 +70,12 @@ std::vector<std::string> lost_directors(const std::vector<network::DirectorStatu
   return lost;
 }
 
+/// Whether a place names a line, `FILE:LINE`.
+bool has_line(const std::string& place) {
+  const auto colon = place.rfind(':');
+  return colon != std::string::npos && place.find_first_not_of("0123456789", colon + 1) == std::string::npos;
+}
+
 /// "director 'judge'", for each that the tick waits for.
 std::vector<std::string> awaited_of(const std::vector<network::DirectorStatus>& directors) {
   std::vector<std::string> names;
@@ -346,13 +352,16 @@ std::vector<std::size_t> Watch::awaited_robots() const {
 
 // "r3: aggregate.lua:41, r7: lift.lua:12"
 /// @param robots  awaited; those whose process runs the script of a robot are taken out
-std::string Watch::busy_scripts(std::vector<std::size_t>& robots) const {
+/// @param detail  out: of the text
+std::string Watch::busy_scripts(std::vector<std::size_t>& robots, Detail& detail) const {
   std::string text, last;
+  detail = Detail::robots;
   std::erase_if(robots, [&](std::size_t robot) {
     const auto script = controllers_.busy_script(robot);
     if (!script || script->place.empty()) return false;
     if (script->robot == last) return true;  // of the same process
     last = script->robot;
+    detail = std::max(detail, has_line(script->place) ? Detail::lines : Detail::scripts);
     text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", script->robot, script->place);
     return true;
   });
@@ -365,9 +374,10 @@ void Watch::report_awaited() {
   const auto waited = clock::now() - waiting_since_;
   const auto robots = awaited_robots();
   const auto directors = awaited_of(directors_.status());
+  Detail detail = Detail::robots;
   const auto awaited = [&] {
     auto others = robots;
-    const auto busy = busy_scripts(others);
+    const auto busy = busy_scripts(others, detail);
     auto rest = by_controller(world_, others);
     if (!directors.empty()) {
       rest += fmt::format("{}{}", rest.empty() ? "" : ", ", fmt::join(directors, ", "));
@@ -383,16 +393,14 @@ void Watch::report_awaited() {
                           [&](const auto& id) { return !controllers_.have_director(id); });
   if (!client_must_connect && waited < long_wait) return;
   auto text = by_controller(world_, robots) + fmt::format("{}", fmt::join(directors, ", "));
-  auto others = robots;
-  const bool names_script = !busy_scripts(others).empty();
-  const bool is_printed = text == printed_ && (printed_script_ || !names_script);
-  if (text.empty() || is_printed) return;
+  const auto all = awaited();
+  if (text.empty() || (text == printed_ && detail <= printed_detail_)) return;
   const auto where = client_must_connect
                          ? fmt::format(" to connect to {}", fmt::join(server_.endpoints(), " or "))
                          : std::string();
-  console_.notice(fmt::format("waiting for {}{}", awaited(), where));
+  console_.notice(fmt::format("waiting for {}{}", all, where));
   printed_ = std::move(text);
-  printed_script_ = names_script;
+  printed_detail_ = detail;
 }
 
 void Watch::end_run(const wire::End& end) {

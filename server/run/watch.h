@@ -88,12 +88,15 @@ class Watch {
   std::optional<reports::Ending> lost_controller();
   bool may_restart(const processes::ControllerProcess& process) const;
   bool restart(const processes::ControllerProcess& ended);
+  /// What a notice on awaited robots names: more is printed once it is known.
+  enum class Detail { robots, scripts, lines };
+
   void serve();
   void take_report();
   bool is_required(const network::RobotStatus& robot) const;
   std::vector<std::size_t> unheld_robots() const;
   std::vector<std::size_t> awaited_robots() const;
-  std::string busy_scripts(std::vector<std::size_t>& robots) const;
+  std::string busy_scripts(std::vector<std::size_t>& robots, Detail& detail) const;
   void report_awaited();
 
   const supervision::World& world_;
@@ -122,7 +125,7 @@ class Watch {
   std::optional<clock::time_point> missed_since_;  ///< since when a controller seems to be lost
   clock::time_point waiting_since_{};
   std::string printed_;  ///< the robots that were last printed as awaited
-  bool printed_script_ = false;  ///< with the script that they wait for
+  Detail printed_detail_ = Detail::robots;
 };
 
 }  // namespace ziggurat::run
