@@ -138,6 +138,20 @@ Parsed parse(const Arguments& arguments, const po::options_description& known) {
   return parsed;
 }
 
+void check_needs(const Values& values, std::initializer_list<const char*> options, const char* other) {
+  for (const char* option : options) {
+    if (!values.has(option) || values.has(other)) continue;
+    throw text::UsageError(fmt::format("--{0} has no effect without --{1}; write --{1} too, or leave it out", option, other));
+  }
+}
+
+void check_apart(const Values& values, const char* other, std::initializer_list<const char*> options) {
+  for (const char* option : options) {
+    if (!values.has(option) || !values.has(other)) continue;
+    throw text::UsageError(fmt::format("--{} has no effect with --{}; leave out one of them", option, other));
+  }
+}
+
 const std::string& only_recording(std::string_view command,
                                   const std::vector<std::string>& positional) {
   if (positional.size() == 1) return positional.front();

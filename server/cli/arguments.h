@@ -3,6 +3,7 @@
 
 #include <boost/program_options/options_description.hpp>
 #include <boost/program_options/variables_map.hpp>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,11 @@ class Values {
 /// Options may stand anywhere, `--` ends them, abbreviations are not guessed. All values are
 /// taken as text. @throws text::UsageError
 Parsed parse(const Arguments& arguments, const boost::program_options::options_description& known);
+
+/// Refuses options that have no effect without another one. @throws text::UsageError
+void check_needs(const Values& values, std::initializer_list<const char*> options, const char* other);
+/// Refuses options that have no effect beside another one. @throws text::UsageError
+void check_apart(const Values& values, const char* other, std::initializer_list<const char*> options);
 
 /// The one recording that a command is for. @throws text::UsageError if there is none or more
 const std::string& only_recording(std::string_view command,

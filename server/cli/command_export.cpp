@@ -122,6 +122,7 @@ int execute_export(const Arguments& arguments) {
   const replay::RecordingFile file(only_recording("export", parsed.positional));
   reports::Console console({parsed.values.count("quiet") > 0, false});
   if (const auto missing = file.shortcoming(); !missing.empty()) console.warning(missing);
+  check_needs(Values(parsed.values), {"topics"}, "jsonl");
   Order order{file, {}, {}};
   if (parsed.values.count("topics")) {
     order.topics = parsed.values["topics"].as<std::vector<std::string>>();

@@ -125,6 +125,7 @@ std::optional<run::PictureOptions> to_pictures(const po::variables_map& values) 
     }
     return std::nullopt;
   }
+  check_needs(Values(values), {"at"}, "out");
   if (values.count("at")) pictures.times = to_times(text("at"));
   if (values.count("follow")) pictures.view.follow = text("follow");
   if (values.count("follow") && values.count("look-at")) {

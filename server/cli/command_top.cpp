@@ -58,6 +58,7 @@ int execute_top(const Arguments& arguments, processes::Signals& signals) {
   std::vector<std::string> words = parsed.positional;
   const std::string endpoint = take_endpoint(words);
   if (!words.empty()) throw text::UsageError("write: ziggurat top [URL]");
+  check_apart(Values(parsed.values), "once", {"interval"});
   const bool once = parsed.values.count("once") > 0;
   const bool json = parsed.values.count("json") > 0;
   double interval = 1;

@@ -63,7 +63,10 @@ Exit codes: 0 identical; 5 differs; 6 damaged; 3 a controller failed or ended; 1
 
 int execute_verify(const Arguments& arguments, processes::Signals& signals) {
   const Parsed parsed = parse(arguments, verify_options());
-  if (parsed.values.count("controllers")) return rehearse(parsed, arguments, signals);
+  const Values values(parsed.values);
+  check_needs(values, {"controller", "trust-recorded-commands"}, "controllers");
+  check_apart(values, "controllers", {"json"});
+  if (values.has("controllers")) return rehearse(parsed, arguments, signals);
   run::ReplayOptions options;
   options.run = parse_options(arguments, verify_options());
   options.recording = only_recording("verify", options.run.scenes);

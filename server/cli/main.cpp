@@ -19,6 +19,7 @@
 #include "reports/console.h"
 #include "run/version.h"
 #include "scene/reader.h"
+#include "text/numbers.h"
 #include "text/shortened.h"
 #include "text/standard_streams.h"
 
@@ -56,8 +57,11 @@ int dispatch(Arguments arguments, std::span<char*> texts, reports::Console& cons
   }
   const std::string name = arguments.front();
   arguments.erase(arguments.begin());
+  if (name == "--version" && !arguments.empty()) {
+    throw text::UsageError(fmt::format("--version takes no '{}'; write: ziggurat --version", arguments.front()));
+  }
   if (name == "--version") return tell_version();
-  if (name == "--help" || name == "-h") return execute_help({});
+  if (name == "--help" || name == "-h") return execute_help(arguments);
   const Command& command = command_named(name);
   if (asks_for_help(arguments)) return execute_help({name});
   return execute(command, arguments, texts);

@@ -144,6 +144,21 @@ void read_outputs(const Values& values, run::Options& options) {
   options.summary = values.text("summary");
 }
 
+/// What an option would do nothing without, and what it would do nothing beside.
+void check_effects(const Values& values, const po::options_description& known, const run::Options& options) {
+  check_apart(values, "without-controllers",
+              {"controller", "script", "restart", "trust-scripts", "trust-recorded-commands", "lua-processes",
+               "lua-memory", "lua-instructions", "lua-time"});
+  const auto is_tcp = [](const std::string& endpoint) { return endpoint.starts_with("tcp://"); };
+  const bool has_address = std::ranges::any_of(options.endpoints, is_tcp) || options.view || !options.metrics.empty();
+  if (!options.insecure || has_address) return;
+  const bool has_endpoint = known.find_nothrow("endpoint", false) != nullptr;
+  throw text::UsageError(fmt::format(
+      "--insecure has no effect: it is for addresses that other machines can reach, and none is given; write {} too, or "
+      "leave it out",
+      has_endpoint ? "--endpoint tcp://HOST:PORT, --view=HOST:PORT or --metrics HOST:PORT" : "--view=HOST:PORT"));
+}
+
 mcap::Compression to_compression(const std::string& value) {
   if (value == "zstd") return mcap::Compression::zstd;
   if (value == "lz4") return mcap::Compression::lz4;
@@ -219,6 +234,7 @@ run::Options parse_options(const Arguments& arguments, const po::options_descrip
   read_network(values, options);
   read_outputs(values, options);
   read_recording(values, options);
+  check_effects(values, known, options);
   options.arguments = without_secrets(arguments);
   return options;
 }

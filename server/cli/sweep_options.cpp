@@ -169,6 +169,7 @@ void complete(SweepOptions& options) {
 }
 
 void read_cluster(const Values& values, SweepOptions& options) {
+  check_apart(values, "kubernetes", {"slurm"});
   options.for_slurm = values.has("slurm");
   options.slurm = {values.text("partition"), values.texts("slurm-option")};
   options.kubernetes_file = values.text("kubernetes");

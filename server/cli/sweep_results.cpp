@@ -228,6 +228,7 @@ int sweep_status(const Arguments& arguments) {
 int sweep_results(const Arguments& arguments) {
   const Parsed parsed = parse(arguments, results_options());
   const Values values(parsed.values);
+  check_apart(values, "runs", {"by", "metric", "confidence", "csv"});
   const Sofar sofar = look("results", parsed);
   sofar.folder.write_csv(sofar.experiment, sofar.results);
   gather(sofar);

@@ -8,6 +8,7 @@
 
 #include "media/devices_index.h"
 #include "world/layout.h"
+#include "world/limits.h"
 #include "world/radio_messages.h"
 #include "world/state.h"
 
@@ -20,6 +21,10 @@ struct RadioLink {
 
 class RadioMedium {
  public:
+  /// @param most  messages that all receive together at a tick. Of more, each sender's last ones are left out, and as
+  ///              many of one are kept as of another: one that sends very many takes nothing from the others
+  explicit RadioMedium(std::size_t most = world::most_received_messages) : most_(most) {}
+
   /// Delivers what was sent. All messages of a tick are known before the first is delivered, so the
   /// result depends neither on the order of `sent` (between radios) nor on that of robots.
   /// @param index     of the poses that the messages leave at
@@ -33,7 +38,10 @@ class RadioMedium {
 
  private:
   void sort(const world::RadioMessages& sent, std::size_t radios);
+  std::size_t find_links(const world::Layout& layout, const DevicesIndex& index);
+  bool sends(std::size_t radio) const { return starts_[radio] != starts_[radio + 1]; }
 
+  std::size_t most_;
   std::vector<std::uint32_t> starts_;  // per radio: its first place in order_; one more at the end
   std::vector<std::uint32_t> order_;   // into sent.entries: by radio, then as sent
   std::vector<std::size_t> places_;    // per receiver: where its next message goes

@@ -1,6 +1,8 @@
 #include "media/range_and_bearing.h"
 
 #include <cmath>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace ziggurat::media {
@@ -20,6 +22,11 @@ const std::vector<Sighting>& RangeAndBearingMedium::sight(const world::Layout& l
       if (to.data.count != from.data.count) continue;
       const double distance = (index.position(index.range_and_bearing, receiver) - place).norm();
       if (!reaches(from.range, distance)) continue;
+      if (by_sender_.size() == most_) {
+        throw std::runtime_error("more than " + std::to_string(most_) + " pairs of the " + std::to_string(devices.size()) +
+                                 " devices of range and bearing reach each other; write a smaller range on "
+                                 "<range_and_bearing>, or fewer robots");
+      }
       by_sender_.push_back({sender, receiver});
       ++places_[receiver];
     }

@@ -7,6 +7,7 @@
 
 #include "media/devices_index.h"
 #include "world/layout.h"
+#include "world/limits.h"
 #include "world/state.h"
 
 namespace ziggurat::media {
@@ -18,10 +19,15 @@ struct Sighting {
 
 class RangeAndBearingMedium {
  public:
+  /// @param most  pairs at a tick: each takes memory
+  explicit RangeAndBearingMedium(std::size_t most = world::most_pairs_in_range) : most_(most) {}
+
   /// All pairs, ascending by receiver, then sender; valid until the next call.
+  /// @throws std::runtime_error if there are too many
   const std::vector<Sighting>& sight(const world::Layout& layout, const DevicesIndex& index);
 
  private:
+  std::size_t most_;
   std::vector<Sighting> by_sender_, by_receiver_;
   std::vector<std::size_t> places_;
   std::vector<std::size_t> found_;

@@ -18,6 +18,11 @@ struct Condition {
 /// Whether it is measured in seconds.
 inline bool is_time(Condition::Subject subject) { return subject < Condition::Subject::misses; }
 
+/// Whether it counts what a deadline makes a miss.
+inline bool is_of_misses(Condition::Subject subject) {
+  return subject == Condition::Subject::misses || subject == Condition::Subject::run;
+}
+
 /// @throws text::UsageError that names the wrong part
 std::vector<Condition> parse_gate(const std::string& text);
 

@@ -18,6 +18,15 @@ double counted(const Condition& condition, std::uint64_t some, std::uint64_t all
   return all > 0 ? static_cast<double>(some) / static_cast<double>(all) : 0;
 }
 
+/// Without any the world waited for every answer.
+bool has_deadlines(const ReportCard& card) {
+  return std::ranges::any_of(card.controllers, [](const ControllerCard& controller) {
+    return std::ranges::any_of(controller.deadlines, [](const scene::DeadlinePolicy& policy) {
+      return policy.action != scene::DeadlineAction::wait;
+    });
+  });
+}
+
 /// The histogram as text. Five bins, a quarter of a decade, make one line.
 std::string bars(const Statistics& statistics) {
   constexpr std::size_t together = 5;
@@ -143,6 +152,7 @@ double measured(const ReportCard& card, const ControllerCard& controller,
 }
 
 bool meets(const ReportCard& card, const ControllerCard& controller, const Condition& condition) {
+  if (is_of_misses(condition.subject) && !has_deadlines(card)) return false;
   return controller.statistics.count() > 0 && measured(card, controller, condition) < condition.limit;
 }
 
@@ -172,6 +182,9 @@ std::string to_text(const std::vector<scene::DeadlinePolicy>& deadlines) {
 
 std::string to_text(const ReportCard& card, const ControllerCard& controller, const Condition& condition) {
   if (controller.statistics.count() == 0) return condition.text + ": no observation counts";
+  if (is_of_misses(condition.subject) && !has_deadlines(card)) {
+    return condition.text + ": no controller had a deadline, so nothing could be missed";
+  }
   const double value = measured(card, controller, condition);
   if (condition.is_share) return fmt::format("{}: {:.3g} %", condition.text, value * 100);
   if (is_time(condition.subject)) return fmt::format("{}: {:.3g} ms", condition.text, value * 1e3);

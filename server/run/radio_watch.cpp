@@ -4,6 +4,8 @@
 
 #include <map>
 
+#include "world/limits.h"
+
 namespace ziggurat::run {
 namespace {
 
@@ -18,6 +20,9 @@ RadioWatch::Radio& RadioWatch::at(std::size_t radio) {
 
 void RadioWatch::tick(const world::Observations& observations, const world::Commands& commands) {
   ++ticks_;
+  const std::uint64_t left_out = observations.radio_messages.left_out;
+  if (left_out > 0 && left_out_ == 0) first_left_out_ = observations.tick;
+  left_out_ += left_out;
   for (const auto& message : observations.radio_messages.entries) {
     at(message.radio).has_received = true;
   }
@@ -30,6 +35,18 @@ void RadioWatch::tick(const world::Observations& observations, const world::Comm
 }
 
 std::string RadioWatch::warning(const world::Layout& layout) const {
+  const std::string left_out = of_left_out(), deaf = of_deaf(layout);
+  return left_out + (left_out.empty() || deaf.empty() ? "" : "; ") + deaf;
+}
+
+std::string RadioWatch::of_left_out() const {
+  if (left_out_ == 0) return {};
+  return fmt::format("from tick {} on, {} radio messages were not received: all radios together receive at most {} at a tick, "
+                     "and of more the last ones of those that send most are left out; send fewer, or write a smaller range",
+                     first_left_out_, left_out_, world::most_received_messages);
+}
+
+std::string RadioWatch::of_deaf(const world::Layout& layout) const {
   if (ticks_ < fewest_ticks) return {};
   std::map<std::size_t, std::size_t> senders;  // by medium
   for (std::size_t r = 0; r < radios_.size() && r < layout.radios.size(); ++r) {

@@ -17,8 +17,8 @@ class RadioWatch {
   /// A tick was answered: what was received at it, and what is sent next.
   void tick(const world::Observations& observations, const world::Commands& commands);
 
-  /// A sentence if there are radios that sent at every tick and so received nothing, while others of
-  /// their medium sent, too; otherwise empty.
+  /// Sentences if there are radios that sent at every tick and so received nothing, while others of
+  /// their medium sent, too, and if there were more messages than all radios may receive; otherwise empty.
   std::string warning(const world::Layout& layout) const;
 
  private:
@@ -28,9 +28,13 @@ class RadioWatch {
     bool has_received = false;
   };
   Radio& at(std::size_t radio);
+  std::string of_left_out() const;
+  std::string of_deaf(const world::Layout& layout) const;
 
   std::vector<Radio> radios_;  // into Layout::radios; may be shorter
   std::uint64_t ticks_ = 0;
+  std::uint64_t left_out_ = 0;         // messages
+  std::uint64_t first_left_out_ = 0;  // tick of the first of them
 };
 
 }  // namespace ziggurat::run

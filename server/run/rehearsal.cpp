@@ -12,6 +12,7 @@
 #include "run/embedded_scripts.h"
 #include "run/recorded_world.h"
 #include "run/setup.h"
+#include "run/until_option.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
@@ -46,6 +47,7 @@ Rehearsal::Rehearsal(const RehearsalOptions& options, processes::Signals& signal
 
 /// The commands of the recording are replaced by the user's own: none of them is left by itself.
 supervision::World Rehearsal::build_world() {
+  if (options_.until) check_until(file_, *options_.until);
   const v1::RunStart& run = file_.run();
   scene::OpenScene opened = replay::read_scene(run, file_.files());
   const auto recorded = [&](const std::string& id) {

@@ -16,6 +16,7 @@
 #include "run/recorded_world.h"
 #include "run/replay_difference.h"
 #include "run/setup.h"
+#include "run/until_option.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
@@ -61,9 +62,10 @@ std::pair<std::uint64_t, std::uint64_t> ticks_of(const replay::RecordingFile& fi
   return ticks;
 }
 
-/// A film of the recording is as long as it is, unless other ends are asked for.
-Options with_ends_of_film(const ReplayOptions& options, const replay::RecordingFile& file,
-                          const scene::Experiment& experiment) {
+/// Before any output is created. A film of the recording is as long as it is, unless other ends are asked for.
+Options checked_outputs(const ReplayOptions& options, const replay::RecordingFile& file,
+                        const scene::Experiment& experiment) {
+  if (options.until) check_until(file, *options.until);
   Options outputs = options.run;
   if (!outputs.pictures || !outputs.pictures->film) return outputs;
   FilmOptions& film = *outputs.pictures->film;
@@ -91,7 +93,7 @@ Replaying::Replaying(const ReplayOptions& options, processes::Signals& signals)
       console_({options.run.quiet, options.run.json}),
       file_(checked(options)),
       world_(build_world(file_)),
-      recorders_(with_ends_of_film(options, file_, world_.scene.experiment), world_),
+      recorders_(checked_outputs(options, file_, world_.scene.experiment), world_),
       states_(file_),
       replay_({world_.scene, world_.additions, world_.simulation, world_.seed},
               file_.files().opener(), [this] { return states_.next(); }),

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <span>
 #include <utility>
 
 #include "processes/scripts.h"
@@ -12,6 +13,7 @@
 #include "run/background.h"
 #include "run/clients_file.h"
 #include "run/files.h"
+#include "run/gate_option.h"
 #include "run/loading.h"
 #include "run/setup.h"
 #include "run/version.h"
@@ -179,6 +181,11 @@ Plan Run::make_plan() const {
 
 network::Config Run::complete_config() {
   add_controllers(options_, world_.scene, config_);
+  const auto& controllers = world_.scene.controllers;
+  const bool may_be_asked = service_ == Service::serve || !options_.endpoints.empty() ||
+                            !std::ranges::all_of(controllers, processes::runs_script);
+  check_gate(options_.gate, {std::span(config_.deadlines).first(controllers.size()), may_be_asked,
+                             plan_.real_time.has_value()});
   if (service_ == Service::run) config_.private_endpoint = "ipc://" + folder_.path() + "/run";
   return config_;
 }

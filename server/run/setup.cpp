@@ -46,6 +46,9 @@ network::Config network_config(const Options& options, bool is_serve, LocalEndpo
   if (options.paused && options.endpoints.empty() && !is_serve && !options.view) {
     throw text::UsageError("--paused needs --endpoint, where a supervisor can connect to resume, or --view");
   }
+  if (!is_serve && !options.curve_secret.empty() && options.endpoints.empty()) {
+    throw text::UsageError("--curve-secret protects endpoints, and none is given; write --endpoint URL too, or leave it out");
+  }
   network::Config config;
   config.insecure = options.insecure;
   config.allows_directors = options.allows_directors;

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <bit>
 #include <cctype>
+#include <charconv>
 #include <cstdint>
 #include <locale>
+#include <optional>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 
 #define TINYOBJLOADER_IMPLEMENTATION
 #define TINYOBJLOADER_USE_DOUBLE
@@ -21,7 +24,37 @@ using math::Vector3;
 using Points = std::vector<Vector3>;
 using Read = std::variant<Points, std::string>;
 
+/// Whether three numbers stand at the beginning.
+bool has_three_numbers(std::string_view text) {
+  for (int i = 0; i < 3; ++i) {
+    text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error == std::errc::invalid_argument) return false;
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  }
+  return true;
+}
+
+/// A line of a vertex that is cut off, or not written as one: its library would take 0 for what is missing.
+std::optional<std::string> fault_of_obj(std::string_view text) {
+  for (std::size_t line = 1; !text.empty(); ++line) {
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    std::string_view words = text.substr(0, end);
+    words.remove_prefix(std::min(words.find_first_not_of(" \t"), words.size()));
+    const bool is_vertex = words.starts_with("v ") || words.starts_with("v\t");
+    if (is_vertex && !has_three_numbers(words.substr(2))) {
+      return fmt::format("is no whole .obj file: the vertex in line {} has no three numbers; write v X Y Z, or copy the "
+                         "file anew", line);
+    }
+    text.remove_prefix(std::min(end + (text.substr(end).starts_with("\r\n") ? 2 : 1), text.size()));
+  }
+  return std::nullopt;
+}
+
 Read read_obj(const std::string& text) {
+  if (auto fault = fault_of_obj(text)) return *std::move(fault);
   tinyobj::ObjReaderConfig config;
   config.triangulate = false;
   config.vertex_color = false;
@@ -66,6 +99,21 @@ Points read_binary_stl(const std::string& bytes) {
   return points;
 }
 
+/// Why a file with bytes that no text has is no binary STL file.
+std::string fault_of_binary_stl(const std::string& bytes) {
+  constexpr const char* advice = "export it or copy it anew";
+  if (bytes.size() < stl_header) {
+    return fmt::format("is no whole STL file: it ends within its header, after {} of {} bytes; {}", bytes.size(), stl_header, advice);
+  }
+  const std::uint64_t triangles = little_endian<std::uint32_t>(&bytes[80]);
+  const std::uint64_t found = (bytes.size() - stl_header) / stl_triangle;
+  if (found < triangles) {
+    return fmt::format("is no whole STL file: it ends within triangle {} of {}; {}", found + 1, triangles, advice);
+  }
+  return fmt::format("is no STL file that can be read: its header tells of {} triangles, and {} bytes stand behind them; {}",
+                     triangles, bytes.size() - stl_header - triangles * stl_triangle, advice);
+}
+
 /// Each line `vertex x y z`.
 Read read_text_stl(const std::string& text) {
   Points points;
@@ -75,16 +123,20 @@ Read read_text_stl(const std::string& text) {
     if (word != "vertex") continue;
     Vector3 point;
     if (!(words >> point.x() >> point.y() >> point.z())) {
-      return fmt::format("is not an STL file that can be read: vertex {} has no three numbers",
+      return fmt::format("is no whole STL file: vertex {} has no three numbers; write vertex X Y Z, or copy the file anew",
                          points.size() + 1);
     }
     points.push_back(point);
+  }
+  if (points.size() % 3 != 0) {
+    return fmt::format("is no whole STL file: it ends within triangle {}; export it or copy it anew", points.size() / 3 + 1);
   }
   return points;
 }
 
 Read read_stl(const std::string& bytes) {
   if (is_binary_stl(bytes)) return read_binary_stl(bytes);
+  if (bytes.find('\0') != std::string::npos) return fault_of_binary_stl(bytes);
   return read_text_stl(bytes);
 }
 

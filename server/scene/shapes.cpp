@@ -64,8 +64,13 @@ std::vector<math::Vector3> read_vertices(Draft& draft, Element& hull) {
     return {};
   }
   const std::filesystem::path path = folder_of(draft.scene, hull.where()) / written;
-  auto opened = draft.options.open(path, std::min(most_mesh_bytes, draft.budget.bytes));
-  if (const std::string* why = std::get_if<std::string>(&opened)) {
+  const std::size_t most = std::min(most_mesh_bytes, draft.budget.bytes);
+  auto opened = draft.options.open(path, most);
+  if (std::string* why = std::get_if<std::string>(&opened)) {
+    if (most == most_mesh_bytes && *why == too_large(most)) {
+      *why = fmt::format("is larger than {} MiB; write one with fewer triangles (a hull has at most {} corners)",
+                         most_mesh_bytes >> 20, Hull::most_vertices);
+    }
     hull.fault_at("file", fmt::format("names {}, which {}", in_quotes(path.string()), *why));
     return {};
   }

@@ -2,11 +2,36 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <system_error>
 
 namespace ziggurat::text {
 namespace {
 
 constexpr std::string_view plain_signs = "_./+-,:@";
+
+bool is_number(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  if (word.ends_with('%')) word.remove_suffix(1);
+  double number = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  return error != std::errc::invalid_argument && end == word.data() + word.size();
+}
+
+/// Also of several, as coordinates and ranges are written.
+bool are_numbers(std::string_view words) {
+  for (;;) {
+    const auto end = std::min(words.find_first_of(", :"), words.size());
+    if (!is_number(words.substr(0, end))) return false;
+    if (end == words.size()) return true;
+    words.remove_prefix(end + 1);
+  }
+}
+
+bool is_formula(std::string_view text) {
+  constexpr std::string_view begins = "=+-@\t\r\n";
+  return text.size() > 1 && begins.find(text.front()) != begins.npos && !are_numbers(text);
+}
 
 }  // namespace
 
@@ -24,7 +49,8 @@ std::string shell_word(std::string_view word) {
   return text + "'";
 }
 
-std::string csv_field(const std::string& text) {
+std::string csv_field(const std::string& unsafe) {
+  const std::string text = is_formula(unsafe) ? "'" + unsafe : unsafe;
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string result = "\"";
   for (const char c : text) {

@@ -65,6 +65,18 @@ std::size_t radio_bytes(const Roster& roster, const world::RadioMessages& messag
   return bytes;
 }
 
+std::size_t heard_bytes(const Roster& roster, const world::Observations& from) {
+  constexpr std::size_t of_message = 32, of_packet = 64;
+  std::size_t bytes = 0;
+  for_each(
+      roster.radios, from.radio_messages.entries, [](const auto& entry) { return entry.radio; },
+      [&](const auto&, std::size_t) { bytes += of_message; });
+  for_each(
+      roster.range_and_bearing, from.range_and_bearing, [](const auto& packet) { return packet.receiver; },
+      [&](const world::RangeAndBearingPacket& packet, std::size_t) { bytes += of_packet + packet.data.count; });
+  return bytes;
+}
+
 void fill(const Roster& roster, const world::Observations& from,
           std::span<const std::string> tag_payloads, v1::Observation& to) {
   to.set_tick(from.tick);

@@ -14,6 +14,10 @@ namespace ziggurat::wire {
 /// Bytes that radios of the session's robots received.
 std::size_t radio_bytes(const Roster& roster, const world::RadioMessages& messages);
 
+/// What the messages and packets take that they received, without what radios sent in them: at least so many bytes of
+/// memory, of which messages without content have many.
+std::size_t heard_bytes(const Roster& roster, const world::Observations& from);
+
 /// Bytes of payloads that cameras of the session's robots read.
 std::size_t payload_bytes(const Roster& roster, const world::Observations& from,
                           std::span<const std::string> tag_payloads);

@@ -187,7 +187,7 @@ bool Outbox::observation(const Roster& roster, const world::Observations& observ
                          std::optional<std::uint64_t> epoch) {
   const std::size_t changing = radio_bytes(roster, observations.radio_messages) +
                                payload_bytes(roster, observations, tag_payloads);
-  if (changing + image_bytes(roster, observations) > limit) return false;
+  if (changing + heard_bytes(roster, observations) + image_bytes(roster, observations) > limit) return false;
   message_->forget(changing);
   v1::Observation& observation = *message_->message.mutable_observation();
   observation.Clear();

@@ -17,6 +17,7 @@ struct RadioMessages {
   };
   std::vector<Entry> entries;
   std::vector<std::uint8_t> bytes;
+  std::uint64_t left_out = 0;  ///< that would have been received, too, if they were not too many
 
   std::span<const std::uint8_t> payload(const Entry& entry) const {
     return std::span(bytes).subspan(entry.begin, entry.size);
@@ -28,6 +29,7 @@ struct RadioMessages {
   void clear() {  ///< keeps the memory
     entries.clear();
     bytes.clear();
+    left_out = 0;
   }
 };
 

@@ -12,15 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Such data are instructions for builds, package managers, editors and notebooks.
-constexpr const char* instructions[] = {
-    "cmake*.txt",       "cmake*.json",   "meson*.txt",      "conan*.txt",      "requirements*.txt",
-    "*requirements.txt", "constraints*.txt", "entry_points.txt", "top_level.txt", "*config.json",
-    "*config.*.json",   "package*.json", "composer*.json",  "bower.json",      "deno*.json",
-    "angular.json",     "nx.json",       "lerna.json",      "turbo.json",      "rush.json",
-    "vercel.json",      "firebase.json", "nodemon.json",    "vcpkg*.json",     "compile_commands.json",
-    "devcontainer.json", "launch*.json", "tasks.json",      "*settings.json",
-    "kernel.json",      "manifest.json", "project.json",    "global.json",     "mcp.json"};
+// Such texts are instructions for builds and package managers.
+constexpr const char* instructions[] = {"cmake*.txt",        "meson*.txt",       "conan*.txt",       "requirements*.txt",
+                                        "*requirements.txt", "constraints*.txt", "entry_points.txt", "top_level.txt"};
 
 bool is_of_data(const fs::path& name) {
   std::string ending = name.extension().string();

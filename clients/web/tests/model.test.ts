@@ -10,6 +10,7 @@ import type { Camera, Description, Observation, World } from "../source/model/me
 import { compose, rotate } from "../source/model/pose";
 import { bytesText, fixed, observed } from "../source/model/readings";
 import { nameOf, numberAt, numbersIn, parseName } from "../source/model/series";
+import { beginning, visible } from "../source/model/texts";
 import { fromAddress, settingsAtFirst, toAddress } from "../source/model/settings";
 
 function near(a: ArrayLike<number>, b: number[], bound = 1e-12): void {
@@ -30,6 +31,14 @@ test("rotations are Hamilton's, w first", () => {
                        { position: [1, 0, 0], orientation: [half, half, 0, 0] });
   near(pose.position, [1, 3, 3]);
   near(rotate(pose.orientation, [0, 0, 1]), [1, 0, 0]); // about x first: -y; then about z: +x
+});
+
+test("what is not seen, or changes the order of a text, is shown as its number", () => {
+  assert.equal(visible("r1\u202e3\u2066\u200b\ufeff"), "r1\\u202e3\\u2066\\u200b\\ufeff");
+  assert.equal(visible("\u{e0041}\u001b[2J\u0085"), "\\ue0041\\u001b[2J\\u0085");
+  assert.equal(visible("déjà vu: 機械\t🤖\n"), "déjà vu: 機械\t🤖\n");
+  assert.equal(beginning("a\u202ebc", 3), "a\\u202eb…");
+  assert.equal(beginning(beginning("\u202e")), beginning("\u202e"));
 });
 
 test("settings come back from the address", () => {

@@ -3,6 +3,7 @@
 from ..case import Case, Level
 from ..client_messages import (BEGUN, HELLO, end, error, heartbeat, observation, refusal, ticks, welcome)
 from ..keys import RESTARTED
+from ..client_robots import robot
 from ..client_steps import CheckClient, Cut, Ends, HearFrom, HearResume, Quiet, SinceMinor, Tell
 from ..wire import text_of
 from .client_core import storm
@@ -83,6 +84,11 @@ CASES = [
     _case("L13.gone", "Robots that left while its session was lost are neither named nor left again",
           *BEGUN, *ticks(1, 2), Cut(), HearResume(),
           SinceMinor(1, (welcome(version={"major": 1, "minor": 1}, resumed={"gone_robots": [0]}), *ticks(70, 77)))),
+    _case("L4.taken", "When another client took a robot of its lost session, it resumes that and goes on with the others",
+          HELLO, welcome(robot("arm0"), robot("arm1")), *ticks(0, 2), Cut(), HearResume(),
+          welcome(robot("arm0"), robot("arm1")),
+          Tell({"error": {"code": "NOT_YOURS", "severity": "WARNING", "robot": "arm0", "message": "another client took it"}}),
+          *ticks(70, 77)),
     _case("S13.epoch", "Its Command has the epoch of the Observation that it answers",
           HELLO, SinceMinor(2, (welcome(version={"major": 1, "minor": 2}), *ticks(0, 2, epoch=0),
                                 Tell({"reset": {"seed": 8, "epoch": 1}}), *ticks(0, 2, epoch=1)))),

@@ -268,12 +268,18 @@ class Client:
             if error.code == protocol.Error.OUT_OF_STATE and self.token and self.bug != "no-resume":
                 return self.resume()
             return 0 if self.bug == "fatal-is-fine" else 1
+        if error.code == protocol.Error.NOT_YOURS and (
+                self.bug == "gives-up-on-taken" or (self.bug == "gives-up-when-resumed-with-less" and self.is_resumed)):
+            return 1
         if self.bug == "gives-up-on-warning" or (self.bug == "gives-up-on-late" and error.code in LATE):
             return 1
         if error.severity == protocol.Error.WARNING or error.code in LATE:
             self.left |= set(error.dropped.robots) if self.bug != "names-dropped" else set()
             if error.robot:
-                self.left |= {i for i, robot in enumerate(self.welcome.robots) if robot.id == error.robot}
+                gone = {i for i, robot in enumerate(self.welcome.robots) if robot.id == error.robot}
+                self.left |= gone
+                if self.bug == "leaves-the-removed":
+                    self.say(leave=protocol.Leave(robots=gone, reason=protocol.Leave.DONE))
             self.is_fresh = self.bug != "forgets-values"
             if self.bug == "stops-after-miss":
                 time.sleep(60)

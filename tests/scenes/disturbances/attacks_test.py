@@ -111,6 +111,41 @@ class Attacks(SceneTest):
             with self.subTest(arguments):
                 self.refuses(*arguments, pattern=pattern)
 
+    def test_options_that_would_do_nothing(self):
+        self.run_scene("--ticks", 5, "--quiet", "--record", "run.mcap")
+        self.write("c", "").chmod(0o600)
+        open_sweep = ("sweep", self.scene, "--out", "y", "--seeds", "1..2", "--ticks", 2)
+        self.assertEqual(self.ziggurat(*open_sweep, "--quiet").code, 0)
+        for arguments, pattern in (
+                (("run", self.scene, "--ticks", 2, "--gate", "p99<9s,misses<1%"), "'misses<1%' is always met.*add --hil, or"),
+                (("run", self.scene, "--ticks", 2, "--gate", "run<3"), "'run<3' is always met.*--deadline hold:50"),
+                (("run", self.scene, "--ticks", 2, "--deadline", "hold:9000", "--gate", "late<1"),
+                 "'late<1' is always met: nothing paces.*add --hil or --real-time"),
+                (("run", self.scene, "--curve-secret", "k.secret", "--curve-clients", "c"), "none is given; write --endpoint URL"),
+                (("run", self.scene, "--insecure"), "--insecure has no effect.*write --endpoint tcp://HOST:PORT"),
+                (("serve", self.scene, "--insecure", "--endpoint", "ipc://x"), "--insecure has no effect"),
+                (("render", self.scene, "--out", "x.png", "--without-controllers", "--lua-memory", 1),
+                 "--lua-memory has no effect with --without-controllers"),
+                (("render", self.scene, "--video", "x.mp4", "--at", 1), "--at has no effect without --out"),
+                (("replay", "run.mcap", "--insecure"), "--insecure has no effect.*write --view=HOST:PORT too"),
+                (("replay", "run.mcap", "--until", 6), "--until is 6, and run.mcap has the ticks 0 to 5; write one"),
+                (("try", "run.mcap", "--robot", "r0", "--until", 6, "--", "true"), "--until is 6, and run.mcap has the ticks"),
+                (("fork", "run.mcap", "--at", 2, "--without-controllers", "--controller", "swing=true"),
+                 "--controller has no effect with --without-controllers"),
+                (("verify", "run.mcap", "--controller", "swing=true"), "--controller has no effect without --controllers"),
+                (("verify", "run.mcap", "--controllers", "--json"), "--json has no effect with --controllers"),
+                (("export", "run.mcap", "--csv", "x.csv", "--topics", "/poses"), "--topics has no effect without --jsonl"),
+                (("sweep", "results", "y", "--runs", "--by", "seed"), "--by has no effect with --runs"),
+                ((*open_sweep, "--slurm", "--kubernetes", "x.yaml"), "--slurm has no effect with --kubernetes"),
+                (("top", "tcp://127.0.0.1:1", "--once", "--interval", 2), "--interval has no effect with --once"),
+                (("--version", "junk"), "--version takes no 'junk'"), (("--help", "junk"), "no command 'junk'")):
+            with self.subTest(arguments):
+                self.refuses(*arguments, pattern=pattern)
+        for name in ("x.csv", "x.png", "x.mp4", "x.yaml"):
+            self.assertFalse((self.folder / name).exists())
+        self.assertIn("usage: ziggurat run SCENE", self.ziggurat("--help", "run").out)
+        self.assertEqual(self.ziggurat("replay", "run.mcap", "--until", 5, "--quiet").code, 0)
+
     def test_hostile_lists_of_clients(self):
         subprocess.run([str(ZIGGURAT), "keygen", "--out", "k"], cwd=self.folder, check=True, capture_output=True)
         key = (self.folder / "k.public").read_text().strip()

@@ -77,6 +77,19 @@ TEST(Options, ExactlyOneSceneIsAllowed) {
   EXPECT_THROW(run::only_scene(run({"a", "b"})), text::UsageError);
 }
 
+TEST(Options, InsecureNeedsAnAddressThatOthersCanReach) {
+  for (const Arguments& arguments :
+       {Arguments{"s", "--insecure"}, Arguments{"s", "--insecure", "--endpoint", "ipc:///tmp/x"}}) {
+    EXPECT_THROW(run(arguments), text::UsageError);
+  }
+  for (const Arguments& more :
+       {Arguments{"--endpoint", "tcp://127.0.0.1:1"}, Arguments{"--view"}, Arguments{"--metrics", "127.0.0.1:0"}}) {
+    Arguments arguments{"s", "--insecure"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_TRUE(run(arguments).insecure) << more.front();
+  }
+}
+
 TEST(Options, KeysNeedEachOther) {
   EXPECT_THROW(parse_options({"s", "--curve-secret", "x"}, serve_options()), text::UsageError);
   EXPECT_THROW(parse_options({"s", "--curve-clients", "x"}, run_options()), text::UsageError);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <stdexcept>
+#include <string>
 
 #include "scattered_devices.h"
 
@@ -26,6 +28,19 @@ TEST(RangeAndBearing, PairsByTheSendersRangeInOrder) {
   world.add_range_and_bearing({0, 0, 0}, 3, 4);
   world.add_range_and_bearing({1, 0, 0}, 3, 4);
   EXPECT_EQ(sight(world), (Pairs{{0, 1}, {0, 2}, {1, 2}, {2, 0}, {2, 1}}));
+}
+
+TEST(RangeAndBearing, TooManyPairsEndWithASentence) {
+  testing::Scattered world;
+  for (int i = 0; i < 4; ++i) world.add_range_and_bearing({0.1 * i, 0, 0}, 3, 4);
+  EXPECT_EQ(RangeAndBearingMedium(12).sight(world.layout, world.index()).size(), 12u);
+  try {
+    RangeAndBearingMedium(11).sight(world.layout, world.index());
+    ADD_FAILURE();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("more than 11 pairs of the 4 devices"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("write a smaller range"), std::string::npos) << error.what();
+  }
 }
 
 TEST(RangeAndBearing, NeedsEqualSizesOneMediumAndASensor) {

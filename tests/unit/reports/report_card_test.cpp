@@ -56,6 +56,16 @@ TEST(ReportCard, TheGateIsMetIfAllMeetIt) {
   EXPECT_TRUE(passes(card("run<3,jitter<1ms")));
 }
 
+TEST(ReportCard, WithoutADeadlineNothingIsMissedSoNoGateOnMissesIsMet) {
+  for (const char* gate : {"misses<100%", "run<9", "p99<40ms"}) {
+    ReportCard waiting = card(gate);
+    for (auto& controller : waiting.controllers) controller.deadlines = {{scene::DeadlineAction::wait, 0, 0}};
+    EXPECT_EQ(passes(waiting), is_time(waiting.gate[0].subject)) << gate;
+    const bool tells_why = to_text(waiting).find(": no controller had a deadline") != std::string::npos;
+    EXPECT_EQ(tells_why, reports::is_of_misses(waiting.gate[0].subject)) << to_text(waiting);
+  }
+}
+
 TEST(ReportCard, LateAndMissingAnswersCountForTimes) {
   EXPECT_FALSE(passes(card("p99<20ms"))) << "two of a hundred took longer";
   EXPECT_TRUE(passes(card("p90<2ms")));

@@ -45,6 +45,19 @@ TEST(RadioWatch, TellsOfRadiosThatNeverFellSilent) {
       << two.watch.warning(two.layout);
 }
 
+TEST(RadioWatch, TellsOfMessagesThatWereTooMany) {
+  Two two;
+  world::Observations observations;
+  two.watch.tick(observations, {});
+  for (const std::uint64_t left_out : {5, 0, 7}) {
+    observations.tick += 1;
+    observations.radio_messages.left_out = left_out;
+    two.watch.tick(observations, {});
+  }
+  EXPECT_EQ(two.watch.warning(two.layout).find("from tick 1 on, 12 radio messages were not received: all radios together"), 0u)
+      << two.watch.warning(two.layout);
+}
+
 TEST(RadioWatch, IsQuietAboutOthers) {
   Two alone;
   for (int i = 0; i < 20; ++i) alone.tick({0});

@@ -250,6 +250,22 @@ TEST_F(DeviceWire, ReceiversKeepTheirPlacesAroundRobotsWithoutDevices) {
   EXPECT_EQ(observation.range_and_bearing(1).robot(), 2U);
 }
 
+// The data of the same sender are copied for each packet, and each message takes memory beside its content.
+TEST_F(DeviceWire, WhatItHearsCountsBeforeAMessageIsMade) {
+  world::Observations seen = run.observations();
+  seen.range_and_bearing_data.resize(65536);
+  seen.range_and_bearing.assign(1000, {0, 1, 0, 0, {0, 65536}});
+  Outbox outbox;
+  EXPECT_TRUE(outbox.observation(roster, seen, {}));
+  seen.range_and_bearing.assign(17000, {0, 1, 0, 0, {0, 65536}});
+  EXPECT_FALSE(outbox.observation(roster, seen, {})) << "more than 1 GiB of data";
+  seen.range_and_bearing.clear();
+  seen.radio_messages.add(1, {});
+  seen.radio_messages.entries.assign(1000, seen.radio_messages.entries[0]);
+  EXPECT_TRUE(outbox.observation(roster, seen, {}, 64'000));
+  EXPECT_FALSE(outbox.observation(roster, seen, {}, 31'999)) << "32 bytes each, though they are 4 bytes in the message";
+}
+
 TEST_F(DeviceWire, ASessionThatHearsTooMuchGetsNoMessage) {
   world::Observations seen = run.observations();
   seen.radio_messages.add(3, bytes_of(std::string(world::most_radio_message_bytes, 'x')));

@@ -4,9 +4,16 @@
 export const mostKept = 10_000; // characters of a text that can be looked at
 export const mostShown = 300; // of it at first
 
-/** The beginning of a text; “…” says that there is more. */
+const unseen = /[\u0000-\u0008\u000b-\u001f\u007f-\u009f\p{Cf}\p{Zl}\p{Zp}]/gu;
+
+/** What is not seen, or changes the order of what stands around it, as \u202e: as the server writes it on a terminal. */
+export function visible(text: string): string {
+  return text.replace(unseen, (one) => `\\u${(one.codePointAt(0) ?? 0).toString(16).padStart(4, "0")}`);
+}
+
+/** The beginning of a text as it is shown; “…” says that there is more. */
 export function beginning(text: string, most = mostShown): string {
-  return text.length > most ? `${text.slice(0, most)}…` : text;
+  return visible(text.length > most ? `${text.slice(0, most)}…` : text);
 }
 
 /** The same, without the memory of the whole text: a part of a string may hold on to it. */

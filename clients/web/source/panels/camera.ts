@@ -5,6 +5,7 @@ import type { App } from "../page/app";
 import type { Camera, Detections, SeenByCamera } from "../model/messages";
 import { compose, poseAt } from "../model/pose";
 import { bytesText } from "../model/readings";
+import { visible } from "../model/texts";
 import { make, setLines, setText } from "./element";
 import type { Panel } from "./panel";
 
@@ -132,7 +133,7 @@ export class CameraPanel implements Panel {
       for (let i = 0; i < 4; ++i) draw.lineTo(tag.corners[2 * i], tag.corners[2 * i + 1]);
       draw.closePath();
       draw.stroke();
-      draw.fillText(new TextDecoder().decode(tag.payload.subarray(0, mostOfTag)), tag.u + 4 * size, tag.v - 4 * size);
+      draw.fillText(visible(new TextDecoder().decode(tag.payload.subarray(0, mostOfTag))), tag.u + 4 * size, tag.v - 4 * size);
     }
   }
 }

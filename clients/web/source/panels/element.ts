@@ -1,5 +1,5 @@
 // Elements of the page, made in one expression.
-import { beginning, mostKept, mostShown } from "../model/texts";
+import { beginning, mostKept, mostShown, visible } from "../model/texts";
 
 const mostText = 1000; // characters of any text; longText() shows more
 const mostTitle = 2000;
@@ -41,7 +41,7 @@ export function longText(what: string, text: string, length = text.length): HTML
     more.classList.toggle("open", isOpen);
     more.textContent = isOpen ? "less" : `${length} characters`;
     const rest = length > mostKept ? ` … and ${length - mostKept} more ` : " ";
-    element.replaceChildren(...(isOpen ? [...breakable(text.slice(0, mostKept)), rest] : [beginning(text), " "]), more);
+    element.replaceChildren(...(isOpen ? [...breakable(visible(text.slice(0, mostKept))), rest] : [beginning(text), " "]), more);
   };
   fill(false);
   return element;

@@ -1,6 +1,7 @@
 // Time: play, pause, step, speed, reset, and the line of all frames that the page has seen.
 import type { App } from "../page/app";
 import type { MarkKind } from "../model/timeline";
+import { beginning } from "../model/texts";
 import { icon, make, setText } from "./element";
 import type { Panel } from "./panel";
 
@@ -51,7 +52,7 @@ export class TimeBar implements Panel {
     const sequence = this.sequenceAt(event);
     const near = timeline.marks.filter((mark) => Math.abs(mark.sequence - sequence) <= 3 * this.scale).slice(-6);
     const tick = this.app.recorded ? "" : `tick ${timeline.at(sequence)?.tick ?? ""}`;
-    this.line.title = [tick, ...near.map((mark) => mark.text)].join("\n");
+    this.line.title = [tick, ...near.map((mark) => beginning(mark.text))].join("\n");
   }
 
   changeSpeed(by: 1 | -1): void {

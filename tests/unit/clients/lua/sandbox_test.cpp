@@ -205,7 +205,8 @@ TEST_F(Sandbox, WritesNothingThatOtherProgramsTakeForInstructions) {
        {"Makefile", "make.txt", "Dockerfile", "x.pth", "a.desktop", "x.ps1", "x.bat", "x.R", "x.el", "x.service", "x.mk",
         "x.cmake", "x.yaml", "x.ini", "x.html", "x.svg", "new", "x.csv.", "x.csv ", "x. ", "CMakeLists.txt", "CMakeCache.txt",
         "cmakelists.TXT", "CMakePresets.json", "package.json", "package-lock.json", "tsconfig.json", "babel.config.json",
-        "requirements.txt", "requirements-dev.txt", "compile_commands.json", "settings.json", "kernel.json", "composer.json"}) {
+        "requirements.txt", "requirements-dev.txt", "compile_commands.json", "settings.json", "kernel.json", "composer.json",
+        "cdk.json", "npm-shrinkwrap.json", "wrangler.json", "tauri.conf.json", "app.json", "results.json", "X.JSON"}) {
     const std::string file = "IN .. '" + std::string(name) + "'";
     expect_refused("assert(io.open(" + file + ", 'w'))");
     expect_refused("io.output(" + file + ")");
@@ -219,7 +220,7 @@ TEST_F(Sandbox, WritesNothingThatOtherProgramsTakeForInstructions) {
 }
 
 TEST_F(Sandbox, WritesData) {
-  for (const char* name : {"a.csv", "A.CSV", "b.tsv", "c.txt", "d.log", "e.dat", "results.json", "f.jsonl", "g.bin", "h.data",
+  for (const char* name : {"a.csv", "A.CSV", "b.tsv", "c.txt", "d.log", "e.dat", "results.jsonl", "f.jsonl", "g.bin", "h.data",
                            "picture.ppm", "i.csv.tmp", "robot.1.csv"}) {
     EXPECT_EQ(value("io.type(io.open(IN .. '" + std::string(name) + "', 'w'))"), "file") << name;
   }

@@ -1,0 +1,29 @@
+#include "run/gate_option.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "text/numbers.h"
+
+namespace ziggurat::run {
+
+void check_gate(const std::vector<reports::Condition>& gate, const GateGround& ground) {
+  const bool waits_for_all = !ground.deadlines.empty() && std::ranges::all_of(ground.deadlines, [](const auto& deadline) {
+    return deadline.policy.action == scene::DeadlineAction::wait;
+  });
+  for (const reports::Condition& condition : gate) {
+    if (condition.subject == reports::Condition::Subject::late && !ground.is_paced) {
+      throw text::UsageError(fmt::format("--gate: '{}' is always met: nothing paces the run, so no tick is late; add --hil or "
+                                         "--real-time, or leave it out",
+                                         condition.text));
+    }
+    if (reports::is_of_misses(condition.subject) && waits_for_all && !ground.may_be_asked) {
+      throw text::UsageError(fmt::format("--gate: '{}' is always met: the world waits for every controller; add --hil, or "
+                                         "--deadline hold:50 for example, or leave it out",
+                                         condition.text));
+    }
+  }
+}
+
+}  // namespace ziggurat::run
