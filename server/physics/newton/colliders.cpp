@@ -55,6 +55,7 @@ std::optional<Collider> make_collider(const Body& body, const scene::Entity& ent
   collider.centred = collider.in_part == btTransform::getIdentity();
   collider.moves = body.parts[placed.part].moves;
   collider.swings = collider.moves && !entity.movable;
+  collider.is_alone = entity.movable && body.parts.size() == 1 && collider.centred;
   collider.rolls = body.ground.has_value() && i == 0;
   collider.surface = link.surface;
   collider.half = to_bullet(placed.half_extents);

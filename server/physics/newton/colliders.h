@@ -45,6 +45,7 @@ struct alignas(64) Collider {
   std::size_t group = 0;  ///< into the broad phase's groups
   std::size_t link = 0;   ///< into Body::links
   bool swings = false;    ///< on joints from something that stands: its centre moves on a circle
+  bool is_alone = false;  ///< the only part of its entity, which moves freely, and its centre is the part's
   scene::Surface surface;
   contact::Shape shape;
   btTransform in_part = btTransform::getIdentity();  ///< X_PS

@@ -146,7 +146,7 @@ contact::Contacts look(const Collider& a, const Collider& b, double length, int 
     if (found.count > 0 && swings) out.swing = std::max(swing_of(a, time), swing_of(b, time));
   } else if (!approach.may_touch) {
     found.count = 0;
-  } else if (found.count <= 2 && approach.least > dynamics::touching && normal_turns(a, b)) {
+  } else if (found.count <= 2 && approach.least > dynamics::touching && (normal_turns(a, b) || rebound_turned(a, b))) {
     found = first_meeting(a, b, length, slack, time);
   } else if (out.tumbles) {
     found = contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::all);
