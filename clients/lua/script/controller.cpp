@@ -27,8 +27,11 @@ Failure Controller::reset(std::uint64_t seed) {
   return call("reset", false, "reset, tick 0");
 }
 
-Failure Controller::destroy(std::uint64_t last_tick) {
-  const Running running(calling());
+Failure Controller::destroy(std::uint64_t last_tick, std::uint64_t most_computing) {
+  Calling limited = calling();
+  const bool is_less = limited.max_computing == 0 || most_computing < limited.max_computing;
+  if (most_computing != 0 && is_less) limited.max_computing = most_computing;
+  const Running running(limited);
   return call("destroy", false, "destroy, after tick " + std::to_string(last_tick));
 }
 
