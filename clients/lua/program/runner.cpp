@@ -16,7 +16,7 @@ namespace {
 // A server names the robots, and how many there are.
 constexpr std::size_t most_told = 100;
 constexpr std::size_t longest_id = 1024;
-// [s] of processor time for each destroy() at the end, where a program waits 5 s for all: one that does not end leaves
+// [s] for each destroy() at the end, where a program waits 5 s for all: one that does not end leaves
 // the others time.
 constexpr std::uint64_t longest_destroy = 3;
 
@@ -84,8 +84,8 @@ void Runner::finish() {
 }
 
 // What the script holds is given back: its memory, its open files.
-void Runner::end(Seat& seat, std::uint64_t most_computing) {
-  const Failure failure = seat.controller->destroy(session_.tick(), most_computing);
+void Runner::end(Seat& seat, std::uint64_t max_seconds) {
+  const Failure failure = seat.controller->destroy(session_.tick(), max_seconds);
   hand_over_log(seat);
   if (failure) fail(seat, *failure);
   seat.controller.reset();

@@ -27,10 +27,9 @@ Failure Controller::reset(std::uint64_t seed) {
   return call("reset", false, "reset, tick 0");
 }
 
-Failure Controller::destroy(std::uint64_t last_tick, std::uint64_t most_computing) {
+Failure Controller::destroy(std::uint64_t last_tick, std::uint64_t max_seconds) {
   Calling limited = calling();
-  const bool is_less = limited.max_computing == 0 || most_computing < limited.max_computing;
-  if (most_computing != 0 && is_less) limited.max_computing = most_computing;
+  limited.max_seconds = max_seconds;
   const Running running(limited);
   return call("destroy", false, "destroy, after tick " + std::to_string(last_tick));
 }

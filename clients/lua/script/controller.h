@@ -24,8 +24,8 @@ class Controller final : public Script {
   /// @param seed  of the new run
   Failure reset(std::uint64_t seed);
   /// After the last tick: calls destroy(), if the script has one.
-  /// @param most_computing  processor time, if that of ScriptOptions is not less [s]; 0 = any
-  Failure destroy(std::uint64_t last_tick, std::uint64_t most_computing = 0);
+  /// @param max_seconds  as of Calling; 0 = any
+  Failure destroy(std::uint64_t last_tick, std::uint64_t max_seconds = 0);
 
  private:
   void set_up(lua_State* state) override;
