@@ -35,7 +35,7 @@ examples:
       some cases, and a page with the exchange of every failure
 
 Exit code: 0 if no case failed, also if some were not run; 1 if one did, or a --badge is not reached; 2 for a mistake on this line, a
-program that does not start, or reports or a stdout that can't be written.
+program that does not start, or reports or a stdout that can't be written; 130 after Ctrl-C.
 docs/conformance.md explains verdicts, levels, and how to add a case."""
 
 
@@ -88,6 +88,7 @@ def _parser(version: str) -> argparse.ArgumentParser:
     return parser
 
 
+_INTERRUPTED = 128 + 2  # as shells tell of a program that SIGINT ends
 _LONGEST_LIST = 1_000_000  # [bytes] of --known-failing
 _SERVER = "ziggurat serve {scene} --endpoint {endpoint}"
 
@@ -253,6 +254,9 @@ def main(arguments=None, version="of a source tree") -> int:
             code = _main(sys.argv[1:] if arguments is None else list(arguments), version)
         except SystemExit as end:  # after --help, or a mistake
             code = end.code
+        except KeyboardInterrupt:
+            print("ziggurat-conformance: interrupted; no report was written", file=sys.stderr)
+            code = _INTERRUPTED
         stdout.flush()
     if stdout.fault:
         print(f"ziggurat-conformance: {stdout.fault}", file=sys.stderr)

@@ -19,6 +19,11 @@ from .wire import protocol
 _LONGEST_SEND, _LONGEST_SEND_IF_REFUSED = 60.0, 2.0
 
 
+def longest_wait(patience: float) -> float:
+    """[s] For what comes behind any number of messages that extend the wait, as Loading."""
+    return max(60.0, 10 * patience)
+
+
 class Transcript:
     """What went over all connections of a case, for the report of its failure."""
 
@@ -78,7 +83,7 @@ class Peer:
 
     def hear(self, patience: float, heartbeats: bool = False) -> Optional[protocol.ServerMessage]:
         """The next message, within so many seconds. Heartbeats of the server are noted and passed
-        over unless asked for."""
+        over unless asked for; they do not extend the wait."""
         deadline = time.monotonic() + patience
         while True:
             left = max(0.0, deadline - time.monotonic())
@@ -87,9 +92,19 @@ class Peer:
             message = self._receive()
             if wire.kind_of(message) == "heartbeat" and not heartbeats:
                 self.heartbeats.append(message.heartbeat.sequence)
+                if time.monotonic() >= deadline:
+                    return None
                 continue
             self._remember(message)
             return message
+
+    def hear_behind(self, kind: str, patience: float) -> Optional[protocol.ServerMessage]:
+        """The next message that is not of this kind; each that is restarts the wait."""
+        deadline = time.monotonic() + longest_wait(patience)
+        while True:
+            message = self.hear(patience)
+            if message is None or wire.kind_of(message) != kind or time.monotonic() >= deadline:
+                return message
 
     def close(self) -> None:
         self.transcript.add(self.name, "───", "closes its connection")

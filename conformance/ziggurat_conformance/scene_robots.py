@@ -54,9 +54,7 @@ def robots_of(path: Path, command: str) -> SceneRobots:
     peer = Peer("kit", server.endpoint, wire.BINARY, Transcript())
     try:
         peer.send(wire.from_dict(protocol.ClientMessage, {"hello": hello("*")}))
-        message = peer.hear(_LOADING)
-        while message is not None and message.HasField("loading"):
-            message = peer.hear(_LOADING)
+        message = peer.hear_behind("loading", _LOADING)
         if message is None or not message.HasField("welcome"):
             said = "nothing" if message is None else wire.text_of(message, 300)
             raise RuntimeError(f"--scene {path}: the server said {said} to a Hello for all robots; it had "

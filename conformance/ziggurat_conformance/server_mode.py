@@ -83,8 +83,8 @@ def _await_world(endpoint: str, keys: Optional[tuple]) -> None:
     try:
         probe.send(wire.from_dict(protocol.ClientMessage, {"hello": {"version": {"major": 0}}}))
         message = probe.hear(1.0)
-        while message is not None and wire.kind_of(message) == "loading":
-            message = probe.hear(10.0)
+        if message is not None and wire.kind_of(message) == "loading":
+            probe.hear_behind("loading", 10.0)
     finally:
         probe.close()
 

@@ -9,7 +9,7 @@ from typing import Any, Callable
 
 from . import wire
 from .case import Failed, NonStrict, Unimplemented
-from .peer import Peer, Transcript
+from .peer import Peer, Transcript, longest_wait
 from .server_process import free_port
 from .wire import protocol
 
@@ -200,12 +200,13 @@ class Stage:
     def skip(self, step: Skip) -> None:
         peer = self.peer(step.peer)
         deadline = time.monotonic() + self.patience
+        last = time.monotonic() + longest_wait(self.patience)
         while time.monotonic() < deadline:
             message = _heard(peer, deadline - time.monotonic(), False)
             if message is not None and wire.kind_of(message) == step.kind:
                 return
             if message is not None and wire.kind_of(message) == "loading":
-                deadline = time.monotonic() + self.patience
+                deadline = min(time.monotonic() + self.patience, last)
         raise Failed(f"{step.peer} heard no {step.kind} within {self.patience:g} s")
 
     def silence(self, step: Silence) -> None:
@@ -242,9 +243,7 @@ class Stage:
         peer = self.peer(step.peer)
         while True:
             self.send(Send(step.peer, {"hello": step.hello}))
-            message = _heard(peer, self.patience, False)
-            while message is not None and wire.kind_of(message) == "loading":
-                message = _heard(peer, self.patience, False)
+            message = _told(peer, lambda: peer.hear_behind("loading", self.patience))
             taken = (
                 message is not None
                 and message.HasField("refusal")
@@ -281,8 +280,12 @@ _players: dict = {
 
 
 def _heard(peer: Peer, patience: float, heartbeats: bool):
+    return _told(peer, lambda: peer.hear(patience, heartbeats))
+
+
+def _told(peer: Peer, hear: Callable):
     try:
-        return peer.hear(patience, heartbeats)
+        return hear()
     except ValueError as error:
         rules = "T2, T6" if peer.form == wire.JSON else "T2"
         raise Failed(f"{peer.name} was told {error} ({rules})") from None

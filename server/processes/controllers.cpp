@@ -270,6 +270,10 @@ const ControllerProcess* Controllers::first_ended(
   return first;
 }
 
+bool Controllers::are_running() {
+  return std::ranges::any_of(processes_, [](ControllerProcess& each) { return !each.process.poll(); });
+}
+
 void Controllers::kill() {
   for (const ControllerProcess& each : processes_) each.process.signal(SIGKILL);
 }

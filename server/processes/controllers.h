@@ -122,6 +122,7 @@ class Controllers {
   const ControllerProcess* first_ended(
       const std::function<bool(const ControllerProcess&)>& is_needed);
 
+  bool are_running();  ///< one or more
   void kill();  ///< SIGKILL to all that still run
   /// Waits until all have ended, as processes::end_all does.
   void end(int patience_ms, const std::function<bool()>& hurry,

@@ -251,15 +251,39 @@ end
 
     def test_a_destroy_that_does_not_end_is_a_failure(self):
         self.write("swing.lua", "function init() end function step() end\n"
-                   "function destroy() if robot.id == 'r1' then\nwhile true do end end end")
-        outcome = self.run_scene("--ticks", 2, code=CONTROLLER_FAILED)
+                   "function destroy() if robot.id == 'r1' then\nwhile true do end end log('bye') end")
+        outcome = self.run_scene("--ticks", 2, "--lua-processes", 1, code=CONTROLLER_FAILED)
         # On a fast machine it is the limit of instructions.
-        self.assertRegex(outcome.err, r"robot r1 .* failed at tick 2: .*swing\.lua:3: (the script still ran 3 s after the end of "
-                                      r"the run, and was ended|.*instructions)")
+        self.assertRegex(outcome.err, r"robot r1 .* failed at tick 2: .*swing\.lua:3: (computes for more than 3 s in one call|"
+                                      r"runs more than 1000 million instructions)")
+        for robot in ("r0", "r2"):
+            self.assertIn(f"[2 {robot}] bye", outcome.lines)
+
+    def test_a_process_that_does_not_end_is_a_failure_and_names_what_is_lost(self):
+        self.write("swing.lua", "function init() end function step() end\n"
+                   "function destroy() if robot.id ~= 'r2' then\nwhile true do end end end")
+        outcome = self.run_scene("--ticks", 2, "--lua-processes", 1, "--trust-scripts", code=CONTROLLER_FAILED)
+        self.assertRegex(outcome.err, r"robot r1 .* failed at tick 2: .*swing\.lua:3: the script still ran 5 s after the end of "
+                                      r"the run, and was ended; destroy\(\) of robot r2 did not run; the last log lines and "
+                                      r"metrics of robots r0, r1, r2 may be lost")
+
+    def test_long_last_words_after_a_long_destroy_arrive(self):
+        self.write("swing.lua", """function init() end function step() end
+function destroy()
+   if robot.id == "r1" then
+      os.execute("sleep 2.3")
+      for i = 1, 240 do log(("e"):rep(1000)) end
+   end
+   metric("result", 42)
+end""")
+        outcome = self.run_scene("--ticks", 2, "--lua-processes", 1, "--trust-scripts", "--summary", self.folder / "s.json")
+        self.assertEqual(240, sum(line.startswith("[2 r1] eee") for line in outcome.lines))
+        summary = json.loads((self.folder / "s.json").read_text())
+        self.assertEqual({f"r{i}/result": 42 for i in range(3)}, summary["metrics"])
 
     def test_a_command_that_does_not_end_is_told(self):
         outcome = self.run_scene("--ticks", 2, "--controller", f"swing='{LUA}'; sleep 1000.125")
-        self.assertRegex(outcome.err, r"notice: .*\(process \d+\) still ran 3 s after the end of the run, and was ended; "
+        self.assertRegex(outcome.err, r"notice: .*\(process \d+\) still ran 1 s after the end of the run, and was ended; "
                                       r"it controlled robots r0, r1, r2")
 
     def test_fail_fast_ends_at_the_first_error(self):

@@ -16,6 +16,9 @@ namespace {
 // A server names the robots, and how many there are.
 constexpr std::size_t most_told = 100;
 constexpr std::size_t longest_id = 1024;
+// [s] for each destroy() at the end, where a program waits 5 s for all: one that does not end leaves
+// the others time.
+constexpr std::uint64_t longest_destroy = 3;
 
 }  // namespace
 
@@ -76,13 +79,13 @@ Failure Runner::call(Controller& controller) {
 void Runner::finish() {
   for (Seat& seat : seats_) {
     if (are_scripts_interrupted()) return;
-    if (seat.controller) end(seat);
+    if (seat.controller) end(seat, options_.place_file.empty() ? 0 : longest_destroy);
   }
 }
 
 // What the script holds is given back: its memory, its open files.
-void Runner::end(Seat& seat) {
-  const Failure failure = seat.controller->destroy(session_.tick());
+void Runner::end(Seat& seat, std::uint64_t max_seconds) {
+  const Failure failure = seat.controller->destroy(session_.tick(), max_seconds);
   hand_over_log(seat);
   if (failure) fail(seat, *failure);
   seat.controller.reset();

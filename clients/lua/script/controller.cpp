@@ -27,8 +27,10 @@ Failure Controller::reset(std::uint64_t seed) {
   return call("reset", false, "reset, tick 0");
 }
 
-Failure Controller::destroy(std::uint64_t last_tick) {
-  const Running running(calling());
+Failure Controller::destroy(std::uint64_t last_tick, std::uint64_t max_seconds) {
+  Calling limited = calling();
+  limited.max_seconds = max_seconds;
+  const Running running(limited);
   return call("destroy", false, "destroy, after tick " + std::to_string(last_tick));
 }
 

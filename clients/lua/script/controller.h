@@ -24,7 +24,8 @@ class Controller final : public Script {
   /// @param seed  of the new run
   Failure reset(std::uint64_t seed);
   /// After the last tick: calls destroy(), if the script has one.
-  Failure destroy(std::uint64_t last_tick);
+  /// @param max_seconds  as of Calling; 0 = any
+  Failure destroy(std::uint64_t last_tick, std::uint64_t max_seconds = 0);
 
  private:
   void set_up(lua_State* state) override;

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdio>
 
 #include "script/place_file.h"
@@ -35,7 +36,9 @@ struct Watch {
   bool is_over = false;              // more than max_instructions, or late
   std::uint64_t max_looks = 0;       // of the signal; 0 = any number
   std::uint64_t looks = 0;           // so far
-  bool is_late = false;              // more than max_looks
+  std::uint64_t max_seconds = 0;     // of wall time; 0 = any number
+  std::chrono::steady_clock::time_point begin{};  // if there are max_seconds
+  bool is_late = false;              // more than max_looks or max_seconds
   bool place_is_old = false;         // the place file has that of an earlier look of the signal
   unsigned quiet = 0;                // looks of the signal since an instruction was counted
   char place[LUA_IDSIZE + 16] = "";  // file and line, noted last
@@ -53,13 +56,18 @@ void note_place(lua_State* state) {
   }
 }
 
+bool is_beyond_wall_time() {
+  return watch.max_seconds > 0 && std::chrono::steady_clock::now() - watch.begin > std::chrono::seconds(watch.max_seconds);
+}
+
 // The place is that which was noted, whatever called what runs now.
 void raise(lua_State* state, lua_Debug*) {
   if (interrupted) {
     luaL_error(state, "interrupted");
   } else if (watch.is_late) {
+    const auto limit = is_beyond_wall_time() ? watch.max_seconds : watch.max_looks / looks_per_s;
     lua_pushfstring(state, "%s: computes for more than %d s in one call: an endless loop?", watch.place,
-                    static_cast<int>(watch.max_looks / looks_per_s));
+                    static_cast<int>(limit));
   } else {
     lua_pushfstring(state, "%s: runs more than %d million instructions in one call: an endless loop?",
                     watch.place, static_cast<int>(watch.max_instructions / 1'000'000));
@@ -125,14 +133,15 @@ void look(int) {
   lua_State* const state = running;
   if (state == nullptr || watch.is_over) return;
   watch.place_is_old = true;
-  watch.is_late = watch.max_looks > 0 && ++watch.looks > watch.max_looks;
+  watch.is_late = (watch.max_looks > 0 && ++watch.looks > watch.max_looks) || is_beyond_wall_time();
   if (watch.is_late) set_hook(state);
   if (!watch.was_seen) {
     watch.was_seen = true;
   } else if (!watch.is_counting) {
     watch.is_counting = true;
     set_hook(state);
-  } else if (++watch.quiet > patience && (watch.max_instructions > 0 || watch.max_looks > 0)) {
+  } else if (++watch.quiet > patience &&
+             (watch.max_instructions > 0 || watch.max_looks > 0 || watch.max_seconds > 0)) {
     end_process(state);
   } else if (watch.quiet == patience_for_place) {
     note_place(state);
@@ -168,6 +177,8 @@ Running::Running(const Calling& calling) noexcept : state_(calling.state) {
   watch.robot = calling.robot;
   watch.max_instructions = calling.max_instructions;
   watch.max_looks = calling.max_computing * looks_per_s;
+  watch.max_seconds = calling.max_seconds;
+  if (watch.max_seconds > 0) watch.begin = std::chrono::steady_clock::now();
   write_place(calling.robot, calling.script);
   running = calling.state;
   if (interrupted) set_hook(calling.state);

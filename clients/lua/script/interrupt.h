@@ -37,6 +37,7 @@ struct Calling {
   lua_State* state = nullptr;          ///< of the script
   std::uint64_t max_instructions = 0;  ///< 0 = any number
   std::uint64_t max_computing = 0;     ///< processor time [s]; 0 = any
+  std::uint64_t max_seconds = 0;       ///< wall time, of a call that computes; 0 = any
 };
 
 /// While it lives, interrupt_scripts() ends the script, and so do too many instructions and too much

@@ -12,7 +12,7 @@ import zmq.utils.monitor
 from google.protobuf.message import DecodeError
 
 from . import protocol_pb2 as v1
-from .cost import MOST_ROBOTS, excess
+from .cost import excess, excess_of_robots
 from .errors import ConnectionLost, ProtocolError, Refused, Timeout
 from .find_server import find_server
 
@@ -173,12 +173,12 @@ class Connection:
                                      message=f"{self.endpoint} sent {fault}"))
 
     def _check(self, welcome: v1.Welcome) -> None:
-        """H2: the major version is the same. And there are not more robots than there can be handles for."""
-        if len(welcome.robots) > MOST_ROBOTS:
+        """H2: the major version is the same. And there can be handles for all robots."""
+        fault = excess_of_robots(welcome)
+        if fault:
             self.close(linger_ms=0)
-            raise ProtocolError(v1.Error(
-                code=v1.Error.MALFORMED, severity=v1.Error.FATAL,
-                message=f"{self.endpoint} sent {len(welcome.robots)} robots; this client takes {MOST_ROBOTS} at most"))
+            raise ProtocolError(v1.Error(code=v1.Error.MALFORMED, severity=v1.Error.FATAL,
+                                         message=f"{self.endpoint} sent {fault}"))
         theirs = welcome.version
         if theirs.major == VERSION.major:
             return

@@ -10,6 +10,8 @@ CHEAP = 1 << 20  # [bytes]; so few have few fields
 LONGEST_WELCOME = 64 << 20  # and of all else that is sent once [bytes]
 MOST_FIELDS = 1 << 21  # Welcomes of ten thousand robots with a hundred fields each have half of that
 MOST_ROBOTS = 1 << 18
+LARGEST_PACKET = 1 << 16  # of range and bearing, as in scenes [bytes]
+MOST_PACKETS = 1 << 30  # of all robots of a session, which are in one message [bytes]
 _OFTEN = tuple(bytes([v1.ServerMessage.DESCRIPTOR.fields_by_name[name].number << 3 | 2])
                for name in ("observation", "world_state"))  # a tag of one byte
 
@@ -22,6 +24,24 @@ def excess(data: bytes) -> str:
         return f"a message of {len(data)} bytes, more than {LONGEST_WELCOME}, which this client does not decode"
     if _count(data, 0, len(data), v1.ServerMessage.DESCRIPTOR, MOST_FIELDS) > MOST_FIELDS:
         return f"a message of more than {MOST_FIELDS} fields, which this client does not decode"
+    return ""
+
+
+def excess_of_robots(welcome: v1.Welcome) -> str:
+    """What is wrong with the memory that handles of its robots would take; empty: nothing."""
+    if len(welcome.robots) > MOST_ROBOTS:
+        return f"{len(welcome.robots)} robots; this client takes {MOST_ROBOTS} at most"
+    packets = 0
+    for robot in welcome.robots:
+        if not robot.HasField("range_and_bearing"):
+            continue
+        size = robot.range_and_bearing.data_size
+        if size > LARGEST_PACKET:
+            return (f"range-and-bearing packets of {size} bytes for robot {robot.id!r}; at most {LARGEST_PACKET} "
+                    "are allowed")
+        packets += size
+    if packets > MOST_PACKETS:
+        return f"range-and-bearing packets of {packets} bytes in all; this client takes {MOST_PACKETS} at most"
     return ""
 
 

@@ -56,9 +56,7 @@ def _refused(title: str, name: str, code: str, *acts, **fields) -> Case:
 def _remember(peer: str):
     """The next WorldState, for later."""
     def check(stage) -> str:
-        message = stage.peer(peer).hear(stage.patience)
-        while message is not None and message.HasField("world_layout"):
-            message = stage.peer(peer).hear(stage.patience)
+        message = stage.peer(peer).hear_behind("world_layout", stage.patience)
         if message is None or not message.HasField("world_state"):
             return "no WorldState came"
         stage.memory["state"] = message.world_state

@@ -6,16 +6,22 @@ import io
 import json
 import os
 import shlex
+import signal
+import socket
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 import unittest
 from pathlib import Path
 from types import SimpleNamespace
+from unittest import mock
 from xml.etree import ElementTree
 
-from ziggurat_conformance import cli, report
+from ziggurat_conformance import cli, report, wire
 from ziggurat_conformance.case import Level, Verdict
+from ziggurat_conformance.peer import Peer, Transcript
 
 HERE = Path(__file__).resolve().parent
 TINY = [sys.executable, str(HERE / "tiny_server.py"), "{endpoint}", "{scene}"]
@@ -147,6 +153,65 @@ class Stdout(unittest.TestCase):
     def test_in_another_encoding(self):
         code, err = self.play("", "server", "--only", "S9.stale", "--", *TINY, "stale-counts", PYTHONIOENCODING="ascii:strict")
         self.assertEqual((1, ""), (code, err))
+
+
+class Ending(unittest.TestCase):
+    """Of the program beside a server that does not answer."""
+
+    def start(self, endpoint, *options):
+        kit = subprocess.Popen([sys.executable, "-B", "-m", "ziggurat_conformance", "server", *options, "--form", "binary",
+                                endpoint], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(kit.kill)
+        return kit
+
+    def flood(self, **message):
+        """The endpoint of a server that says only that, without end."""
+        data = wire.encode(wire.from_dict(wire.protocol.ServerMessage, message), wire.BINARY)
+        greeting = b"\xff" + bytes(8) + b"\x7f\x03\x00NULL" + bytes(48)
+        ready = b"\x05READY\x0bSocket-Type\x00\x00\x00\x06ROUTER"
+        frames = (bytes([0, len(data)]) + data) * 100_000
+        listener = socket.create_server(("127.0.0.1", 0))
+
+        def send(connection):
+            with connection, contextlib.suppress(OSError):
+                connection.sendall(greeting + bytes([4, len(ready)]) + ready)
+                connection.recv(1)
+                time.sleep(0.1)  # until the other end has READY
+                while True:
+                    connection.sendall(frames)
+
+        def accept():
+            with contextlib.suppress(OSError):
+                while True:
+                    threading.Thread(target=send, args=(listener.accept()[0],), daemon=True).start()
+
+        threading.Thread(target=accept, daemon=True).start()
+        self.addCleanup(listener.close)
+        self.addCleanup(listener.shutdown, socket.SHUT_RDWR)
+        return f"tcp://127.0.0.1:{listener.getsockname()[1]}"
+
+    def test_heartbeats_without_end_do_not_extend_a_wait(self):
+        kit = self.start(self.flood(heartbeat={"sequence": 1}), "--patience", "0.3", "--only", "S9.stale")
+        out, err = kit.communicate(timeout=20)
+        self.assertEqual((1, ""), (kit.returncode, err))
+        self.assertIn("heard nothing; welcome is expected", out)
+
+    def test_loading_without_end_does_not_extend_a_wait_for_ever(self):
+        peer = Peer("p", self.flood(loading={}), wire.BINARY, Transcript())
+        self.addCleanup(peer.close)
+        with mock.patch("ziggurat_conformance.peer.longest_wait", lambda patience: 1.0):
+            peer.send(wire.from_dict(wire.protocol.ClientMessage, {"hello": {}}))
+            self.assertEqual("loading", wire.kind_of(peer.hear_behind("loading", 0.5)))
+
+    def test_ctrl_c(self):
+        listener = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(listener.close)
+        kit = self.start(f"tcp://127.0.0.1:{listener.getsockname()[1]}", "--patience", "60")
+        for _ in range(2):  # the first one is whether a server listens
+            self.addCleanup(listener.accept()[0].close)
+        kit.send_signal(signal.SIGINT)
+        _, err = kit.communicate(timeout=20)
+        self.assertEqual((130, "ziggurat-conformance: interrupted; no report was written\n"), (kit.returncode, err))
 
 
 class Help(unittest.TestCase):

@@ -182,6 +182,18 @@ class Lies(SessionCase):
         self.assertIn("more than 2097152 fields", self.refused(with_robots(1 << 21)))
         self.assertIn("bytes, more than 67108864", self.refused(b"\x0a" * (65 << 20)))
 
+    def test_packets_that_could_take_all_memory_are_refused(self):
+        def with_packets(size, count):
+            robots = [v1.RobotDescription(id=f"r{i}", range_and_bearing=v1.RangeAndBearingDescription(
+                range=1, data_size=size, sends=True)) for i in range(count)]
+            return v1.ServerMessage(welcome=welcome(*robots)).SerializeToString()
+
+        self.assertIn("range-and-bearing packets of 4294967295 bytes for robot 'r0'; at most 65536 are allowed",
+                      self.refused(with_packets(2**32 - 1, 2)))
+        self.assertIn("at most 65536 are allowed", self.refused(with_packets(65_537, 1)))
+        self.assertIn("range-and-bearing packets of 1073807360 bytes in all; this client takes 1073741824 at most",
+                      self.refused(with_packets(65_536, (1 << 14) + 1)))
+
     def test_the_json_client_ends_with_a_sentence(self):
         controller = pathlib.Path(__file__).parents[4] / "clients" / "json" / "controller.py"
         for lie in (b"\xff", b"{", b"[]", b"{}", b"[" * 100_000, b'{"welcome":{}}', b'{"welcome":null}',
