@@ -15,14 +15,19 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
+#include <chrono>
 #include <optional>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
+#include "processes/folder_removal.h"
+
 namespace ziggurat::processes {
 namespace {
+
+// What is put into a folder while it is removed is removed, too, for so long.
+constexpr std::chrono::milliseconds longest_removal{2000};
 
 enum class Kind : std::int32_t {
   end_group,
@@ -153,8 +158,7 @@ void clean_up(const Left& left) {
     if (is_same) ::unlink(file.path);
   }
   remove_dead_sockets(left.sockets);
-  std::error_code ignored;
-  for (const std::string& folder : left.folders) std::filesystem::remove_all(folder, ignored);
+  for (const std::string& folder : left.folders) remove_locked_folder(folder, longest_removal);
   for (const std::string& folder : left.empty_folders) ::rmdir(folder.c_str());
 }
 
@@ -252,6 +256,16 @@ void pass_on(int pipe, Left& left, Second& second) {
   copy();
 }
 
+/// In a process of its own, so that this one can end: the watched process may start others and make files until it has
+/// ended, too.
+void clean_up_again(int pipe, Left left) {
+  if (::fork() != 0) return;
+  left.groups.clear();  // killed already: the system may use their ids again
+  while (const auto order = read_order(pipe)) take(*order, left);
+  clean_up(left);
+  ::_exit(0);
+}
+
 [[noreturn]] void guard(int pipe, std::span<char*> arguments) {
   detach(pipe);
   show_name(arguments);
@@ -261,6 +275,7 @@ void pass_on(int pipe, Left& left, Second& second) {
     pass_on(pipe, left, second);
     const auto order = read_order(pipe);
     if (!order || order->kind == Kind::end_now) clean_up(left);
+    if (order && order->kind == Kind::end_now) clean_up_again(pipe, left);
     if (!order || order->kind == Kind::end_now || order->kind == Kind::done) {
       end(second);
       ::_exit(0);
@@ -344,8 +359,7 @@ void Guardian::remove_empty_folder(const std::string& path) const noexcept {
 void Guardian::end_now() noexcept {
   Order order;
   order.kind = Kind::end_now;
-  send(orders_, order);
-  ::close(orders_);
+  send(orders_, order);  // the pipe stays open: its end is that of this process
   if (!has_ended(300)) ::kill(process_, SIGCONT);  // it goes on by itself, also if it was stopped
   process_ = -1;
 }

@@ -41,7 +41,8 @@ class Guardian {
   /// Removes this folder if nothing is left in it then.
   void remove_empty_folder(const std::string& path) const noexcept;
 
-  /// Lets it do all that now, and waits until it is done, for 0.3 s at most; it goes on without this process.
+  /// Lets it do all that now, and waits until it is done, for 0.3 s at most; it goes on without this process, and does it
+  /// again when this one has ended: other threads may be starting processes and making files until then.
   void end_now() noexcept;
 
  private:

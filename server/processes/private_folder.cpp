@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
@@ -16,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include "processes/folder_removal.h"
+
 namespace ziggurat::processes {
 namespace {
 
@@ -24,28 +27,46 @@ constexpr std::size_t longest_parent = 64;
 constexpr std::string_view prefix = "ziggurat-";
 constexpr std::size_t name_length = prefix.size() + 6;
 constexpr std::time_t young = 60;  // [s]: between being made and being locked
+constexpr std::chrono::milliseconds patience{100};  // for what is put into a folder while it is removed
 
 /// The descriptor of its lock, or -1 if a program that runs has it.
 int lock(const std::string& folder, int flags) {
-  const std::string path = folder + "/lock";
+  const std::string path = folder + "/" + lock_name;
   const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | flags, 0600);
   if (file < 0 || ::flock(file, LOCK_EX | LOCK_NB) == 0) return file;
   ::close(file);
   return -1;
 }
 
-/// Removes a folder whose program has ended. One without a lock is removed if it is empty and old.
+/// Whether what is in a folder has names that runs give; also if nothing is.
+bool has_only_ours(const std::string& folder) {
+  const auto is_ours = [](const std::string& name) {
+    constexpr std::array<std::string_view, 4> whole{"run", "socket", "files", "gnuplot.log"};
+    return name.starts_with("robots-") || name.starts_with("spawned-") || std::ranges::find(whole, name) != whole.end();
+  };
+  std::error_code error;
+  auto it = std::filesystem::directory_iterator(folder, error);
+  while (!error && it != std::filesystem::directory_iterator()) {
+    if (!is_ours(it->path().filename().string())) return false;
+    it.increment(error);
+  }
+  return !error;
+}
+
+/// Removes a folder whose program has ended. One without a lock is removed if it is old and has nothing but files of ours.
 void remove_if_left(const std::string& folder) {
   struct stat status {};
   if (::lstat(folder.c_str(), &status) != 0) return;
   if (!S_ISDIR(status.st_mode) || status.st_uid != ::geteuid()) return;
   const int file = lock(folder, 0);
   if (file < 0) {
-    if (status.st_mtime + young < std::time(nullptr)) ::rmdir(folder.c_str());
+    struct stat of_lock {};
+    const bool has_lock = ::lstat((folder + "/" + lock_name).c_str(), &of_lock) == 0;
+    const bool is_old = status.st_mtime + young < std::time(nullptr);
+    if (!has_lock && is_old && has_only_ours(folder)) remove_locked_folder(folder, patience);
     return;
   }
-  std::error_code ignored;
-  std::filesystem::remove_all(folder, ignored);
+  remove_locked_folder(folder, patience);
   ::close(file);
 }
 
@@ -117,8 +138,7 @@ PrivateFolder::PrivateFolder(const Guardian* guardian) {
 }
 
 PrivateFolder::~PrivateFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
+  remove_locked_folder(path_, patience);
   if (lock_ >= 0) ::close(lock_);
 }
 

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -94,6 +95,29 @@ TEST(Guardian, WorksAtOnceIfAsked) {
   guardian.remove_file(folder.path() + "/file");
   guardian.end_now();
   EXPECT_TRUE(eventually([&] { return !fs::exists(folder.path() + "/file"); }));
+}
+
+TEST(Guardian, RemovesWhatIsMadeBetweenItsWorkAndTheEnd) {
+  const PrivateFolder folder;
+  const std::string in = folder.path() + "/private";
+  in_another_process([&] {
+    Guardian guardian;
+    guardian.remove_folder(in);
+    std::atomic<int> made = 0;
+    std::thread worker([&] {  // as one that starts processes
+      for (;; ++made) {
+        std::error_code ignored;
+        fs::create_directory(in, ignored);
+        std::ofstream(in + "/robots-" + std::to_string(made)) << "x";
+      }
+    });
+    while (made < 100) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    guardian.end_now();
+    const int before = made;
+    while (made < before + 100) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ::kill(::getpid(), SIGKILL);
+  });
+  EXPECT_TRUE(eventually([&] { return !fs::exists(in); }));
 }
 
 TEST(Guardian, OneThatIsSlowIsNotCutShort) {

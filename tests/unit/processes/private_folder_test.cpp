@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -45,6 +46,27 @@ TEST(PrivateFolder, RemovesWhatDeadProgramsLeftAndNothingElse) {
   EXPECT_TRUE(fs::exists(unlocked)) << "young: it may be locked in a moment";
   EXPECT_TRUE(fs::exists(other + "/notes"));
   EXPECT_TRUE(fs::exists(first.path())) << "its program runs";
+}
+
+TEST(PrivateFolder, RemovesOldOnesWithoutLockThatHaveOnlyFilesOfRuns) {
+  const PrivateFolder parent;
+  const char* before = std::getenv("XDG_RUNTIME_DIR");
+  const std::string kept = before ? before : "";
+  ::setenv("XDG_RUNTIME_DIR", parent.path().c_str(), 1);
+  const std::string left = parent.path() + "/ziggurat-aaaaaa";
+  const std::string other = parent.path() + "/ziggurat-bbbbbb";
+  const auto old = fs::file_time_type::clock::now() - std::chrono::hours(1);
+  for (const auto& each : {left, other}) {
+    fs::create_directories(each + "/files/scripts");
+    for (const char* file : {"/robots-0", "/robots-0-place", "/spawned-1-place", "/run"}) std::ofstream(each + file) << "x";
+  }
+  std::ofstream(other + "/notes") << "of the user";
+  for (const auto& each : {left, other}) fs::last_write_time(each, old);
+  const PrivateFolder folder;
+  before ? ::setenv("XDG_RUNTIME_DIR", kept.c_str(), 1) : ::unsetenv("XDG_RUNTIME_DIR");
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_TRUE(fs::exists(other + "/notes"));
+  EXPECT_TRUE(fs::exists(other + "/robots-0"));
 }
 
 TEST(PrivateFolder, IsNotTakenForOneThatWasLeftWhileItIsMade) {
