@@ -53,7 +53,7 @@ std::string what_is_lost(const processes::ControllerProcess& slow, std::optional
 }
 
 /// On a process that goes on although the run is over: it is ended by force, and what it still does may be lost. That is
-/// a failure, unless it is a program that has taken leave for all of its robots.
+/// a failure, unless all of its robots have left the run or were dropped.
 /// @param has_session  a robot of it is in a session
 /// @param after        the end of the run [s]
 network::Report report_on_slow(const processes::ControllerProcess& slow, bool has_session,
@@ -62,7 +62,7 @@ network::Report report_on_slow(const processes::ControllerProcess& slow, bool ha
                                        after.count());
   network::Report report;
   const bool is_lua = !slow.place_file.empty();
-  if (slow.robots.empty() || (!is_lua && !has_session)) {
+  if (slow.robots.empty() || !has_session) {
     report.notices.push_back(describe(slow, what, layout));
     return report;
   }
