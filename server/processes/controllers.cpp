@@ -307,4 +307,11 @@ std::string names_of(const std::vector<std::size_t>& robots, const world::Layout
   return text;
 }
 
+std::string describe(const ControllerProcess& controller, const std::string& what,
+                     const world::Layout& layout) {
+  const std::string text = fmt::format("{} (process {}) {}", controller.name, controller.process.id(), what);
+  if (!controller.director.empty()) return text;
+  return fmt::format("{}; it controlled {}", text, names_of(controller.robots, layout));
+}
+
 }  // namespace ziggurat::processes

@@ -142,4 +142,9 @@ std::string find_lua_runner();
 /// "robot r0" or "robots r0, r1, r2 and 5 more".
 std::string names_of(const std::vector<std::size_t>& robots, const world::Layout& layout);
 
+/// "ziggurat-lua (process 7) was killed by signal 9 (Killed) at tick 3; it controlled robot r0"
+/// @param what  "was killed by signal 9 (Killed) at tick 3"
+std::string describe(const ControllerProcess& controller, const std::string& what,
+                     const world::Layout& layout);
+
 }  // namespace ziggurat::processes

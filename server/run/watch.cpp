@@ -5,8 +5,6 @@
 #include <poll.h>
 
 #include <algorithm>
-#include <array>
-#include <thread>
 #include <utility>
 
 namespace ziggurat::run {
@@ -21,60 +19,6 @@ constexpr milliseconds short_wait{20};      // while a controller may have vanis
 constexpr milliseconds last_messages{250};  // of a process that ended may arrive as late as that
 constexpr milliseconds noticeable{500};     // a wait that the progress line names
 constexpr milliseconds long_wait{5000};     // a wait that gets a line of its own
-
-/// How long controllers may take to end.
-struct Patience {
-  milliseconds answer;  ///< of controllers that the run has not started, to the message that the run is over
-  milliseconds leave;   ///< the same of those that it has started
-  int exit_ms;          ///< after that, or after all have left, and again after SIGTERM
-};
-constexpr Patience usual{milliseconds{2000}, milliseconds{4000}, 1000};
-// Together with what else is to be done, less than Signals::patience.
-constexpr Patience interrupted{milliseconds{400}, milliseconds{400}, 100};
-
-/// "ziggurat-lua (process 7) was killed by signal 9 (Killed) at tick 3; it controlled robot r0"
-/// @param what  "was killed by signal 9 (Killed) at tick 3"
-std::string describe(const processes::ControllerProcess& controller, const std::string& what,
-                     const world::Layout& layout) {
-  const std::string text = fmt::format("{} (process {}) {}", controller.name, controller.process.id(), what);
-  if (!controller.director.empty()) return text;
-  return fmt::format("{}; it controlled {}", text, processes::names_of(controller.robots, layout));
-}
-
-/// What is lost with a Lua process that is ended: it has said nothing of what its robots did at the end.
-std::string what_is_lost(const processes::ControllerProcess& slow, std::optional<std::size_t> busy, const world::Layout& layout) {
-  std::string text;
-  const auto behind = busy ? std::ranges::upper_bound(slow.robots, *busy) : slow.robots.end();
-  // Robots that came later have a thread each, in any order.
-  if (!slow.pipe && behind != slow.robots.end()) {
-    text = fmt::format("; destroy() of {} did not run", processes::names_of({behind, slow.robots.end()}, layout));
-  }
-  return text + fmt::format("; the last log lines and metrics of {} may be lost", processes::names_of(slow.robots, layout));
-}
-
-/// On a process that goes on although the run is over: it is ended by force, and what it still does may be lost. That is
-/// a failure, unless all of its robots have left the run or were dropped.
-/// @param has_session  a robot of it is in a session
-/// @param after        the end of the run [s]
-network::Report report_on_slow(const processes::ControllerProcess& slow, bool has_session,
-                               std::chrono::duration<double> after, const world::Layout& layout, std::uint64_t tick) {
-  const std::string what = fmt::format("still ran {:.0f} s after the end of the run, and was ended",
-                                       after.count());
-  network::Report report;
-  const bool is_lua = !slow.place_file.empty();
-  if (slow.robots.empty() || !has_session) {
-    report.notices.push_back(describe(slow, what, layout));
-    return report;
-  }
-  const auto script = processes::busy_script(slow);
-  const auto found = std::ranges::find(slow.robots, script ? script->robot : "",
-                                       [&](std::size_t robot) { return layout.robots[robot].id; });
-  const auto busy = found == slow.robots.end() ? std::nullopt : std::optional(*found);
-  auto text = busy ? fmt::format("{}: the script {}", script->place, what) : describe(slow, what, layout);
-  if (is_lua) text += what_is_lost(slow, busy, layout);
-  report.failures.push_back({busy.value_or(slow.robots.front()), std::move(text), tick});
-  return report;
-}
 
 /// Directors without session that the run can't go on without.
 /// @param gathered  every robot and director was there
@@ -288,7 +232,7 @@ std::optional<Ending> Watch::lost_controller() {
   }
   if (ended) {
     const std::string when = gathered_ ? fmt::format("at tick {}", tick_) : "before the first tick";
-    vanished_ = describe(*ended, fmt::format("{} {}", ended->process.how_it_ended(), when), world_.simulation.layout());
+    vanished_ = processes::describe(*ended, fmt::format("{} {}", ended->process.how_it_ended(), when), world_.simulation.layout());
     if (const auto script = processes::busy_script(*ended)) {  // of many robots one may be the reason
       vanished_ += fmt::format("; it ran the script of {}: {}", script->robot, script->place);
     }
@@ -419,39 +363,6 @@ void Watch::report_awaited() {
   console_.notice(fmt::format("waiting for {}{}", all, where));
   printed_ = std::move(text);
   printed_detail_ = detail;
-}
-
-void Watch::end_run(const wire::End& end) {
-  const bool is_planned = end.reason != wire::EndReason::interrupted;
-  const Patience patience = is_planned ? usual : interrupted;
-  server_.finish(end);
-  const std::array descriptors{signals_.descriptor()};
-  const auto begin = clock::now();
-  for (auto waited = clock::duration::zero(); waited < patience.leave; waited = clock::now() - begin) {
-    const auto outcome = server_.drain({short_wait, descriptors});
-    take_report();
-    if (outcome == network::Outcome::complete || (waited >= patience.answer && !controllers_.are_running())) break;
-    if (signals_.take().interruptions > 0) {
-      controllers_.kill();
-      break;
-    }
-  }
-  peers_.print_log(tick_);
-  const auto is_interrupted = [&] {
-    server_.drain({milliseconds{0}, {}});  // what does not fit into a socket keeps its process from ending
-    take_report();
-    return signals_.take().interruptions > 0;
-  };
-  controllers_.end(patience.exit_ms, is_interrupted, [&](const processes::ControllerProcess& slow) {
-    if (!is_planned) return;
-    const auto status = server_.status();
-    const bool has_session = std::ranges::any_of(
-        slow.robots, [&](std::size_t robot) { return status[robot].membership == Membership::held; });
-    peers_.take(report_on_slow(slow, has_session, clock::now() - begin, world_.simulation.layout(), tick_), tick_);
-  });
-  server_.drain({short_wait, {}});  // what those that ended meanwhile have said, their failures
-  take_report();
-  peers_.print_log(tick_);
 }
 
 }  // namespace ziggurat::run
