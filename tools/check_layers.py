@@ -8,9 +8,10 @@ a module that is not in the table, an entry of the table that no include uses, a
 this table and the one in docs/architecture.md. A new module is added to both first.
 """
 
-import pathlib
 import re
 import sys
+
+from checkout import named_root
 
 # module -> modules whose headers it may include, besides its own.
 MODULES = {
@@ -139,14 +140,14 @@ def sources(root):
 
 def check(root):
     """All includes under root that are not allowed, as file:line: text."""
-    root = root.resolve()
+    root = root
     return [f"{path.relative_to(root)}:{number}: {sentence}"
             for path in sources(root) for number, sentence in violations_of_file(path, root)]
 
 
 def unused(root, modules, libraries):
     """The entries of both tables that no include uses, as sentences."""
-    root = root.resolve()
+    root = root
     used = set()
     for path in sources(root):
         module = module_of(path.relative_to(root))
@@ -197,11 +198,7 @@ def differences(document, modules, libraries):
 
 
 def main():
-    arguments = sys.argv[1:]
-    if len(arguments) > 1 or arguments[:1] in (["-h"], ["--help"]):
-        print(__doc__)
-        return 0 if len(arguments) == 1 else 1
-    root = pathlib.Path(arguments[0]) if arguments else pathlib.Path(__file__).resolve().parents[1]
+    root = named_root(__doc__)
     if not (root / "server").is_dir():
         print(f"{root}: there is no server/ here; write the top of the checkout", file=sys.stderr)
         return 1

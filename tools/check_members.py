@@ -8,9 +8,10 @@ run. A local one that the next line fills with << is left out. Each member witho
 printed as file:line: text; the exit code is 1 if there is any.
 """
 
-import pathlib
 import re
 import sys
+
+from checkout import named_root
 
 MEMBER = re.compile(r"\s+(?:math::|Eigen::)?(Vector\d|Quaternion|Matrix\d|Vector\dd|Quaterniond|Matrix\dd)"
                     r"\s+\w+(, \w+)*;")
@@ -30,12 +31,8 @@ def check(root):
 
 
 def main():
-    arguments = sys.argv[1:]
-    if len(arguments) > 1 or arguments[:1] in (["-h"], ["--help"]):
-        print(__doc__)
-        return 0 if len(arguments) == 1 else 1
-    root = pathlib.Path(arguments[0]) if arguments else pathlib.Path(__file__).resolve().parents[1]
-    found = check(root.resolve())
+    root = named_root(__doc__)
+    found = check(root)
     print("\n".join(found) or "every vector, quaternion and matrix of a header has an initial value")
     return 1 if found else 0
 

@@ -12,9 +12,10 @@ each of them, which is enough for clang-formatted sources.
 """
 
 import dataclasses
-import pathlib
 import re
 import sys
+
+from checkout import named_root
 
 LONGEST_FUNCTION = 59  # lines
 MOST_FUNCTIONS = 25  # of a class
@@ -147,11 +148,7 @@ def violations(source):
 
 
 def main():
-    arguments = sys.argv[1:]
-    if len(arguments) > 1 or arguments[:1] in (["-h"], ["--help"]):
-        print(__doc__)
-        return 0 if len(arguments) == 1 else 1
-    root = pathlib.Path(arguments[0]) if arguments else pathlib.Path(__file__).resolve().parents[1]
+    root = named_root(__doc__)
     files = sorted(path for path in (root / "server").rglob("*") if path.suffix in {".h", ".cpp"})
     if not files:
         print(f"{root}: there is no server/ here; write the top of the checkout", file=sys.stderr)

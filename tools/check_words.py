@@ -9,9 +9,10 @@ Each use is printed as file:line: text; the exit code is 1 if there is any. Reco
 licence and results of benchmarks are left out.
 """
 
-import pathlib
 import re
 import sys
+
+from checkout import named_root
 
 # pattern -> what to write instead. Patterns match whole words, also between the underscores of a name;
 # case counts where they have capitals.
@@ -70,13 +71,9 @@ def check(root):
 
 
 def main():
-    arguments = sys.argv[1:]
-    if len(arguments) > 1 or arguments[:1] in (["-h"], ["--help"]):
-        print(__doc__)
-        return 0 if len(arguments) == 1 else 1
-    root = pathlib.Path(arguments[0]) if arguments else pathlib.Path(__file__).resolve().parents[1]
-    found = check(root.resolve())
-    print("\n".join(found) or f"{sum(1 for _ in files(root.resolve()))} texts: no word of the list")
+    root = named_root(__doc__)
+    found = check(root)
+    print("\n".join(found) or f"{sum(1 for _ in files(root))} texts: no word of the list")
     return 1 if found else 0
 
 
