@@ -17,8 +17,8 @@ struct PoseSource {
   };
   /// Adds up to a moment in the frame of the magnet's link: own + dialect * turn * field.
   struct Magnet {
-    math::Quaternion turn =
-        math::Quaternion::Identity();           ///< from the anchor's frame to the link's
+    /// From the anchor's frame to the link's.
+    math::Quaternion turn = math::Quaternion::Identity();
     math::Vector3 own = math::Vector3::Zero();  ///< that of its remanence and moment [A m^2]
   };
   std::vector<Joint> joints;

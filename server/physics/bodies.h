@@ -37,8 +37,8 @@ struct LinkBody {
   double mass = 0;
   math::Vector3 inertia{0, 0, 0};  ///< principal [kg m^2]
   math::Pose center;               ///< X_LS: the link's own centre of mass and principal axes
-  math::Vector3 half_extents =
-      math::Vector3::Zero();  ///< of the box about the shape and S's origin, S's axes [m]
+  /// Of the box about the shape and S's origin, S's axes [m].
+  math::Vector3 half_extents = math::Vector3::Zero();
   scene::Damping damping;
   math::Pose placed;  ///< X_WL as placed
 

@@ -277,8 +277,8 @@ struct ControllerDevices {
   std::optional<CamerasUse> cameras;
   std::vector<Imu> imus;
   std::vector<ContactSensor> contact_sensors;
-  std::size_t mounted_memory =
-      0;  ///< about what those that are fixed to an anchor take in each robot [bytes]
+  /// About what those that are fixed to an anchor take in each robot [bytes].
+  std::size_t mounted_memory = 0;
 };
 
 }  // namespace ziggurat::scene

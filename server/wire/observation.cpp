@@ -57,24 +57,19 @@ void add_packets(const Roster& roster, const world::Observations& from, v1::Obse
 
 }  // namespace
 
-std::size_t radio_bytes(const Roster& roster, const world::RadioMessages& messages) {
-  std::size_t bytes = 0;
-  for_each(
-      roster.radios, messages.entries, [](const auto& entry) { return entry.radio; },
-      [&](const world::RadioMessages::Entry& entry, std::size_t) { bytes += entry.size; });
-  return bytes;
-}
-
-std::size_t heard_bytes(const Roster& roster, const world::Observations& from) {
+Heard heard_by(const Roster& roster, const world::Observations& from) {
   constexpr std::size_t of_message = 32, of_packet = 64;
-  std::size_t bytes = 0;
+  Heard heard;
   for_each(
       roster.radios, from.radio_messages.entries, [](const auto& entry) { return entry.radio; },
-      [&](const auto&, std::size_t) { bytes += of_message; });
+      [&](const world::RadioMessages::Entry& entry, std::size_t) {
+        heard.sent += entry.size;
+        heard.rest += of_message;
+      });
   for_each(
       roster.range_and_bearing, from.range_and_bearing, [](const auto& packet) { return packet.receiver; },
-      [&](const world::RangeAndBearingPacket& packet, std::size_t) { bytes += of_packet + packet.data.count; });
-  return bytes;
+      [&](const world::RangeAndBearingPacket& packet, std::size_t) { heard.rest += of_packet + packet.data.count; });
+  return heard;
 }
 
 void fill(const Roster& roster, const world::Observations& from,

@@ -11,12 +11,12 @@
 
 namespace ziggurat::wire {
 
-/// Bytes that radios of the session's robots received.
-std::size_t radio_bytes(const Roster& roster, const world::RadioMessages& messages);
-
-/// What the messages and packets take that they received, without what radios sent in them: at least so many bytes of
-/// memory, of which messages without content have many.
-std::size_t heard_bytes(const Roster& roster, const world::Observations& from);
+/// What the radios and range-and-bearing devices of a session's robots received.
+struct Heard {
+  std::size_t sent = 0;  ///< content of radio messages [bytes]
+  std::size_t rest = 0;  ///< least memory of all else; messages without content take it, too [bytes]
+};
+Heard heard_by(const Roster& roster, const world::Observations& from);
 
 /// Bytes of payloads that cameras of the session's robots read.
 std::size_t payload_bytes(const Roster& roster, const world::Observations& from,

@@ -185,9 +185,9 @@ void Outbox::refusal(const Refusal& from) {
 bool Outbox::observation(const Roster& roster, const world::Observations& observations,
                          std::span<const std::string> tag_payloads, std::size_t limit,
                          std::optional<std::uint64_t> epoch) {
-  const std::size_t changing = radio_bytes(roster, observations.radio_messages) +
-                               payload_bytes(roster, observations, tag_payloads);
-  if (changing + heard_bytes(roster, observations) + image_bytes(roster, observations) > limit) return false;
+  const Heard heard = heard_by(roster, observations);
+  const std::size_t changing = heard.sent + payload_bytes(roster, observations, tag_payloads);
+  if (changing + heard.rest + image_bytes(roster, observations) > limit) return false;
   message_->forget(changing);
   v1::Observation& observation = *message_->message.mutable_observation();
   observation.Clear();

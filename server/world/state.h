@@ -30,8 +30,8 @@ struct Ray {
     camera,             ///< from the camera to what it looked for, or to what was in between
   };
   Kind kind = Kind::proximity;
-  std::size_t robot =
-      0;  ///< into Layout::robots: the one with the device; of a link, with the receiver
+  /// Into Layout::robots: the one with the device; of a link, with the receiver.
+  std::size_t robot = 0;
   math::Vector3 start = math::Vector3::Zero(), end = math::Vector3::Zero();  ///< in W [m]
   bool hit = false;  ///< not radio: an entity was met at `end`
 };
