@@ -35,8 +35,8 @@ struct Led {
 struct DirectionalLed {
   std::string id;
   Anchor anchor;
-  math::Pose pose;          ///< in the anchor frame; +z is the direction of emission
-  double observable_angle;  ///< half-angle about +z [rad]
+  math::Pose pose;              ///< in the anchor frame; +z is the direction of emission
+  double observable_angle = 0;  ///< half-angle about +z [rad]
   Color color;
   Location where;
 };
@@ -44,9 +44,9 @@ struct DirectionalLed {
 struct Tag {
   std::string id;
   Anchor anchor;
-  math::Pose pose;          ///< in the anchor frame; +z is the normal
-  double observable_angle;  ///< half-angle about +z [rad]
-  double side_length;       ///< [m]
+  math::Pose pose;              ///< in the anchor frame; +z is the normal
+  double observable_angle = 0;  ///< half-angle about +z [rad]
+  double side_length = 0;       ///< [m]
   std::string payload;
   Location where;
 };
@@ -55,7 +55,7 @@ struct Radio {
   std::string id;
   Anchor anchor;
   math::Vector3 position = math::Vector3::Zero();  ///< in the anchor frame [m]
-  double range;                                    ///< of sending [m]
+  double range = 0;                                ///< of sending [m]
   Location where;
 };
 
@@ -84,8 +84,8 @@ struct Magnet {
 /// the points, level outside of them.
 struct Response {
   struct Point {
-    double distance;  ///< [m], >= 0
-    double reading;   ///< in the sensor's own unit
+    double distance = 0;  ///< [m], >= 0
+    double reading = 0;   ///< in the sensor's own unit
   };
   std::vector<Point> points;  ///< ascending by distance; at least one
 };
@@ -94,7 +94,7 @@ struct ProximitySensor {
   Anchor anchor;
   math::Vector3 offset = math::Vector3::Zero();     ///< start of the ray in the anchor frame [m]
   math::Vector3 direction = math::Vector3::Zero();  ///< unit, in the anchor frame
-  double range;                                     ///< length of the ray [m]
+  double range = 0;                                 ///< length of the ray [m]
   std::optional<bool> sees_floor;                   ///< none: that of the controller's sensor
   std::optional<Response> response;                 ///< none: that of the controller's sensor
   Location where;
@@ -103,9 +103,9 @@ struct ProximitySensor {
 /// Sends its position and some bytes to others in line of sight, and receives theirs.
 struct RangeAndBearing {
   Anchor anchor;
-  math::Pose pose;     ///< in the anchor frame; bearings are relative to it
-  double range;        ///< of sending [m]
-  unsigned data_size;  ///< [bytes] of every packet; only equal sizes hear each other
+  math::Pose pose;         ///< in the anchor frame; bearings are relative to it
+  double range = 0;        ///< of sending [m]
+  unsigned data_size = 0;  ///< [bytes] of every packet; only equal sizes hear each other
   Location where;
 };
 
@@ -158,7 +158,7 @@ struct JointSensor {
 
 struct Detector {
   enum class Kind { led, directional_led, tag } kind;
-  std::size_t medium;  ///< index into Scene::media
+  std::size_t medium = 0;  ///< index into Scene::media
   bool show_rays = false;
   Location where;
 };

@@ -19,9 +19,9 @@ namespace ziggurat::scene {
 
 /// What a scene and its includes may still take.
 struct ReadBudget {
-  std::size_t bytes;
-  std::size_t tags;        ///< opening and closing ones
-  std::size_t attributes;  ///< of each element
+  std::size_t bytes = 0;
+  std::size_t tags = 0;        ///< opening and closing ones
+  std::size_t attributes = 0;  ///< of each element
   bool is_spent = false;   ///< a value with parameters was too large
 };
 

@@ -20,23 +20,23 @@ struct Box {
   math::Vector3 size = math::Vector3::Zero();  ///< full extents along x, y, z [m]
 };
 struct Cylinder {
-  double radius;  ///< [m]
-  double height;  ///< along z [m]
+  double radius = 0;  ///< [m]
+  double height = 0;  ///< along z [m]
 };
 struct Sphere {
-  double radius;  ///< [m]
+  double radius = 0;  ///< [m]
 };
 /// A cylinder with a half-ball on either end.
 struct Capsule {
-  double radius;  ///< [m]
-  double height;  ///< along z, from end to end [m]; >= 2 * radius
+  double radius = 0;  ///< [m]
+  double height = 0;  ///< along z, from end to end [m]; >= 2 * radius
 };
 
 /// A convex solid with flat faces, in the link's frame, and its mass properties.
 struct Polyhedron {
   struct Face {
     math::Vector3 normal = math::Vector3::Zero();  ///< unit, outwards
-    double offset;                                 ///< normal . x of its points [m]
+    double offset = 0;                             ///< normal . x of its points [m]
     std::vector<std::size_t> corners;  ///< into `vertices`, counterclockwise seen from outside
   };
   std::vector<math::Vector3> vertices;  ///< [m]

@@ -95,8 +95,8 @@ constexpr bool has_coordinate(JointType type) {
 }
 
 struct JointLimit {
-  double lower;  ///< [m] or [rad], relative to the assembled pose; <= upper
-  double upper;  ///< [m] or [rad]
+  double lower = 0;  ///< [m] or [rad], relative to the assembled pose; <= upper
+  double upper = 0;  ///< [m] or [rad]
 };
 
 struct Joint {

@@ -96,7 +96,7 @@ class OneOf {
 
 /// Reads an integer from `least` to `most`.
 struct Whole {
-  unsigned least, most;
+  unsigned least = 0, most = 0;
   Value<unsigned> operator()(std::string_view text) const;
 };
 

@@ -11,10 +11,10 @@ SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "tools/check_members.py"
 
 
 class CheckMembers(unittest.TestCase):
-    def run_on(self, text):
+    def run_on(self, text, path="server/a/b.h"):
         """Exit code and output of the check on one header."""
         with tempfile.TemporaryDirectory() as folder:
-            file = pathlib.Path(folder, "server/a/b.h")
+            file = pathlib.Path(folder, path)
             file.parent.mkdir(parents=True)
             file.write_text(text)
             done = subprocess.run([sys.executable, SCRIPT, folder], capture_output=True, text=True)
@@ -27,6 +27,12 @@ class CheckMembers(unittest.TestCase):
                 code, out = self.run_on(f"struct A {{\n  {member}\n}};\n")
                 self.assertEqual(code, 1, out)
                 self.assertTrue(out.startswith("server/a/b.h:2: "), out)
+
+    def test_finds_a_number_of_a_scene(self):
+        for member in ["double range;  ///< [m]", "unsigned least, most;", "std::size_t medium;", "bool image;"]:
+            with self.subTest(member):
+                self.assertEqual(self.run_on(f"struct A {{\n  {member}\n}};\n", "server/scene/b.h")[0], 1)
+                self.assertEqual(self.run_on(f"struct A {{\n  {member}\n}};\n")[0], 0)
 
     def test_leaves_others_alone(self):
         text = ("struct A {\n  Vector3 offset = Vector3::Zero();\n  math::Pose pose;\n};\n"
