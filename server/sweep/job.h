@@ -55,8 +55,8 @@ class Job {
   const Settings& settings_;
   Combination combination_;
   std::filesystem::path folder_;
+  clock::time_point start_ = clock::now();  ///< before the process begins: this one may have to wait behind it
   processes::ChildProcess process_;
-  clock::time_point start_ = clock::now();
   clock::time_point end_;
   std::optional<clock::time_point> stopped_at_;  ///< because it took too long
 };
