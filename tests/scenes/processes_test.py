@@ -201,10 +201,25 @@ end
         self.write("swing.lua", STUCK_IN_LIBRARY)
         self.expect_waiting_for_line_4()
 
+    def test_a_library_function_that_does_not_end_ends_its_script_alone(self):
+        self.write("swing.lua", STUCK_IN_LIBRARY + "function destroy() log('bye') end")
+        outcome = self.run_scene("--ticks", 2, "--lua-processes", 1, code=CONTROLLER_FAILED)
+        self.assertRegex(outcome.err, r"robot r1 .* failed at tick 1: .*swing\.lua:4: string\.find computes for more than 5 s "
+                                      r"in one call \(in step 1\)")
+        self.assertEqual(["[2 r0] bye", "[2 r2] bye"], sorted(line for line in outcome.lines if "bye" in line))
+
     def test_the_end_of_a_process_names_the_script_that_ran(self):
-        self.write("swing.lua", STUCK_IN_LIBRARY)
+        self.write("swing.lua", """function init() end
+function step()
+   if robot.id == "r1" then
+      setmetatable({}, {__gc = function() while true do end end})
+      collectgarbage()
+   end
+end
+""")
         summary = self.folder / "s.json"
-        outcome = self.run_scene("--lua-processes", 1, "--summary", summary, code=CONTROLLER_FAILED)
+        outcome = self.run_scene("--lua-processes", 1, "--trust-scripts", "--lua-time", 1, "--summary", summary,
+                                 code=CONTROLLER_FAILED)
         sentence = r"ended with exit code 3 at tick 1; it controlled robots r0, r1, r2; it ran the script of r1: .*swing\.lua:4$"
         self.assertRegex(outcome.err, "(?m)" + sentence)
         self.assertRegex(json.loads(summary.read_text())["vanished"], sentence)

@@ -7,6 +7,7 @@
 #include "script/math_random.h"
 #include "script/ordered_pairs.h"
 #include "script/sandbox.h"
+#include "script/stuck_call.h"
 #include "script/watched_functions.h"
 
 namespace ziggurat::lua {
@@ -40,6 +41,7 @@ void confine_libraries(lua_State* state, RandomStream& math_random) {
   set_math_random(state, math_random);
   set_ordered_pairs(state);
   set_watched_functions(state);
+  mark_leavable_functions(state);
 }
 
 void prepend_to_package_path(lua_State* state, const std::string& folder) {

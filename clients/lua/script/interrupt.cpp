@@ -7,17 +7,18 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <string>
 
 #include "script/place_file.h"
+#include "script/stuck_call.h"
 
 namespace ziggurat::lua {
 namespace {
 
 constexpr int step = 1000;            // instructions between two looks of the hook
 constexpr long interval_us = 50'000;  // computing time between two looks of the signal
-// Such intervals without an instruction: a library function runs.
-constexpr unsigned patience_for_place = 10, patience = 100;
 constexpr int looks_per_s = 1'000'000 / interval_us;
+constexpr unsigned quiet_for_place = 10;  // such intervals without an instruction: a library function runs
 constexpr int switch_cost = 100;      // of a coroutine that is resumed [instructions]
 constexpr int exit_failed_script = 3;
 
@@ -29,6 +30,7 @@ static_assert(std::atomic<bool>::is_always_lock_free &&
 // Of the running call. Written by the thread that runs scripts, and by its signal handler.
 struct Watch {
   const char* robot = "";
+  const char* script = "";  // its file
   std::uint64_t max_instructions = 0;
   std::uint64_t instructions = 0;  // counted so far
   bool was_seen = false;           // by the signal
@@ -36,11 +38,12 @@ struct Watch {
   bool is_over = false;              // more than max_instructions, or late
   std::uint64_t max_looks = 0;       // of the signal; 0 = any number
   std::uint64_t looks = 0;           // so far
+  std::uint64_t max_quiet = 0;       // looks of the signal without an instruction between them
   std::uint64_t max_seconds = 0;     // of wall time; 0 = any number
   std::chrono::steady_clock::time_point begin{};  // if there are max_seconds
   bool is_late = false;              // more than max_looks or max_seconds
   bool place_is_old = false;         // the place file has that of an earlier look of the signal
-  unsigned quiet = 0;                // looks of the signal since an instruction was counted
+  std::uint64_t quiet = 0;               // looks of the signal since an instruction was counted
   char place[LUA_IDSIZE + 16] = "";  // file and line, noted last
 };
 Watch watch;
@@ -54,10 +57,17 @@ void note_place(lua_State* state) {
     std::snprintf(watch.place, sizeof watch.place, "%s:%d", where.short_src, where.currentline);
     return;
   }
+  std::snprintf(watch.place, sizeof watch.place, "%s", watch.script);  // a coroutine of C functions
 }
 
 bool is_beyond_wall_time() {
   return watch.max_seconds > 0 && std::chrono::steady_clock::now() - watch.begin > std::chrono::seconds(watch.max_seconds);
+}
+
+// Whether a library function runs for too long.
+bool is_stuck() {
+  if (watch.quiet > 1 && is_beyond_wall_time()) return true;
+  return watch.quiet > watch.max_quiet && (watch.max_instructions > 0 || watch.max_looks > 0 || watch.max_seconds > 0);
 }
 
 // The place is that which was noted, whatever called what runs now.
@@ -117,9 +127,7 @@ void set_hook(lua_State* state) {
   if (watch.is_counting && !counts) lua_sethook(state, count, LUA_MASKCOUNT, step);
 }
 
-// In a library function: its state does not change meanwhile, so that it can be looked at.
-[[noreturn]] void end_process(lua_State* state) {
-  note_place(state);
+[[noreturn]] void end_process() {
   char text[512];
   const int size = std::snprintf(text, sizeof text,
                                  "ziggurat-lua: '%.100s': %s: calls a library function that "
@@ -140,10 +148,11 @@ void look(int) {
   } else if (!watch.is_counting) {
     watch.is_counting = true;
     set_hook(state);
-  } else if (++watch.quiet > patience &&
-             (watch.max_instructions > 0 || watch.max_looks > 0 || watch.max_seconds > 0)) {
-    end_process(state);
-  } else if (watch.quiet == patience_for_place) {
+  } else if (++watch.quiet; is_stuck()) {
+    note_place(state);
+    leave_stuck_call(state);
+    if (watch.quiet > watch.max_quiet + looks_per_s) end_process();
+  } else if (watch.quiet == quiet_for_place) {
     note_place(state);
     write_place(watch.robot, watch.place);
   }
@@ -160,6 +169,11 @@ bool are_scripts_interrupted() noexcept { return interrupted; }
 
 bool must_scripts_end() noexcept { return interrupted || watch.is_over; }
 
+std::string where_left() {
+  return std::string(watch.place) + ": " + left_function() + " computes for more than " +
+         std::to_string(is_beyond_wall_time() ? watch.max_seconds : watch.max_quiet / looks_per_s) + " s in one call";
+}
+
 void allow_scripts() noexcept { interrupted = false; }
 
 void watch_scripts() {
@@ -175,8 +189,10 @@ void watch_scripts() {
 Running::Running(const Calling& calling) noexcept : state_(calling.state) {
   watch = {};
   watch.robot = calling.robot;
+  watch.script = calling.script;
   watch.max_instructions = calling.max_instructions;
   watch.max_looks = calling.max_computing * looks_per_s;
+  watch.max_quiet = calling.max_in_library * looks_per_s;
   watch.max_seconds = calling.max_seconds;
   if (watch.max_seconds > 0) watch.begin = std::chrono::steady_clock::now();
   write_place(calling.robot, calling.script);

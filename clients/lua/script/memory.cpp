@@ -7,6 +7,7 @@
 #include <new>
 
 #include "script/interrupt.h"
+#include "script/stuck_call.h"
 
 namespace ziggurat::lua {
 namespace {
@@ -48,9 +49,14 @@ void* BoundedState::resize(BlockPool& pool, void* block, std::size_t old_size, s
   return moved;
 }
 
-void* BoundedState::allocate(void* budget_of_state, void* block, std::size_t old_size,
-                             std::size_t new_size) {
-  auto& budget = *static_cast<Budget*>(budget_of_state);
+void* BoundedState::allocate(void* budget, void* block, std::size_t old_size, std::size_t new_size) {
+  begin_allocation();
+  void* const moved = allocate_within(*static_cast<Budget*>(budget), block, old_size, new_size);
+  end_allocation();
+  return moved;
+}
+
+void* BoundedState::allocate_within(Budget& budget, void* block, std::size_t old_size, std::size_t new_size) {
   if (block == nullptr) old_size = 0;  // old_size is the type of the new object
   if (new_size == 0) {
     if (block == nullptr) return nullptr;

@@ -7,6 +7,7 @@
 #include "script/error_message.h"
 #include "script/guarded.h"
 #include "script/missing_fields.h"
+#include "script/stuck_call.h"
 
 namespace ziggurat::lua {
 namespace {
@@ -54,6 +55,7 @@ Script::Script(std::string name, const ScriptOptions& options)
       max_memory_(options.max_memory),
       max_instructions_(options.max_instructions),
       max_computing_(options.max_computing),
+      max_in_library_(options.max_in_library),
       folders_(options.folders),
       most_files_(options.most_files),
       script_(shown(options.script).string()),
@@ -111,7 +113,12 @@ Failure Script::call(const Wanted& wanted, const std::string& moment, bool* answ
 }
 
 Failure Script::call_prepared(const std::string& moment, int arguments, int results) {
-  if (lua_pcall(state_.get(), arguments, results, handler) != LUA_OK) return describe_error(moment);
+  const auto status = call_leavably(state_.get(), arguments, results, handler);
+  if (!status) {
+    state_.abandon();
+    return where_left() + " (in " + moment + ")";
+  }
+  if (*status != LUA_OK) return describe_error(moment);
   return std::nullopt;
 }
 

@@ -29,6 +29,7 @@ struct ScriptOptions {
   const Folders* folders = nullptr;
   std::size_t most_files = most_open_files;  ///< that a script that is not trusted may have open at once
   std::span<std::byte> region{};  ///< for the script's Lua state; outlives it. Empty: it has none of its own
+  std::uint64_t max_in_library = 5;  ///< processor time of a function of Lua's library in a call [s]
 };
 
 /// The error of a script: `scenes/x.lua:12: attempt to … (in step 37)`, a line feed, and Lua's
@@ -72,7 +73,9 @@ class Script {
   RandomStreams& random() { return random_; }
   const std::string& path() const { return script_; }  ///< for messages
   std::uint64_t first_tick() const { return first_tick_; }
-  Calling calling() const { return {name_.c_str(), script_.c_str(), state_.get(), max_instructions_, max_computing_}; }
+  Calling calling() const {
+    return {name_.c_str(), script_.c_str(), state_.get(), max_instructions_, max_computing_, max_in_library_};
+  }
 
  private:
   static int build(lua_State* state);
@@ -90,6 +93,7 @@ class Script {
   std::size_t max_memory_;
   std::uint64_t max_instructions_;
   std::uint64_t max_computing_;
+  std::uint64_t max_in_library_;
   const Folders* folders_;
   std::size_t most_files_;
   std::string script_;  // path for messages

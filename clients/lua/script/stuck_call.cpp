@@ -1,0 +1,120 @@
+#include "script/stuck_call.h"
+
+#include <pthread.h>
+#include <setjmp.h>
+#include <signal.h>
+
+#include <array>
+#include <string_view>
+
+namespace ziggurat::lua {
+namespace {
+
+struct Leavable {
+  const char* library;
+  const char* name;
+  const char* full_name;
+  lua_CFunction function = nullptr;  // of Lua; the same in each state
+};
+
+std::array<Leavable, 9> leavable{{{"string", "find", "string.find"},
+                                  {"string", "match", "string.match"},
+                                  {"string", "gsub", "string.gsub"},
+                                  {"string", "rep", "string.rep"},
+                                  {"table", "concat", "table.concat"},
+                                  {"table", "insert", "table.insert"},
+                                  {"table", "move", "table.move"},
+                                  {"table", "remove", "table.remove"},
+                                  {"table", "sort", "table.sort"}}};
+
+// Read and written by the thread that runs scripts, and by its signal handler.
+sigjmp_buf way_out;
+pthread_t thread_of_call;
+volatile sig_atomic_t has_way_out = 0;
+volatile sig_atomic_t is_allocating = 0;
+volatile sig_atomic_t is_leaving = 0;  // once the memory is allocated
+const char* volatile left = "";
+
+// Upvalue: its Leavable. In one frame, so that messages name it as they do in Lua.
+int call_marked(lua_State* state) {
+  return static_cast<const Leavable*>(lua_touserdata(state, lua_upvalueindex(1)))->function(state);
+}
+
+// Reads only: what runs is in the middle of something.
+const char* marked_name(lua_State* state) {
+  lua_Debug function{};
+  if (lua_getstack(state, 0, &function) == 0 || lua_getinfo(state, "S", &function) == 0) return nullptr;
+  if (std::string_view(function.what) != "C") return nullptr;
+  const void* const mark = lua_touserdata(state, lua_upvalueindex(1));
+  for (const Leavable& each : leavable) {
+    if (mark == &each) return each.full_name;
+  }
+  // What string.gmatch returns has the text, the pattern and the state of the search. Nothing else does.
+  const bool is_gmatch = lua_type(state, lua_upvalueindex(1)) == LUA_TSTRING &&
+                         lua_type(state, lua_upvalueindex(2)) == LUA_TSTRING &&
+                         lua_type(state, lua_upvalueindex(3)) == LUA_TUSERDATA;
+  return is_gmatch ? "string.gmatch" : nullptr;
+}
+
+[[noreturn]] void jump() {
+  has_way_out = 0;
+  is_leaving = 0;
+  ::siglongjmp(way_out, 1);
+}
+
+// The handler of the signal was left, so that it is still blocked.
+void unblock_signal() {
+  sigset_t timer;
+  ::sigemptyset(&timer);
+  ::sigaddset(&timer, SIGPROF);
+  ::pthread_sigmask(SIG_UNBLOCK, &timer, nullptr);
+}
+
+}  // namespace
+
+std::optional<int> call_leavably(lua_State* state, int arguments, int results, int handler) {
+  // Without the mask of signals: to save it is a system call, at each step of each robot.
+  if (sigsetjmp(way_out, 0) != 0) {
+    unblock_signal();
+    return std::nullopt;
+  }
+  thread_of_call = ::pthread_self();
+  has_way_out = 1;
+  const int status = lua_pcall(state, arguments, results, handler);
+  has_way_out = 0;
+  is_leaving = 0;
+  return status;
+}
+
+void mark_leavable_functions(lua_State* state) {
+  for (Leavable& each : leavable) {
+    lua_getglobal(state, each.library);
+    lua_getfield(state, -1, each.name);
+    each.function = lua_tocfunction(state, -1);
+    lua_pop(state, 1);
+    lua_pushlightuserdata(state, &each);
+    lua_pushcclosure(state, call_marked, 1);
+    lua_setfield(state, -2, each.name);
+    lua_pop(state, 1);
+  }
+}
+
+void leave_stuck_call(lua_State* state) noexcept {
+  if (has_way_out == 0 || ::pthread_equal(thread_of_call, ::pthread_self()) == 0) return;
+  const char* const name = marked_name(state);
+  if (name == nullptr) return;
+  left = name;
+  if (is_allocating == 0) jump();
+  is_leaving = 1;
+}
+
+const char* left_function() noexcept { return left; }
+
+void begin_allocation() noexcept { is_allocating = 1; }
+
+void end_allocation() noexcept {
+  is_allocating = 0;
+  if (is_leaving != 0) jump();
+}
+
+}  // namespace ziggurat::lua
