@@ -21,7 +21,7 @@ class BoundedState {
   BoundedState& operator=(const BoundedState&) = delete;
 
   lua_State* get() const { return state_.get(); }
-  /// The state is in the middle of something for ever (stuck_call.h): it is not used, and its memory not freed.
+  /// The state is in the middle of something without end (stuck_call.h): it is not used, and its memory not freed.
   void abandon() { (void)state_.release(); }
   std::size_t used_bytes() const { return budget_.used; }
   /// `FILE:LINE` where memory was last refused; empty: it was not, or outside of any Lua function.
