@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "cli/whole_file.h"
+#include "text/printable.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -34,7 +35,7 @@ std::ifstream open(const std::string& path) {
 
 std::string escaped(std::string_view text) {
   std::string all;
-  for (const char letter : text) {
+  for (const char letter : text::printable(text)) {
     if (std::string_view("&<>\"'").find(letter) == std::string_view::npos) {
       all += letter;
     } else {

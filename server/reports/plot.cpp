@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "text/printable.h"
+
 namespace ziggurat::reports {
 namespace {
 
@@ -24,7 +26,7 @@ struct Scale {
 
 std::string escaped(const std::string& text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : text::printable(text)) {
     if (c == '<')
       out += "&lt;";
     else if (c == '&')

@@ -15,6 +15,7 @@
 #include "sweep/folder.h"
 #include "sweep/means.h"
 #include "text/numbers.h"
+#include "text/printable.h"
 #include "text/trim.h"
 
 namespace ziggurat::sweep {
@@ -45,6 +46,9 @@ std::string in_single_quotes(std::string_view text) {
   return result + "'";
 }
 
+/// One that a reader sees, of a scene or a script.
+std::string shown(std::string_view text) { return in_single_quotes(text::printable(text)); }
+
 bool is_number(const std::string& text) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
@@ -68,7 +72,7 @@ struct Abscissa {
     if (is_numeric) return {};
     std::string text;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      text += fmt::format("{}{} {}", i == 0 ? "" : ", ", in_single_quotes(values[i]), i);
+      text += fmt::format("{}{} {}", i == 0 ? "" : ", ", shown(values[i]), i);
     }
     return fmt::format("set xtics ({})\nset xrange [-0.5:{}]\n", text,
                        static_cast<double>(values.size()) - 0.5);
@@ -113,7 +117,7 @@ std::string gnuplot_program(const Experiment& experiment, std::span<const Result
     curves += fmt::format("{} $curve{} using 1:2:3 with yerrorlines linewidth 2 pointtype 7 "
                           "pointsize 0.6 {}",
                           curves.empty() ? "" : ",\\\n    ", i,
-                          title.empty() ? "notitle" : "title " + in_single_quotes(title));
+                          title.empty() ? "notitle" : "title " + shown(title));
   }
   if (curves.empty()) {
     throw text::UsageError(fmt::format("no run that finished has a value of {}", plot.measure));
@@ -124,7 +128,7 @@ std::string gnuplot_program(const Experiment& experiment, std::span<const Result
       "{}set terminal svg size 800,500 dynamic font 'sans-serif,14' noenhanced background 'white'\n"
       "set output {}\nset xlabel {}\nset ylabel {}\nset grid\nset offsets graph 0.03, graph 0.03, "
       "graph 0.03, graph 0.03\nset key outside right\n{}{}plot{}\n",
-      first_line, in_single_quotes(svg.string()), in_single_quotes(x.name), in_single_quotes(label), abscissa.ticks(), data, curves);
+      first_line, in_single_quotes(svg.string()), shown(x.name), shown(label), abscissa.ticks(), data, curves);
 }
 
 fs::path program_beside(const fs::path& svg) { return fs::path(svg).replace_extension(".gnuplot"); }

@@ -28,6 +28,12 @@ TEST(Plot, DrawsACurveThroughItsPoints) {
   EXPECT_NE(svg.find("Force &lt;now>"), std::string::npos);
 }
 
+TEST(Plot, ShowsCharactersThatAreNotSeenAsNumbers) {
+  Panel hostile = panel({1, 0.1, 0.01});
+  hostile.title = "r\u202e1\x1b";
+  EXPECT_NE(to_svg("", {hostile}).find("r\\u202e1\\u001b"), std::string::npos);
+}
+
 TEST(Plot, LiftsThePenWhereThereIsNoPoint) {
   const std::string svg = to_svg("", {panel({1, std::nan(""), 0.01})});
   EXPECT_EQ(count(svg, "L"), 0u);

@@ -33,10 +33,10 @@ TEST(Plot, HasACurvePerValueWithItsMeansInOrder) {
 }
 
 TEST(Plot, NamesThatAreNoNumbersStandSideBySide) {
-  const Experiment experiment{"/s.argos", {{Axis::Kind::parameter, "mode", {"a", "b"}}}, {1}, {}};
+  const Experiment experiment{"/s.argos", {{Axis::Kind::parameter, "mode", {"a\u202e", "b"}}}, {1}, {}};
   const std::vector<Result> results = {run_with(1, 3), run_with(2, 4)};
   const std::string text = gnuplot_program(experiment, results, {0, {}, "time"}, "a.svg");
-  EXPECT_NE(text.find("set xtics ('a' 0, 'b' 1)"), std::string::npos) << text;
+  EXPECT_NE(text.find("set xtics ('a\\u202e' 0, 'b' 1)"), std::string::npos) << text;
   EXPECT_NE(text.find("0 3 0\n1 4 0\n"), std::string::npos) << "one value has no interval: " << text;
 }
 
