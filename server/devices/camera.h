@@ -20,6 +20,9 @@ struct Sight {
   std::vector<world::Ray>* all;    ///< the same
   const physics::Candidates& candidates;  ///< what can be in the way
 
+  std::size_t& left;                      ///< lines of sight that may still be tested at this tick
+
+  /// @throws std::runtime_error if none is left
   bool clear(const math::Vector3& eye, const math::Vector3& target) const;
 };
 

@@ -87,7 +87,8 @@ class BothDetectors {
   void place_camera(const Pose& pose) { stage_.state.origins.back() = pose; }
 
   bool clear(const Vector3& eye, const Vector3& target) const {
-    return devices::Sight{rays_, 0, nullptr, nullptr, {}}.clear(eye, target);
+    std::size_t left = 1;
+    return devices::Sight{rays_, 0, nullptr, nullptr, {}, left}.clear(eye, target);
   }
 
   std::map<int, std::array<Vector2, 4>> simulated() {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "../simulation/small_scene.h"
+#include "devices/camera.h"
 
 namespace ziggurat::camera {
 namespace {
@@ -213,6 +214,14 @@ TEST(Cameras, ReadingsAreHashedAndFollowTheLeds) {
   with->commands().led_colors.at(0) = 0x00FF00;
   with->step();
   EXPECT_EQ(with->observations().leds.at(0).color, 0x00FF00u);
+}
+
+TEST(Sight, TooManyLinesEndWithASentence) {
+  const physics::Rays rays(scene::Physics{});
+  std::size_t left = 2;
+  const devices::Sight sight{rays, 0, nullptr, nullptr, {}, left};
+  for (int line = 0; line < 2; ++line) EXPECT_TRUE(sight.clear({0, 0, 1}, {1, 0, 1}));
+  EXPECT_THROW(sight.clear({0, 0, 1}, {1, 0, 1}), std::runtime_error);
 }
 
 }  // namespace
