@@ -12,6 +12,8 @@
 namespace ziggurat::physics::contact {
 namespace {
 
+constexpr btScalar almost_across = btScalar(0.1);  // cosine
+
 btScalar separation(const Body& a, const Body& b, const btVector3& b_to_a) {
   return b_to_a.dot(a.centre - b.centre) - extent(a, -b_to_a) - extent(b, b_to_a);
 }
@@ -117,25 +119,56 @@ void clip_features(const BestFace& face, const Body& reference, const Body& inci
   }
 }
 
-/// The side of A along an edge or side line of B: the two ends of what they share.
-bool add_line(const Body& a, const Body& b, const Nearest& near, Contacts& out) {
-  const btVector3& axis = a.axis[2];
-  const btScalar half_length = half_side(a);
-  Line line;
-  if (half_length == 0 || btFabs(axis.dot(near.b_to_a)) > btScalar(0.1) ||
-      !edge_along(b, near.b_to_a, axis, line)) {
-    return false;
+/// Where a side is along another line.
+struct Station {
+  btVector3 on_other;
+  btScalar distance;
+};
+
+/// @param along  of the side's middle, in its direction [m]
+Station station(const Line& side, btScalar along, const Line& other, const btVector3& normal) {
+  const btVector3 here = side.middle + side.direction * along;
+  const btScalar across = other.direction.dot(here - other.middle);
+  const btVector3 on_axis = other.middle + other.direction * btMax(-other.half_length, btMin(other.half_length, across));
+  const btVector3 between = here - on_axis;
+  // The side's rim at its end is turned against the other by as much as their axes are.
+  const btScalar length = between.length();
+  const btScalar along_side = side.direction.dot(between);
+  const btScalar rim = length > 0 ? side.radius * btSqrt(btMax(btScalar(0), 1 - along_side * along_side / (length * length))) : side.radius;
+  const btScalar height = normal.dot(between);
+  return {on_axis + normal * other.radius, (height < 0 ? height : length) - rim - other.radius};
+}
+
+/// The side of A along an edge or side of B: the two ends of what they share, each with its own distance.
+void add_line(const Body& a, const Body& b, const Nearest& near, btScalar reach, Contacts& out) {
+  Line of_a, of_b;
+  if (!side(a, of_a) || btFabs(of_a.direction.dot(near.b_to_a)) > almost_across ||
+      !edge_along(b, near.b_to_a, near.on_b, of_a.direction, of_b)) {
+    return;
   }
-  const btScalar offset = axis.dot(line.middle - a.centre);
-  const btScalar from = btMax(-half_length, offset - line.half_length);
-  const btScalar to = btMin(half_length, offset + line.half_length);
-  if (to - from < btScalar(0.1) * half_length) return false;
-  // Along a face's axis the edge may be one of two, but not where it is.
-  const btVector3 on_line = near.sharp ? near.on_b : line.middle;
-  const btScalar along = axis.dot(on_line - a.centre);
-  out.add(on_line + axis * (from - along), near.distance);
-  out.add(on_line + axis * (to - along), near.distance);
-  return true;
+  const btScalar offset = of_a.direction.dot(of_b.middle - of_a.middle);
+  const btScalar share = of_b.half_length * btFabs(of_a.direction.dot(of_b.direction));
+  const btScalar from = btMax(-of_a.half_length, offset - share);
+  const btScalar to = btMin(of_a.half_length, offset + share);
+  if (to - from < btScalar(0.1) * of_a.half_length) return;
+  for (const btScalar along : {from, to}) {
+    const Station end = station(of_a, along, of_b, near.b_to_a);
+    if (end.distance <= reach) out.add(end.on_other, btMax(end.distance, near.distance));
+  }
+}
+
+/// What else of the two the best face would meet, below the nearest point: it may be there within the substep.
+void add_beside(const BestFace& face, const Body& a, const Body& b, const Nearest& near, btScalar reach, btScalar prefer,
+                Contacts& out) {
+  const btScalar cosine = face.b_to_a().dot(near.b_to_a);
+  // The side of a capsule that faces the normal is not the one that faces the face.
+  if (cosine < btScalar(0.98) || std::holds_alternative<const Capsule*>(a.shape)) return;
+  Contacts beside;
+  clip_features(face, face.of_a ? a : b, face.of_a ? b : a, reach * cosine, beside);
+  for (int i = 0; i < beside.count; ++i) {
+    const btScalar distance = beside.points[i].distance / cosine;
+    if (distance > near.distance + prefer) out.add(beside.points[i].on_b, distance);
+  }
 }
 
 /// Takes what separates best. Between cores edges are round: where they touch or nearly do, the direction is
@@ -182,7 +215,9 @@ void clipped_contacts(const Body& a, const Body& b, const Placement& at, Contact
   if (near.apart && at.support != Support::lowest) sharpen(near, face, nearest(a, b, at, 0));
   if (near.distance > at.reach) return;
   out.normal = near.b_to_a;
-  if (!add_line(a, b, near, out)) out.add(near.on_b, near.distance);
+  add_line(a, b, near, at.reach, out);
+  if (out.count == 0 || least(out) > near.distance + btScalar(0.1) * prefer) out.add(near.on_b, near.distance);
+  if (out.count == 1) add_beside(face, a, b, near, at.reach, prefer, out);
 }
 
 }  // namespace ziggurat::physics::contact

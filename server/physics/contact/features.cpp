@@ -3,6 +3,8 @@
 namespace ziggurat::physics::contact {
 namespace {
 
+constexpr btScalar almost_parallel = btScalar(0.99);  // cosine
+
 btVector3 perpendicular(const btVector3& axis, const btVector3& towards,
                         const btVector3& fallback) {
   btVector3 result = towards - axis * axis.dot(towards);
@@ -60,18 +62,17 @@ void clip_to(const Box& box, const Body& body, int face, Polygon& polygon) {
   }
 }
 
-btScalar side_of(const Box&) { return 0; }
+bool side_of(const Box&, const Body&, Line&) { return false; }
 
-bool edge_of(const Box& box, const Body& b, const btVector3& b_to_a, const btVector3& direction,
+bool edge_of(const Box& box, const Body& b, const btVector3&, const btVector3& on_b, const btVector3& direction,
              Line& line) {
   for (int i = 0; i < 3; ++i) {
-    if (btFabs(b.axis[i].dot(direction)) < btScalar(0.99)) continue;
-    line.middle = b.centre;
+    if (btFabs(b.axis[i].dot(direction)) < almost_parallel) continue;
+    line = {b.centre, b.axis[i], box.half[i], 0};
     for (const int side : {(i + 1) % 3, (i + 2) % 3}) {
-      line.middle +=
-          b.axis[side] * (b.axis[side].dot(b_to_a) < 0 ? -box.half[side] : box.half[side]);
+      const bool is_below = b.axis[side].dot(on_b - b.centre) < 0;
+      line.middle += b.axis[side] * (is_below ? -box.half[side] : box.half[side]);
     }
-    line.half_length = box.half[i];
     return true;
   }
   return false;
@@ -79,15 +80,12 @@ bool edge_of(const Box& box, const Body& b, const btVector3& b_to_a, const btVec
 
 // --- round sides --------------------------------------------------------------------------------
 
-bool side_line(const Body& b, btScalar radius, btScalar half_length, const btVector3& b_to_a,
-               const btVector3& direction, Line& line) {
-  if (btFabs(b.axis[2].dot(b_to_a)) > btScalar(0.1) ||
-      btFabs(b.axis[2].dot(direction)) < btScalar(0.99)) {
-    return false;
-  }
-  line.middle = b.centre + perpendicular(b.axis[2], b_to_a, b.axis[0]) * radius;
-  line.half_length = half_length;
-  return true;
+Line side_line(const Body& body, btScalar radius, btScalar half_length) {
+  return {body.centre, body.axis[2], half_length, radius};
+}
+
+bool is_along(const Body& b, const btVector3& b_to_a, const btVector3& direction) {
+  return btFabs(b.axis[2].dot(b_to_a)) <= btScalar(0.1) && btFabs(b.axis[2].dot(direction)) >= almost_parallel;
 }
 
 // --- cylinder -----------------------------------------------------------------------------------
@@ -144,11 +142,14 @@ void clip_to(const Cylinder& cylinder, const Body& body, int, Polygon& polygon) 
   }
 }
 
-btScalar side_of(const Cylinder& cylinder) { return cylinder.half_height; }
+bool side_of(const Cylinder& cylinder, const Body& body, Line& line) {
+  line = side_line(body, cylinder.radius, cylinder.half_height);
+  return true;
+}
 
-bool edge_of(const Cylinder& cylinder, const Body& b, const btVector3& b_to_a,
+bool edge_of(const Cylinder& cylinder, const Body& b, const btVector3& b_to_a, const btVector3&,
              const btVector3& direction, Line& line) {
-  return side_line(b, cylinder.radius, cylinder.half_height, b_to_a, direction, line);
+  return is_along(b, b_to_a, direction) && side_of(cylinder, b, line);
 }
 
 // --- capsule ------------------------------------------------------------------------------------
@@ -171,11 +172,14 @@ Polygon feature_of(const Capsule& capsule, const Body& body, const btVector3& to
 }
 
 void clip_to(const Capsule&, const Body&, int, Polygon&) {}
-btScalar side_of(const Capsule& capsule) { return capsule.half_length; }
+bool side_of(const Capsule& capsule, const Body& body, Line& line) {
+  line = side_line(body, capsule.radius, capsule.half_length);
+  return true;
+}
 
-bool edge_of(const Capsule& capsule, const Body& b, const btVector3& b_to_a,
+bool edge_of(const Capsule& capsule, const Body& b, const btVector3& b_to_a, const btVector3&,
              const btVector3& direction, Line& line) {
-  return side_line(b, capsule.radius, capsule.half_length, b_to_a, direction, line);
+  return is_along(b, b_to_a, direction) && side_of(capsule, b, line);
 }
 
 // --- hull ---------------------------------------------------------------------------------------
@@ -225,8 +229,29 @@ void clip_to(const Hull& hull, const Body& body, int face, Polygon& polygon) {
   }
 }
 
-btScalar side_of(const Hull&) { return 0; }
-bool edge_of(const Hull&, const Body&, const btVector3&, const btVector3&, Line&) { return false; }
+bool side_of(const Hull&, const Body&, Line&) { return false; }
+
+bool edge_of(const Hull& hull, const Body& b, const btVector3&, const btVector3& on_b, const btVector3& direction,
+             Line& line) {
+  const btVector3 along = to_body(b, direction), near = to_body(b, on_b - b.centre);
+  btScalar least = BT_LARGE_FLOAT;
+  for (const Polyhedron::Face& face : hull.polyhedron->faces) {
+    int from = face.corners.back();
+    for (const int to : face.corners) {
+      const btVector3& start = hull.polyhedron->corners[static_cast<std::size_t>(from)];
+      const btVector3 edge = hull.polyhedron->corners[static_cast<std::size_t>(to)] - start;
+      from = to;
+      const btScalar length = edge.length();
+      if (btFabs(edge.dot(along)) < almost_parallel * length) continue;
+      const btVector3 unit = edge / length;
+      const btVector3 nearest = start + unit * btMax(btScalar(0), btMin(length, unit.dot(near - start)));
+      if ((near - nearest).length2() >= least) continue;
+      least = (near - nearest).length2();
+      line = {b.centre + to_world(b, start + edge / 2), to_world(b, unit), length / 2, 0};
+    }
+  }
+  return least < BT_LARGE_FLOAT;
+}
 
 }  // namespace
 
@@ -257,13 +282,12 @@ void clip_to_face(Polygon& polygon, const Body& body, int face) {
   std::visit([&](const auto* shape) { clip_to(*shape, body, face, polygon); }, body.shape);
 }
 
-btScalar half_side(const Body& body) {
-  return std::visit([](const auto* shape) { return side_of(*shape); }, body.shape);
+bool side(const Body& body, Line& line) {
+  return std::visit([&](const auto* shape) { return side_of(*shape, body, line); }, body.shape);
 }
 
-bool edge_along(const Body& b, const btVector3& b_to_a, const btVector3& direction, Line& line) {
-  return std::visit([&](const auto* shape) { return edge_of(*shape, b, b_to_a, direction, line); },
-                    b.shape);
+bool edge_along(const Body& b, const btVector3& b_to_a, const btVector3& on_b, const btVector3& direction, Line& line) {
+  return std::visit([&](const auto* shape) { return edge_of(*shape, b, b_to_a, on_b, direction, line); }, b.shape);
 }
 
 }  // namespace ziggurat::physics::contact

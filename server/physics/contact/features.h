@@ -38,15 +38,19 @@ Polygon feature(const Body& body, const btVector3& towards);
 /// Cuts a polygon to the outline of a face: its edges, or a disc as 16 tangents.
 void clip_to_face(Polygon& polygon, const Body& body, int face);
 
-/// Half the length of a straight line along z on a round side; 0 of shapes without [m].
-btScalar half_side(const Body& body);
-
+/// An edge, or the axis of a round side, with what is around it.
 struct Line {
   btVector3 middle;
-  btScalar half_length = 0;
+  btVector3 direction;       ///< of unit length
+  btScalar half_length = 0;  ///< [m]
+  btScalar radius = 0;       ///< of the side; 0: an edge [m]
 };
 
-/// An edge or side line of B that a line on the side of A may lie along. False if there is none.
-bool edge_along(const Body& b, const btVector3& b_to_a, const btVector3& direction, Line& line);
+/// A round side. False of shapes without.
+bool side(const Body& body, Line& line);
+
+/// An edge or side of B that a line on the side of A may lie along. False if there is none.
+/// @param on_b  the point of B nearest to A: of parallel edges the one there
+bool edge_along(const Body& b, const btVector3& b_to_a, const btVector3& on_b, const btVector3& direction, Line& line);
 
 }  // namespace ziggurat::physics::contact

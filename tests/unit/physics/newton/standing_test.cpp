@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 #include <random>
 
 #include "../../long_runs.h"
@@ -42,6 +43,46 @@ TEST(NewtonStack, HeavyStandsOnLight) {
     world.add(loose(at(0, 0, 0.1), scene::Box{{0.1, 0.1, 0.1}}, ratio));
     run(world, 10, 0.01);
     EXPECT_LT((origin(world, 1).position - Vector3(0, 0, 0.1)).norm(), 1e-4) << ratio;
+  }
+}
+
+/// Tilted about x, from where it stands upright [rad].
+Pose tilted(double x, double y, double z, double angle) {
+  return {Vector3(x, y, z), math::Quaternion(Eigen::AngleAxisd(angle, Vector3::UnitX()))};
+}
+
+scene::Entity rail(double x) {
+  return with_friction(prototype("rail", tilted(x, 0.15, 0.05, std::numbers::pi / 2), false, {link("a", scene::Cylinder{0.05, 0.3}, 1)}), 1);
+}
+
+// The two ends of what a log shares with a rail have their own distances: with the same it stayed tilted in the air.
+TEST(NewtonLog, FallsIntoItsGrooveThoughItBeginsTilted) {
+  for (const double hz : {50.0, 200.0, 1000.0}) {
+    for (const scene::Geometry& log : {scene::Geometry(scene::Cylinder{0.05, 0.2}), scene::Geometry(scene::Capsule{0.05, 0.2})}) {
+      World world(newton(), 1 / hz);
+      world.add(rail(-0.06));
+      world.add(rail(0.06));
+      world.add(loose(tilted(0, 0.1, 0.16, std::numbers::pi / 2 + 0.1), log, 1, 1));
+      run(world, 2, 1 / hz);
+      const Pose end = origin(world, 2);
+      EXPECT_NEAR((end.orientation * Vector3::UnitZ()).z(), 0, 1e-4) << hz;
+      EXPECT_NEAR(end.position.z(), 0.13, 1e-4) << hz;  // 0.05 + sqrt(0.1^2 - 0.06^2)
+    }
+  }
+}
+
+TEST(NewtonPlank, FallsOntoItsRollersThoughItBeginsTilted) {
+  for (const double hz : {50.0, 200.0, 1000.0}) {
+    for (const double angle : {0.02, 0.1, 0.3}) {
+      World world(newton(), 1 / hz);
+      world.add(rail(-0.3));
+      world.add(rail(0.3));
+      world.add(loose(tilted(0, 0, 0.11 + 0.1 * angle, angle), scene::Box{{2, 0.2, 0.02}}, 1, 1));
+      run(world, 2, 1 / hz);
+      const Pose end = origin(world, 2);
+      EXPECT_NEAR((end.orientation * Vector3::UnitY()).z(), 0, 1e-4) << hz << " from " << angle;
+      EXPECT_NEAR(end.position.z(), 0.1, 1e-4) << hz << " from " << angle;
+    }
   }
 }
 
