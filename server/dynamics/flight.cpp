@@ -266,6 +266,11 @@ void momentum_flown(Tree& tree, Workspace& work, double length, std::span<double
 
 }  // namespace
 
+void kick(Tree& tree, Workspace& work, double length) {
+  kick(tree, work, length, {});
+  move(tree);
+}
+
 int fly(Tree& tree, Workspace& work, double length, const Drive& drive) {
   if (tree.single) return fly_single(tree, length);
   return tree.dofs > 0 ? fly_tree(tree, work, length, drive) : 0;

@@ -19,6 +19,9 @@ namespace ziggurat::dynamics {
 /// @return        how many steps it took
 int fly(Tree& tree, Workspace& work, double length, const Drive& drive = {});
 
+/// Changes the speeds of a tree in flight by what pushes it, over a length of time [s]. Leaves it moved.
+void kick(Tree& tree, Workspace& work, double length);
+
 /// The generalised momentum that a tree would have at the end of a substep without contacts, at the
 /// mass matrix of its beginning: M(q) v plus what its forces and its own motion add. The damping of
 /// joints is not in it: it is implicit (see problem.h).

@@ -20,6 +20,7 @@ class Division {
             std::span<const dynamics::Contact> contacts, const std::vector<Collider>& colliders,
             const std::vector<dynamics::Tree>& trees);
 
+  bool divides(int tree) const { return parts_[tree] > 0; }
   /// Into how many parts the sets of trees divide the substep: ascending, each once.
   const std::vector<int>& counts() const { return counts_; }
   /// The trees whose substep has so many parts; 0: that take it as a whole. Valid until the next

@@ -110,6 +110,40 @@ TEST_P(TumblingMagnets, OfTwelveSeedsNoneGainsEnergy) {
   }
 }
 
+scene::Magnet along_x(int link, double moment_x) {
+  scene::Magnet magnet;
+  magnet.anchor.link = link;
+  magnet.moment = {moment_x, 0, 0};
+  return magnet;
+}
+
+scene::Entity repelling(double x) {
+  scene::Entity entity = prototype("wall", at(x, 0, 0), false, {link("a", scene::Box{{0.01, 0.01, 0.01}}, 1)});
+  entity.devices.magnets.push_back(along_x(0, -10));
+  return entity;
+}
+
+// It comes into the reach of what divides a substep, and leaves it, at each swing: speeds of whole substeps are those of half a
+// substep before, and without a change from one to the other each swing had more energy, at all rates.
+TEST(MagnetOnARail, SwingsBetweenTwoOthersWithoutGain) {
+  for (const double hz : {1000.0, 2000.0}) {
+    World world(floating(), 1 / hz);
+    scene::Entity rail = prototype("rail", at(0, 0, 0), false,
+                                   {link("base", scene::Box{{0.001, 0.001, 0.001}}, 1), link("slider", scene::Box{{0.01, 0.01, 0.01}}, 0.1)});
+    rail.joints.push_back(joint(scene::JointType::prismatic, Vector3::UnitX(), at(0.15, 0, 0), {}));
+    rail.devices.magnets.push_back(along_x(1, 1));
+    world.add(rail);
+    world.add(repelling(0.2));
+    world.add(repelling(-0.2));
+    double farthest = 0;
+    for (int i = 0; i < 20 * hz; ++i) {
+      world.step();
+      farthest = std::max(farthest, std::abs(0.15 + world.position(world.joint(0, 0))));
+    }
+    EXPECT_NEAR(farthest, 0.15, 1e-4) << hz;
+  }
+}
+
 /// Two in line that start at rest: r'' = -c / r^4 with c = 2 * 6 K m^2 / mass, by midpoint steps.
 struct Fall {
   double r;  // distance [m]
