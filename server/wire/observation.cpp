@@ -5,6 +5,7 @@
 #include <span>
 
 #include "wire/devices.h"
+#include "ziggurat/v1/extent.h"
 
 namespace ziggurat::wire {
 namespace {
@@ -57,19 +58,23 @@ void add_packets(const Roster& roster, const world::Observations& from, v1::Obse
 
 }  // namespace
 
-Heard heard_by(const Roster& roster, const world::Observations& from) {
-  constexpr std::size_t of_message = 32, of_packet = 64;
-  Heard heard;
+Sensed sensed_by(const Roster& roster, const world::Observations& from, std::span<const std::string> tag_payloads) {
+  constexpr std::size_t size_of_message = 32, size_of_packet = 64;
+  Sensed sensed;
   for_each(
       roster.radios, from.radio_messages.entries, [](const auto& entry) { return entry.radio; },
       [&](const world::RadioMessages::Entry& entry, std::size_t) {
-        heard.sent += entry.size;
-        heard.rest += of_message;
+        sensed.add(1, size_of_message, v1::counted_radio_message);
+        sensed.add_payload(entry.size);
       });
   for_each(
       roster.range_and_bearing, from.range_and_bearing, [](const auto& packet) { return packet.receiver; },
-      [&](const world::RangeAndBearingPacket& packet, std::size_t) { heard.rest += of_packet + packet.data.count; });
-  return heard;
+      [&](const world::RangeAndBearingPacket& packet, std::size_t) {
+        sensed.add(1, size_of_packet, v1::counted_packet);
+        sensed.add_content(packet.data.count);
+      });
+  count_cameras(roster, from, tag_payloads, sensed);
+  return sensed;
 }
 
 void fill(const Roster& roster, const world::Observations& from,

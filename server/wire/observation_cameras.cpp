@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "wire/observation.h"
+#include "ziggurat/v1/extent.h"
 
 namespace ziggurat::wire {
 namespace {
@@ -19,8 +20,9 @@ void for_each_camera(const std::vector<std::size_t>& cameras, const std::vector<
     begin = std::lower_bound(
         begin, entries.end(), camera,
         [](const Entry& entry, std::size_t wanted) { return entry.camera < wanted; });
-    const auto end = std::find_if_not(begin, entries.end(),
-                                      [&](const Entry& entry) { return entry.camera == camera; });
+    const auto end = std::upper_bound(
+        begin, entries.end(), camera,
+        [](std::size_t wanted, const Entry& entry) { return wanted < entry.camera; });
     visit(std::span(begin, end));
     begin = end;
   }
@@ -57,21 +59,22 @@ void add_tags(const Roster& roster, const std::vector<world::TagReading>& readin
 
 }  // namespace
 
-std::size_t payload_bytes(const Roster& roster, const world::Observations& from,
-                          std::span<const std::string> tag_payloads) {
-  std::size_t bytes = 0;
+void count_cameras(const Roster& roster, const world::Observations& from, std::span<const std::string> tag_payloads,
+                   Sensed& to) {
+  constexpr std::size_t size_of_led = 1 + 2 * sizeof(double), size_of_tag = 2 + 10 * sizeof(double);
+  const auto count_leds = [&](const auto& cameras, const auto& readings) {
+    for_each_camera(cameras, readings, [&](auto seen) { to.add(seen.size(), size_of_led, v1::counted_led); });
+  };
+  count_leds(roster.led_cameras, from.leds);
+  count_leds(roster.directional_led_cameras, from.directional_leds);
   for_each_camera(roster.tag_cameras, from.tags, [&](std::span<const world::TagReading> seen) {
-    for (const world::TagReading& tag : seen) bytes += tag_payloads[tag.tag].size();
+    to.add(seen.size(), size_of_tag, v1::counted_tag);
+    for (const world::TagReading& tag : seen) to.add_payload(tag_payloads[tag.tag].size());
   });
-  return bytes;
-}
-
-std::size_t image_bytes(const Roster& roster, const world::Observations& from) {
-  std::size_t bytes = 0;
   for_each_camera(roster.image_cameras, from.images, [&](std::span<const world::Image> taken) {
-    if (!taken.empty()) bytes += taken.front().rgb.size();
+    to.add(1, 1, v1::counted_payload);
+    if (!taken.empty()) to.add_content(taken.front().rgb.size());
   });
-  return bytes;
 }
 
 void add_cameras(const Roster& roster, const world::Observations& from,

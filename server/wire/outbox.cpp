@@ -7,6 +7,7 @@
 #include "wire/observation.h"
 #include "wire/response.h"
 #include "ziggurat/v1/envelope.h"
+#include "ziggurat/v1/extent.h"
 #include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
 
@@ -185,10 +186,9 @@ void Outbox::refusal(const Refusal& from) {
 bool Outbox::observation(const Roster& roster, const world::Observations& observations,
                          std::span<const std::string> tag_payloads, std::size_t limit,
                          std::optional<std::uint64_t> epoch) {
-  const Heard heard = heard_by(roster, observations);
-  const std::size_t changing = heard.sent + payload_bytes(roster, observations, tag_payloads);
-  if (changing + heard.rest + image_bytes(roster, observations) > limit) return false;
-  message_->forget(changing);
+  const Sensed sensed = sensed_by(roster, observations, tag_payloads);
+  if (sensed.size > limit || sensed.memory > v1::most_counted) return false;
+  message_->forget(sensed.payloads);
   v1::Observation& observation = *message_->message.mutable_observation();
   observation.Clear();
   fill(roster, observations, tag_payloads, observation);
@@ -211,9 +211,9 @@ bool world_layout(Outbox& outbox, const Run& run, const Truth& truth, WorldView&
 
 bool world_state(Outbox& outbox, const Truth& truth, const WorldView& view, std::size_t limit,
                  std::uint64_t epoch) {
-  const std::size_t changing = payload_bytes(view, truth);
-  if (changing > limit) return false;
-  outbox.message_->forget(changing);
+  const Sensed sensed = sensed_by(view, truth);
+  if (sensed.size > limit || sensed.memory > v1::most_counted) return false;
+  outbox.message_->forget(sensed.payloads);
   v1::WorldState& state = *outbox.message_->message.mutable_world_state();
   state.Clear();
   fill(view, truth, state);

@@ -4,6 +4,7 @@
 
 #include "scene/joint_coordinates.h"
 #include "ziggurat/v1/envelope.h"
+#include "ziggurat/v1/extent.h"
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::wire {
@@ -173,18 +174,26 @@ bool fill(WorldView& view, const Truth& truth, const std::vector<scene::Controll
   return true;
 }
 
-std::size_t payload_bytes(const WorldView& view, const Truth& truth) {
-  std::size_t bytes = 0;
-  if (view.subscription.radio_messages) {
+Sensed sensed_by(const WorldView& view, const Truth& truth) {
+  Sensed sensed;
+  const Subscription& wanted = view.subscription;
+  if (wanted.radio_messages) {
     for (const auto& entry : truth.observations.radio_messages.entries) {
-      if (view.radio_places[entry.radio] >= 0) bytes += entry.size;
+      if (view.radio_places[entry.radio] < 0) continue;
+      sensed.add(1, 2, v1::counted_radio_message);
+      sensed.add_payload(entry.size);
     }
   }
-  for (std::size_t i = 0; view.subscription.tags && i < view.entities.size(); ++i) {
-    const world::Range& tags = truth.layout.entities[view.entities[i]].tags;
-    for (std::size_t t = tags.begin; t < tags.end(); ++t) bytes += truth.state.tag_payloads[t].size();
+  for (const std::size_t index : view.entities) {
+    const world::EntityLayout& entity = truth.layout.entities[index];
+    if (wanted.leds) sensed.add(entity.leds.count + entity.directional_leds.count, 1, v1::counted_color);
+    const world::Range& tags = entity.tags;
+    for (std::size_t t = tags.begin; wanted.tags && t < tags.end(); ++t) {
+      sensed.add(1, 2, v1::counted_payload);
+      sensed.add_payload(truth.state.tag_payloads[t].size());
+    }
   }
-  return bytes;
+  return sensed;
 }
 
 void fill(const WorldView& view, const Truth& truth, v1::WorldState& to) {

@@ -8,6 +8,7 @@
 
 #include "scene/scene.h"
 #include "wire/messages.h"
+#include "wire/sensed.h"
 #include "world/contact.h"
 #include "world/layout.h"
 #include "world/state.h"
@@ -54,8 +55,8 @@ bool has_news(const WorldView& view, const world::State& state);
 bool fill(WorldView& view, const Truth& truth, const std::vector<scene::Controller>& controllers,
           std::size_t limit, v1::WorldLayout& to);
 
-/// Bytes of radio messages and of payloads of tags in a state.
-std::size_t payload_bytes(const WorldView& view, const Truth& truth);
+/// The parts of a state whose number or size is not that of devices alone.
+Sensed sensed_by(const WorldView& view, const Truth& truth);
 /// The state in the order of the view; `to` is clear.
 void fill(const WorldView& view, const Truth& truth, v1::WorldState& to);
 

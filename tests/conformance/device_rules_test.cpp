@@ -156,7 +156,7 @@ TEST_F(Radios, D5_ASessionThatWouldHearTooMuchIsLost) {
   EXPECT_EQ(error.severity(), v1::Error::FATAL);
   const auto notices = peers.take_report().notices;
   ASSERT_EQ(notices.size(), 1U);
-  EXPECT_NE(notices[0].find("is lost: its robots heard and saw more at a tick"), std::string::npos) << notices[0];
+  EXPECT_NE(notices[0].find("is lost: its robots heard and saw more at a tick than a message can hold; share them among more sessions"), std::string::npos) << notices[0];
   EXPECT_EQ(peers.told("q").observation().tick(), 6U);
   EXPECT_FALSE(peers.is_complete());
 }

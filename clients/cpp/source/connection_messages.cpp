@@ -13,7 +13,7 @@ namespace ziggurat {
 namespace {
 
 // A message is decoded up to these: a hostile one of a few bytes for each field would take all memory. Welcomes of
-// ten thousand robots with a hundred fields each are half of that.
+// ten thousand robots with a hundred fields each are half of that. What is sent at each tick has the server's own bound.
 constexpr std::size_t longest_welcome = std::size_t{64} << 20;  // and of all else that is sent once [bytes]
 constexpr std::size_t most_fields = std::size_t{1} << 21;
 constexpr std::size_t cheap = std::size_t{1} << 20;  // so few bytes have few fields
@@ -24,6 +24,10 @@ std::string excess(std::string_view content, const google::protobuf::Message& me
   const auto& type = *message.GetDescriptor();
   if (&type == v1::ServerMessage::descriptor() && content.size() > longest_welcome) {
     return "a message of " + std::to_string(content.size()) + " bytes, more than " + std::to_string(longest_welcome);
+  }
+  if (&type != v1::ServerMessage::descriptor()) {
+    if (v1::decoded_size(content, type, v1::most_decoded) <= v1::most_decoded) return {};
+    return "a message that takes more than " + std::to_string(v1::most_decoded) + " bytes of memory";
   }
   if (v1::count_fields(content, type, most_fields) <= most_fields) return {};
   return "a message of more than " + std::to_string(most_fields) + " fields";
@@ -59,7 +63,8 @@ Connection::Kind Connection::parse() {
   }
   if (message != &message_) forget(content.size());
   if (const std::string fault = excess(content, *message); !fault.empty()) {
-    throw ConnectionError(options_.endpoint + ": the server sent " + fault + ", which this client does not decode");
+    throw ConnectionError(options_.endpoint + ": the server sent " + fault + ", which this client does not decode: "
+                          "run fewer robots in each session (--lua-processes for scripts), or let them hear and see less");
   }
   constexpr std::size_t longest = std::numeric_limits<int>::max();
   if (transport_->has_more() || content.size() > longest ||

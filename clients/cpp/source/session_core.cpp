@@ -29,6 +29,16 @@ bool is_harmless(const v1::Error& error, bool may_have_jumped) {
 }  // namespace
 
 bool SessionCore::next() {
+  fault.clear();
+  try {
+    return advance();
+  } catch (const std::exception& error) {
+    fault = error.what();
+    throw;
+  }
+}
+
+bool SessionCore::advance() {
   if (ending || is_over) return false;
   if (owes) answer();
   for (;;) {
@@ -196,7 +206,7 @@ void SessionCore::leave(v1::Leave::Reason reason, std::string_view message) {
 void SessionCore::leave_at_the_end() noexcept {
   try {
     if (std::uncaught_exceptions() > exceptions) {
-      leave(v1::Leave::FAILED, "an exception ended the controller");
+      leave(v1::Leave::FAILED, fault.empty() ? "an exception ended the controller" : fault);
     } else {
       leave(v1::Leave::DONE, {});
     }

@@ -34,6 +34,7 @@ struct SessionCore {
 
   // session_core.cpp
   bool next();  // answers, and waits for the next message to answer
+  bool advance();
   void answer();
   void send_answer();
   bool wait();  // false if there is none
@@ -68,6 +69,7 @@ struct SessionCore {
   bool owes = false;       // the present message is not answered yet
   bool is_over = false;    // nothing is sent any more
   std::optional<Ending> ending;
+  std::string fault;  // of the last next(), if it was thrown
 
   std::chrono::nanoseconds tick_length{0};
   std::uint32_t ticks_per_second = 0;

@@ -12,6 +12,17 @@ namespace ziggurat::v1 {
 /// So many bytes of text, or numbers of a list that have no fixed size, count as one field.
 inline constexpr std::size_t bytes_per_field = 16;
 
+/// What a server counts, at most, of an Observation or a WorldState for the memory that it takes when it is decoded
+/// (docs/protocol.md, D5) [bytes].
+inline constexpr std::size_t most_counted = std::size_t{2} << 30;
+/// What a client takes as decoded_size() of one: there is place for what the server does not count, some twenty million
+/// numbers [bytes].
+inline constexpr std::size_t most_decoded = most_counted + (std::size_t{512} << 20);
+
+/// What each part counts, beside its content: no less than decoded_size() says of it [bytes].
+inline constexpr std::size_t counted_radio_message = 256, counted_packet = 256, counted_payload = 128, counted_color = 24,
+                             counted_led = 96, counted_tag = 384;
+
 /// How many fields a message has, those of messages in it included; arrays of numbers of a fixed size count as one.
 /// @param type  of the message that the bytes are
 /// @param most  it stops counting beyond that

@@ -94,9 +94,10 @@ std::string_view observe(Barrier& barrier, Session& session) {
                                        epoch_for(barrier, session))) {
     tell_fatal(barrier, session.connection,
                make_fault(ErrorCode::too_large, {},
-                          "The robots of this session heard and saw more at this tick than a message can hold; "
-                          "share them among more sessions."));
-    return "its robots heard and saw more at a tick than a message can hold";
+                          "The robots of this session heard and saw more at this tick than a message can hold; share them among more "
+                          "sessions (--lua-processes for scripts), or give their cameras and radios a smaller range."));
+    return "its robots heard and saw more at a tick than a message can hold; share them among more sessions "
+           "(--lua-processes for scripts), or give their cameras and radios a smaller range";
   }
   session.state = SessionState::stepping;
   barrier.gate.await(session.turn, barrier.now);

@@ -12,6 +12,7 @@ import zmq
 import ziggurat
 from ziggurat import protocol_pb2 as v1
 from ziggurat.connection import Connection
+from ziggurat.cost import excess
 
 from fake_server import FakeServer, equipped, welcome
 from session_case import SessionCase, open_with
@@ -181,6 +182,22 @@ class Lies(SessionCase):
         self.assertIn("this client takes 262144 at most", self.refused(with_robots(1 << 18)))
         self.assertIn("more than 2097152 fields", self.refused(with_robots(1 << 21)))
         self.assertIn("bytes, more than 67108864", self.refused(b"\x0a" * (65 << 20)))
+
+    def test_an_observation_that_could_take_all_memory_is_not_decoded(self):
+        field = v1.ServerMessage.DESCRIPTOR.fields_by_name["observation"].number
+
+        def observation(content):
+            return bytes([field << 3 | 2]) + bytes(len(content) >> shift & 0x7F | (0x80 if len(content) >> shift + 7 else 0)
+                                                for shift in (0, 7, 14, 21) if len(content) >> shift) + content
+
+        of = {name: bytes([number.number << 3 | 2] if number.number < 16 else
+                          [number.number << 3 & 0x7F | 0x82, number.number >> 4])
+              for name, number in v1.Observation.DESCRIPTOR.fields_by_name.items()}
+        bomb = observation((of["radio_messages"] + b"\x00") * (11 << 20))
+        self.assertIn("more than 2684354560 bytes of memory", excess(bomb))
+        self.assertIn("fewer robots in each session", excess(bomb))
+        self.assertEqual(excess(observation((of["tag_payloads"] + b"\x017") * (5 << 19))), "")
+        self.assertIn("more than 2097152 fields", excess(observation(b"") + b"\x0a\x00" * (1 << 22)))
 
     def test_packets_that_could_take_all_memory_are_refused(self):
         def with_packets(size, count):
