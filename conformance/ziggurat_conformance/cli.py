@@ -4,11 +4,12 @@ import argparse
 import collections
 import contextlib
 import shlex
+import signal
 import sys
 import time
 from pathlib import Path
 
-from . import chaos, client_mode, outputs, report, server_mode, wire
+from . import chaos, client_mode, interruption, outputs, process_group, report, server_mode, wire
 from .case import Level
 from .cases import SERVER_CASES
 from .client_stage import Options
@@ -35,7 +36,7 @@ examples:
       some cases, and a page with the exchange of every failure
 
 Exit code: 0 if no case failed, also if some were not run; 1 if one did, or a --badge is not reached; 2 for a mistake on this line, a
-program that does not start, or reports or a stdout that can't be written; 130 after Ctrl-C.
+program that does not start, or reports or a stdout that can't be written; 130 after Ctrl-C, 143 after SIGTERM.
 docs/conformance.md explains verdicts, levels, and how to add a case."""
 
 
@@ -88,7 +89,7 @@ def _parser(version: str) -> argparse.ArgumentParser:
     return parser
 
 
-_INTERRUPTED = 128 + 2  # as shells tell of a program that SIGINT ends
+_SIGNAL_BEFORE = 128  # its number: as shells tell of a program that a signal ends
 _LONGEST_LIST = 1_000_000  # [bytes] of --known-failing
 _SERVER = "ziggurat serve {scene} --endpoint {endpoint}"
 
@@ -246,17 +247,28 @@ def _main(words: list, version: str) -> int:
     return 0
 
 
+def _guarded(words: list, version: str) -> int:
+    """Nothing that was started is left behind, however it ends."""
+    try:
+        return _main(words, version)
+    finally:
+        with interruption.postponed():
+            process_group.end_all()
+
+
 def main(arguments=None, version="of a source tree") -> int:
     outputs.keep_descriptors()
     stdout = outputs.Stdout(sys.stdout)
     with contextlib.redirect_stdout(stdout):
         try:
-            code = _main(sys.argv[1:] if arguments is None else list(arguments), version)
+            with interruption.handled():
+                code = _guarded(sys.argv[1:] if arguments is None else list(arguments), version)
         except SystemExit as end:  # after --help, or a mistake
             code = end.code
-        except KeyboardInterrupt:
-            print("ziggurat-conformance: interrupted; no report was written", file=sys.stderr)
-            code = _INTERRUPTED
+        except interruption.Interrupted as end:
+            how = "interrupted" if end.number == signal.SIGINT else f"ended by {signal.Signals(end.number).name}"
+            print(f"ziggurat-conformance: {how}; no report was written", file=sys.stderr)
+            code = _SIGNAL_BEFORE + end.number
         stdout.flush()
     if stdout.fault:
         print(f"ziggurat-conformance: {stdout.fault}", file=sys.stderr)

@@ -1,11 +1,9 @@
 """The controller program under test, as a process."""
 
 import os
-import subprocess
-import tempfile
 from typing import Optional
 
-_MOST_READ = 4 << 20  # [bytes]
+from .process_group import ProcessGroup
 
 
 class ClientProgram:
@@ -14,29 +12,20 @@ class ClientProgram:
     def __init__(self, command: list, environment: dict):
         """environment: names and values beside those of this process, without its own of Ziggurat."""
         others = {name: value for name, value in os.environ.items() if not name.startswith("ZIGGURAT_")}
-        self._output = tempfile.TemporaryFile()
         try:
-            self._process = subprocess.Popen(command, env={**others, **environment}, stdin=subprocess.DEVNULL,
-                                             stdout=self._output, stderr=subprocess.STDOUT)
+            self._group = ProcessGroup(command, {**others, **environment})
         except OSError as error:
-            self._output.close()
             raise RuntimeError(f"{command[0]}: the controller can't be started: {error.strerror}") from None
 
     def exit_code(self) -> Optional[int]:
         """None while it runs."""
-        return self._process.poll()
+        return self._group.exit_code()
 
     def printed(self) -> bytes:
-        self._output.seek(0)
-        return self._output.read(_MOST_READ)
+        """The beginning and the end of it."""
+        return self._group.printed()
 
     def end(self) -> str:
-        """Ends it. Returns the last words that it printed."""
-        if self._process.poll() is None:
-            self._process.kill()
-        self._process.wait()
-        size = self._output.seek(0, os.SEEK_END)
-        self._output.seek(max(0, size - 2000))
-        words = self._output.read().decode(errors="replace").strip()
-        self._output.close()
-        return words
+        """Ends it, with all that it has started. Returns the last words that it printed."""
+        self._group.end()
+        return self._group.output.last_words()

@@ -2,14 +2,12 @@
 
 import random
 import shlex
-import signal
 import socket
-import subprocess
-import tempfile
 import time
 from pathlib import Path
 from typing import Optional
 
+from .process_group import ProcessGroup
 
 _START = 30.0  # [s] until a server listens, on a busy machine too
 
@@ -21,15 +19,16 @@ class ServerProcess:
         self.endpoint = f"tcp://127.0.0.1:{free_port()}"
         self._command, self._values = command, {"scene": str(scene), **(extra or {})}
         self._arguments = self._arguments_for(self.endpoint)
-        self._output = tempfile.TemporaryFile()
         try:
-            self._process = subprocess.Popen(
-                self._arguments, stdin=subprocess.DEVNULL, stdout=self._output,
-                stderr=subprocess.STDOUT)
+            self._group = ProcessGroup(self._arguments)
         except OSError as error:
             raise RuntimeError(f"{self._arguments[0]}: the server can't be started: "
                                f"{error.strerror}") from None
-        self._wait_until_it_listens(patience)
+        try:
+            self._wait_until_it_listens(patience)
+        except BaseException:
+            self._group.end()
+            raise
 
     def _arguments_for(self, endpoint: str) -> list:
         values = {**self._values, "endpoint": endpoint}
@@ -38,49 +37,36 @@ class ServerProcess:
     def refuses_to_listen(self, endpoint: str, patience: float) -> str:
         """What is wrong with another server of this command that is to listen there and must not: it has to
         end by itself, with another exit code than 0. Empty if nothing is."""
-        other = subprocess.Popen(self._arguments_for(endpoint), stdin=subprocess.DEVNULL,
-                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        other = ProcessGroup(self._arguments_for(endpoint))
         try:
             code = other.wait(max(patience, 10.0))
-            return "" if code != 0 else "it ended with exit code 0"
-        except subprocess.TimeoutExpired:
-            return "it runs"
         finally:
-            if other.poll() is None:
-                other.kill()
-            other.wait()
+            other.end()
+        return "it runs" if code is None else "it ended with exit code 0" if code == 0 else ""
 
     def interrupt(self) -> None:
-        self._process.send_signal(signal.SIGINT)
+        self._group.interrupt()
 
     def stop(self) -> None:
-        """Twice Ctrl-C, then by force."""
-        for _ in range(2):
-            if self._process.poll() is None:
-                self._process.send_signal(signal.SIGINT)
-                try:
-                    self._process.wait(0.5)
-                except subprocess.TimeoutExpired:
-                    pass
-        if self._process.poll() is None:
-            self._process.kill()
-            self._process.wait()
-        self._output.close()
+        """Twice Ctrl-C, then by force, with all that it has started."""
+        try:
+            for _ in range(2):
+                self._group.interrupt()
+                self._group.wait(0.5)
+        finally:
+            self._group.end()
 
     def runs(self) -> bool:
-        return self._process.poll() is None
+        return self._group.exit_code() is None
 
     def exit_code(self, seconds: float) -> Optional[int]:
         """When it has ended by itself, within so many seconds; None: it has not."""
-        try:
-            return self._process.wait(seconds)
-        except subprocess.TimeoutExpired:
-            return None
+        return self._group.wait(seconds)
 
     def last_words(self) -> str:
         """The end of what it printed."""
-        self._output.seek(0)
-        return self._output.read()[-2000:].decode(errors="replace")
+        self._group.printed()
+        return self._group.output.last_words()
 
     def _wait_until_it_listens(self, patience: float) -> None:
         host, port = self.endpoint.removeprefix("tcp://").rsplit(":", 1)
@@ -90,7 +76,7 @@ class ServerProcess:
             if not self.runs():
                 words = self.last_words()
                 raise RuntimeError(
-                    f"the server ended at once, with exit code {self._process.returncode}; it "
+                    f"the server ended at once, with exit code {self._group.exit_code()}; it "
                     + (f"said:\n{words}" if words else "said nothing"))
             try:
                 with socket.create_connection((host, int(port)), 0.2):
@@ -98,7 +84,6 @@ class ServerProcess:
             except OSError:
                 time.sleep(0.01)
         words = self.last_words()
-        self.stop()
         raise RuntimeError(f"nothing listens at {self.endpoint}, which takes the place of {{endpoint}} in "
                            f"the command, after {limit:g} s; the server "
                            + (f"said:\n{words}" if words else "said nothing"))

@@ -1,0 +1,113 @@
+"""Programs under test that print without end, leave others behind, or are running when the kit is ended."""
+
+import os
+import shlex
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+from ziggurat_conformance.process_group import ProcessGroup
+from ziggurat_conformance.program_output import KEPT
+
+HERE = Path(__file__).resolve().parent
+TINY = shlex.join([sys.executable, "-B", str(HERE / "tiny_client.py")])
+LONGEST = 20.0  # [s]
+
+
+def runs(pid):
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+class Programs(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def soon(self, condition, what):
+        deadline = time.monotonic() + LONGEST
+        while not condition():
+            self.assertLess(time.monotonic(), deadline, what)
+            time.sleep(0.01)
+
+    def script(self, end):
+        """Leaves a program behind, whose number it writes, and goes on as `end` says."""
+        return ["sh", "-c", f"sleep 1000 & echo $! > {self.folder}/pid.new; mv {self.folder}/pid.new {self.folder}/pid; {end}"]
+
+    def start(self, *arguments):
+        kit = subprocess.Popen([sys.executable, "-B", "-m", "ziggurat_conformance", *arguments], text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(kit.kill)
+        return kit
+
+    def left(self):
+        self.soon((self.folder / "pid").exists, "it has not started")
+        return int((self.folder / "pid").read_text())
+
+
+class WhatTheyStart(Programs):
+    def assert_ends(self, pid):
+        self.soon(lambda: not runs(pid), "a program that the program under test has started still runs")
+
+    def test_ends_with_a_client(self):
+        kit = self.start("client", "--only", "H1.hello-first", "--", *self.script(TINY))
+        out, err = kit.communicate(timeout=LONGEST)
+        self.assertEqual((0, ""), (kit.returncode, err), out)
+        self.assert_ends(self.left())
+
+    def test_ends_with_a_server(self):
+        kit = self.start("server", "--only", "S9.stale", "--form", "binary", "--", *self.script(
+            shlex.join([sys.executable, "-B", str(HERE / "tiny_server.py"), "{endpoint}", "{scene}"])))
+        kit.communicate(timeout=LONGEST)
+        self.assert_ends(self.left())
+
+    def test_ends_with_a_kit_that_a_signal_ends(self):
+        for number, how in ((signal.SIGINT, "interrupted"), (signal.SIGTERM, "ended by SIGTERM"),
+                            (signal.SIGHUP, "ended by SIGHUP")):
+            for mode in ("client", "server"):
+                with self.subTest(how, mode=mode):
+                    (self.folder / "pid").unlink(missing_ok=True)
+                    kit = self.start(mode, "--patience", "60", "--", *self.script("sleep 1001"))
+                    pid = self.left()
+                    kit.send_signal(number)
+                    _, err = kit.communicate(timeout=LONGEST)
+                    self.assertEqual((128 + number, f"ziggurat-conformance: {how}; no report was written\n"),
+                                     (kit.returncode, err))
+                    self.assert_ends(pid)
+
+
+class WhatTheyPrint(Programs):
+    def test_is_kept_in_part_without_a_stop(self):
+        size = 64 << 20
+        group = ProcessGroup(["sh", "-c", f"echo first; head -c {size} /dev/zero; echo last"])
+        self.addCleanup(group.end)
+        self.assertEqual(0, group.wait(LONGEST))
+        text = group.printed()
+        self.assertTrue(text.startswith(b"first\n\0") and text.endswith(b"\0last\n"))
+        self.assertLess(len(text), 2 * KEPT + 100_000)
+        self.assertIn(b" bytes left out ...", text)
+
+    def test_takes_no_place_in_the_file_system(self):
+        kit = self.start("client", "--only", "H1.hello-first", "--", "sh", "-c", f"head -c 99999999 /dev/zero; echo > "
+                         f"{self.folder}/done; {TINY}")
+        self.soon((self.folder / "done").exists, "it waits for a reader")
+        files = [os.stat(f"/proc/{kit.pid}/fd/{name}").st_size for name in os.listdir(f"/proc/{kit.pid}/fd")]
+        self.assertLess(sum(files), 1 << 20)
+        out, err = kit.communicate(timeout=LONGEST)
+        self.assertEqual((0, ""), (kit.returncode, err), out)
+
+    def test_by_one_that_escapes_holds_nothing_up(self):
+        group = ProcessGroup(["setsid", "-f", "sh", "-c", f"echo $$ > {self.folder}/pid; exec cat /dev/zero"])
+        self.soon(lambda: (self.folder / "pid").exists() and (self.folder / "pid").read_text(), "it has not started")
+        pid = int((self.folder / "pid").read_text())
+        group.end()
+        self.soon(lambda: not runs(pid), "it does not see that the pipe has no reader")
+
+
+if __name__ == "__main__":
+    unittest.main()
