@@ -141,7 +141,7 @@ void archive_fields(math::Archive& archive, NewtonCore& core) {
     archive("motor_impulse", joint.motor_impulse);
   }
   for (NewtonCore::Held& held : core.held_) archive("held", held.impulses);
-  archive("lags", core.lags_);
+  archive("lags", core.lags_.of_tree);
   archive("islands", core.convergence_.islands);
   archive("not_converged", core.convergence_.not_converged);
   archive("worst", core.convergence_.worst);

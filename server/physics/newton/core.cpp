@@ -61,10 +61,10 @@ Body NewtonCore::add(const scene::Entity& entity, std::size_t number) {
   make_room(system_.trees, 1);
   make_room(joints_, joints.size());
   make_room(held_, 1);
-  make_room(lags_, 1);
+  make_room(lags_.of_tree, 1);
   colliders_.add(body, entity, tree);
   system_.trees.push_back(std::move(tree));
-  lags_.push_back(Lag::unknown);
+  lags_.of_tree.push_back(Lags::unknown);
   joints_.insert(joints_.end(), joints.begin(), joints.end());
   if (body.ground && entity.movable) held_.push_back({number, {}});
   body.articulation = Articulation{&system_, number};
@@ -92,7 +92,7 @@ void NewtonCore::remove(Body& body) {
 void NewtonCore::take_back(Body& body) {
   detach(body.entity);
   system_.trees.pop_back();
-  lags_.pop_back();
+  lags_.of_tree.pop_back();
   std::erase_if(joints_, [&](const auto& joint) { return joint.entity == body.entity; });
   body.articulation.reset();
 }
@@ -109,7 +109,7 @@ void NewtonCore::move(Body& body) {
     if (held.entity == body.entity) held.impulses = {};
   }
   contacts_.forget(body.entity, system_);
-  lags_[body.entity] = Lag::unknown;
+  lags_.of_tree[body.entity] = Lags::unknown;
   system_.wake(static_cast<int>(body.entity));
   colliders_.moved(body.entity, old);
 }

@@ -11,6 +11,7 @@
 #include "physics/bodies.h"
 #include "physics/newton/contacts.h"
 #include "physics/newton/division.h"
+#include "physics/newton/lags.h"
 #include "physics/newton/motors.h"
 #include "physics/overlap.h"
 #include "physics/plugin.h"
@@ -79,7 +80,6 @@ class NewtonCore {
   void substep_in_parts(std::span<Body> bodies, double length, int splits, int count,
                         Plugin& stiff);
   void divide(std::span<Body> bodies, const Share& whole);
-  void change_scheme(double length, std::span<const dynamics::Contact> contacts, bool any_divided);
   void take_parts(std::span<Body> bodies, const Share& whole, int count);
 
   scene::Physics settings_;
@@ -92,9 +92,7 @@ class NewtonCore {
   std::vector<dynamics::Servo> servos_;
   std::vector<dynamics::Limit> limits_;
   Division division_;
-  /// At which time the speeds of a tree are, where forces change too fast for whole substeps.
-  enum Lag : unsigned char { unknown, half, none };  // it met something; of half a substep before; of now
-  std::vector<unsigned char> lags_, meets_;          // of each tree
+  Lags lags_;
   dynamics::LeftIslands left_;  // by the whole substep
   TreeSet chosen_;              // the trees of one of them, or all others
   HeldBack held_back_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "dynamics/flight.h"
 #include "physics/newton/core.h"
 
 namespace ziggurat::physics {
@@ -203,14 +202,14 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
   woke = wake_disturbed(whole, contacts, woke);
   woke |= foresee(whole, contacts, woke);
   if (!stiff) {
-    change_scheme(length, contacts, false);
+    change_lags(lags_, system_, work_, length, nullptr, contacts, servos_);
     step(whole);
     return divide(bodies, whole);
   }
   if (woke) {  // what has just woken, or is thrown, may touch others
     division_.find(stiff->stiff_pairs(), contacts_.near(), contacts, colliders_.all, system_.trees);
   }
-  change_scheme(length, contacts, true);
+  change_lags(lags_, system_, work_, length, &division_, contacts, servos_);
   whole.chosen = &division_.with(0);
   if (!whole.chosen->trees.empty()) {
     const auto is_other = [&](const auto& item) { return !whole.chosen->holds[item.tree]; };
@@ -222,26 +221,6 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
   }
   for (const int count : division_.counts()) {
     substep_in_parts(bodies, length, splits, count, *stiff);
-  }
-}
-
-/// A whole substep takes what pushes as an impulse at its beginning, so that speeds are those of half a substep before; in parts
-/// they are those of now. What flies freely from one to the other keeps its energy if its speeds change by what pushes in that half.
-void NewtonCore::change_scheme(double length, std::span<const dynamics::Contact> contacts, bool any_divided) {
-  if (!any_divided && std::ranges::all_of(lags_, [](unsigned char lag) { return lag == Lag::unknown; })) return;
-  meets_.assign(lags_.size(), 0);
-  const auto mark = [&](int tree) {
-    if (tree >= 0) meets_[static_cast<std::size_t>(tree)] = 1;
-  };
-  for (const dynamics::Contact& contact : contacts) mark(contact.a.tree), mark(contact.b.tree);
-  for (const dynamics::Servo& servo : servos_) mark(servo.tree);
-  for (std::size_t i = 0; i < lags_.size(); ++i) {
-    const int tree = static_cast<int>(i);
-    const bool is_divided = any_divided && division_.divides(tree);
-    const unsigned char now = meets_[i] || system_.asleep(tree) ? Lag::unknown : is_divided ? Lag::none : Lag::half;
-    const unsigned char before = std::exchange(lags_[i], now);
-    if (before == now || before == Lag::unknown || now == Lag::unknown) continue;
-    dynamics::kick(system_.trees[i], work_, (is_divided ? 1 : -1) * length / 2);
   }
 }
 
