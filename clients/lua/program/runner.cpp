@@ -40,8 +40,9 @@ void Runner::run() {
     offer_to_terminal();
   }
   const Turn turn;
+  if (!are_scripts_interrupted()) finish();
   // To free the states of many robots takes seconds: the world does not wait for that.
-  are_scripts_interrupted() ? session_.leave() : finish();
+  session_.leave();
   for (Seat& seat : seats_) seat.controller.reset();
 }
 
@@ -79,16 +80,20 @@ Failure Runner::call(Controller& controller) {
 void Runner::finish() {
   for (Seat& seat : seats_) {
     if (are_scripts_interrupted()) return;
-    if (seat.controller) end(seat, options_.place_file.empty() ? 0 : longest_destroy);
+    if (seat.controller) destroy(seat, options_.place_file.empty() ? 0 : longest_destroy);
   }
 }
 
 // What the script holds is given back: its memory, its open files.
-void Runner::end(Seat& seat, std::uint64_t max_seconds) {
+void Runner::end(Seat& seat) {
+  destroy(seat);
+  seat.controller.reset();
+}
+
+void Runner::destroy(Seat& seat, std::uint64_t max_seconds) {
   const Failure failure = seat.controller->destroy(session_.tick(), max_seconds);
   hand_over_log(seat);
   if (failure) fail(seat, *failure);
-  seat.controller.reset();
 }
 
 void Runner::hand_over_log(Seat& seat) {

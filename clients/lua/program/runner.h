@@ -35,7 +35,8 @@ class Runner {
   void start(Seat& seat);
   void answer(Seat& seat);
   void finish();
-  void end(Seat& seat, std::uint64_t max_seconds = 0);  ///< of the run, or of its robot
+  void end(Seat& seat);  ///< its robot has left the run
+  void destroy(Seat& seat, std::uint64_t max_seconds = 0);
   Failure call(Controller& controller);
   void hand_over_log(Seat& seat);
   void fail(Seat& seat, const std::string& message);
