@@ -43,7 +43,7 @@ struct Watch {
   std::chrono::steady_clock::time_point begin{};  // if there are max_seconds
   bool is_late = false;              // more than max_looks or max_seconds
   bool place_is_old = false;         // the place file has that of an earlier look of the signal
-  std::uint64_t quiet = 0;               // looks of the signal since an instruction was counted
+  std::uint64_t quiet = 0;           // looks of the signal since an instruction was counted
   char place[LUA_IDSIZE + 16] = "";  // file and line, noted last
 };
 Watch watch;

@@ -11,7 +11,7 @@ namespace ziggurat::lua {
 namespace {
 
 struct Leavable {
-  const char* library;
+  const char* table;
   const char* name;
   const char* full_name;
   lua_CFunction function = nullptr;  // of Lua; the same in each state
@@ -88,7 +88,7 @@ std::optional<int> call_leavably(lua_State* state, int arguments, int results, i
 
 void mark_leavable_functions(lua_State* state) {
   for (Leavable& each : leavable) {
-    lua_getglobal(state, each.library);
+    lua_getglobal(state, each.table);
     lua_getfield(state, -1, each.name);
     each.function = lua_tocfunction(state, -1);
     lua_pop(state, 1);

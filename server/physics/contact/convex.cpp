@@ -12,8 +12,6 @@
 namespace ziggurat::physics::contact {
 namespace {
 
-constexpr btScalar almost_across = btScalar(0.1);  // cosine
-
 btScalar separation(const Body& a, const Body& b, const btVector3& b_to_a) {
   return b_to_a.dot(a.centre - b.centre) - extent(a, -b_to_a) - extent(b, b_to_a);
 }
@@ -24,7 +22,6 @@ struct Nearest {
   btVector3 on_b{0, 0, 0};
   btScalar distance = -BT_LARGE_FLOAT;
   bool apart = false;  ///< the cores are
-  bool sharp = false;  ///< of the shapes themselves: on_b is on the surface
 };
 
 Nearest search(const Body& a, const btConvexShape& shape_a, const Body& b,
@@ -176,8 +173,8 @@ void add_beside(const BestFace& face, const Body& a, const Body& b, const Neares
 /// @param sharp  of the shapes themselves; where they touch its direction may be anything
 void sharpen(Nearest& near, const BestFace& face, const Nearest& sharp) {
   if (sharp.distance == -BT_LARGE_FLOAT) return;
-  if (sharp.distance > near.distance) near = sharp, near.sharp = true;
-  if (face.distance > near.distance) near = {face.b_to_a(), sharp.on_b, face.distance, true, true};
+  if (sharp.distance > near.distance) near = sharp;
+  if (face.distance > near.distance) near = {face.b_to_a(), sharp.on_b, face.distance, true};
 }
 
 btScalar least(const Contacts& contacts) {

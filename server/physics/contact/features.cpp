@@ -85,7 +85,7 @@ Line side_line(const Body& body, btScalar radius, btScalar half_length) {
 }
 
 bool is_along(const Body& b, const btVector3& b_to_a, const btVector3& direction) {
-  return btFabs(b.axis[2].dot(b_to_a)) <= btScalar(0.1) && btFabs(b.axis[2].dot(direction)) >= almost_parallel;
+  return btFabs(b.axis[2].dot(b_to_a)) <= almost_across && btFabs(b.axis[2].dot(direction)) >= almost_parallel;
 }
 
 // --- cylinder -----------------------------------------------------------------------------------

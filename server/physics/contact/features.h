@@ -38,6 +38,9 @@ Polygon feature(const Body& body, const btVector3& towards);
 /// Cuts a polygon to the outline of a face: its edges, or a disc as 16 tangents.
 void clip_to_face(Polygon& polygon, const Body& body, int face);
 
+/// An axis and a direction whose cosine is less are nearly at right angles.
+inline constexpr btScalar almost_across = btScalar(0.1);
+
 /// An edge, or the axis of a round side, with what is around it.
 struct Line {
   btVector3 middle;
