@@ -4,7 +4,6 @@
 #include <setjmp.h>
 #include <signal.h>
 
-#include <array>
 #include <string_view>
 
 namespace ziggurat::lua {
@@ -13,19 +12,21 @@ namespace {
 struct Leavable {
   const char* table;
   const char* name;
-  const char* full_name;
   lua_CFunction function = nullptr;  // of Lua; the same in each state
 };
 
-std::array<Leavable, 9> leavable{{{"string", "find", "string.find"},
-                                  {"string", "match", "string.match"},
-                                  {"string", "gsub", "string.gsub"},
-                                  {"string", "rep", "string.rep"},
-                                  {"table", "concat", "table.concat"},
-                                  {"table", "insert", "table.insert"},
-                                  {"table", "move", "table.move"},
-                                  {"table", "remove", "table.remove"},
-                                  {"table", "sort", "table.sort"}}};
+// Those that compute for long, and those that they may call again and again.
+Leavable leavable[] = {
+    {"string", "byte"},   {"string", "char"},   {"string", "find"},      {"string", "format"}, {"string", "gmatch"},
+    {"string", "gsub"},   {"string", "len"},    {"string", "lower"},     {"string", "match"},  {"string", "pack"},
+    {"string", "rep"},    {"string", "reverse"}, {"string", "sub"},      {"string", "unpack"}, {"string", "upper"},
+    {"table", "concat"},  {"table", "insert"},  {"table", "move"},       {"table", "pack"},    {"table", "remove"},
+    {"table", "sort"},    {"table", "unpack"},  {"utf8", "char"},        {"utf8", "codepoint"}, {"utf8", "len"},
+    {"utf8", "offset"},   {"_G", "rawequal"},   {"_G", "rawget"},        {"_G", "rawlen"},     {"_G", "rawset"},
+    {"_G", "select"},     {"_G", "tostring"},   {"_G", "type"}};
+
+// What string.gmatch returns.
+constexpr Leavable search{"string", "gmatch"};
 
 // Read and written by the thread that runs scripts, and by its signal handler.
 sigjmp_buf way_out;
@@ -33,7 +34,7 @@ pthread_t thread_of_call;
 volatile sig_atomic_t has_way_out = 0;
 volatile sig_atomic_t is_allocating = 0;
 volatile sig_atomic_t is_leaving = 0;  // once the memory is allocated
-const char* volatile left = "";
+const Leavable* volatile left = &search;
 
 // Upvalue: its Leavable. In one frame, so that messages name it as they do in Lua.
 int call_marked(lua_State* state) {
@@ -41,19 +42,19 @@ int call_marked(lua_State* state) {
 }
 
 // Reads only: what runs is in the middle of something.
-const char* marked_name(lua_State* state) {
+const Leavable* find_marked(lua_State* state) {
   lua_Debug function{};
   if (lua_getstack(state, 0, &function) == 0 || lua_getinfo(state, "S", &function) == 0) return nullptr;
   if (std::string_view(function.what) != "C") return nullptr;
   const void* const mark = lua_touserdata(state, lua_upvalueindex(1));
   for (const Leavable& each : leavable) {
-    if (mark == &each) return each.full_name;
+    if (mark == &each) return &each;
   }
-  // What string.gmatch returns has the text, the pattern and the state of the search. Nothing else does.
-  const bool is_gmatch = lua_type(state, lua_upvalueindex(1)) == LUA_TSTRING &&
+  // It has the text, the pattern and the state of the search. Nothing else does.
+  const bool is_search = lua_type(state, lua_upvalueindex(1)) == LUA_TSTRING &&
                          lua_type(state, lua_upvalueindex(2)) == LUA_TSTRING &&
                          lua_type(state, lua_upvalueindex(3)) == LUA_TUSERDATA;
-  return is_gmatch ? "string.gmatch" : nullptr;
+  return is_search ? &search : nullptr;
 }
 
 [[noreturn]] void jump() {
@@ -101,14 +102,17 @@ void mark_leavable_functions(lua_State* state) {
 
 void leave_stuck_call(lua_State* state) noexcept {
   if (has_way_out == 0 || ::pthread_equal(thread_of_call, ::pthread_self()) == 0) return;
-  const char* const name = marked_name(state);
-  if (name == nullptr) return;
-  left = name;
+  const Leavable* const function = find_marked(state);
+  if (function == nullptr) return;
+  left = function;
   if (is_allocating == 0) jump();
   is_leaving = 1;
 }
 
-const char* left_function() noexcept { return left; }
+std::string left_function() {
+  const std::string_view table = left->table;
+  return (table == "_G" ? "" : std::string(table) + ".") + left->name;
+}
 
 void begin_allocation() noexcept { is_allocating = 1; }
 

@@ -6,6 +6,7 @@
 
 #include <lua.hpp>
 #include <optional>
+#include <string>
 
 namespace ziggurat::lua {
 
@@ -13,7 +14,7 @@ namespace ziggurat::lua {
 /// @returns its status; none: leave_stuck_call() has ended the call, and `state` must not be used again
 std::optional<int> call_leavably(lua_State* state, int arguments, int results, int handler);
 
-/// Marks the functions of Lua's library that may compute for long and that may be left at any instruction:
+/// Marks functions of Lua's library that may compute for long, or are called by those that do, and may be left at any instruction:
 /// they have no lock, and no memory but Lua's. May raise a Lua error.
 void mark_leavable_functions(lua_State* state);
 
@@ -23,7 +24,7 @@ void mark_leavable_functions(lua_State* state);
 void leave_stuck_call(lua_State* state) noexcept;
 
 /// The function that was left last, `string.find`.
-const char* left_function() noexcept;
+std::string left_function();
 
 /// Lua's memory is not left while it changes.
 void begin_allocation() noexcept;
