@@ -145,12 +145,12 @@ int Script::load(lua_State* state) {
 
 int Script::prepare(lua_State* state) {
   auto& self = *static_cast<Script*>(lua_touserdata(state, 1));
+  self.refresh(state);
   if (self.wanted_.is_required) {
     lua_getglobal(state, self.wanted_.name);
   } else {
     get_global_if_any(state, self.wanted_.name);
   }
-  if (!lua_isnil(state, -1)) self.refresh(state);  // tables of many readings take long
   return 1;
 }
 
