@@ -56,12 +56,8 @@ Viewer& Hub::add(bool may_steer) {
   viewers_.emplace(added.id, std::move(viewer));
   Introduction introduction = introduction_;
   introduction.may_steer = may_steer;
-  std::vector<Item> first;  // as a tick: they may be longer than answers
-  first.push_back(server_info(introduction));
-  if (!channels_.empty()) first.push_back(advertise(channels_));
-  if (may_steer) first.push_back(advertise_services());
-  for (Item& item : first) item.keep = Keep::always;
-  added.output.add_frame(std::move(first));
+  send(added, server_info(introduction));
+  if (may_steer) send(added, advertise_services());
   desk_.viewer_came(added.id);
   return added;
 }
@@ -93,6 +89,35 @@ void Hub::receive(Viewer& viewer, std::string_view message, bool is_text) {
   const Incoming incoming = is_text ? read_text(message) : read_binary(message);
   if (!std::holds_alternative<Wrong>(incoming)) viewer.faults = 0;
   std::visit([&](const auto& each) { handle(viewer, each); }, incoming);
+}
+
+std::optional<Item> Hub::next(Viewer& viewer) {
+  if (viewer.output.has_answer()) return viewer.output.next();
+  if (!viewer.gone.empty()) {
+    return unadvertise(std::exchange(viewer.gone, {}));
+  }
+  if (auto list = next_list(viewer)) return list;
+  if (std::exchange(viewer.lacks_graph, false)) return graph();
+  return viewer.output.next();
+}
+
+/// Some of the channels that the viewer does not know; none if it knows all.
+std::optional<Item> Hub::next_list(Viewer& viewer) const {
+  if (viewer.knows_all) return std::nullopt;
+  if (!channels_.empty()) viewer.told.resize(std::max<std::size_t>(viewer.told.size(), channels_.back().id + 1));
+  std::vector<const channels::Channel*> list;
+  std::size_t bytes = 0;
+  viewer.knows_all = true;
+  for (const channels::Channel& each : channels_) {
+    if (viewer.told[each.id]) continue;
+    bytes += each.topic.size() + each.schema->descriptors.size() / 3 * 4;
+    viewer.knows_all = list.empty() || bytes <= longest_list;
+    if (!viewer.knows_all) break;
+    viewer.told[each.id] = true;
+    list.push_back(&each);
+  }
+  if (list.empty()) return std::nullopt;
+  return advertise(list);
 }
 
 void Hub::handle(Viewer& viewer, const Wrong& message) {
@@ -186,7 +211,7 @@ void Hub::handle(Viewer& viewer, const SubscribeParameters& message) {
 
 void Hub::handle(Viewer& viewer, const SubscribeGraph& message) {
   viewer.wants_graph = message.wanted;
-  if (message.wanted) viewer.output.add_frame({graph()});
+  viewer.lacks_graph = message.wanted;
 }
 
 Item Hub::graph() const {
@@ -219,31 +244,28 @@ void Hub::handle(Viewer& viewer, const CallService& message) {
 
 void Hub::set_channels(std::vector<channels::Channel> list) {
   std::vector<std::uint32_t> gone;
-  std::vector<channels::Channel> added;
   for (const auto& old : channels_) {
     if (!std::ranges::binary_search(list, old.id, {}, &channels::Channel::id)) {
       gone.push_back(old.id);
     }
   }
-  for (const auto& fresh : list) {
-    if (!channel(fresh.id)) added.push_back(fresh);
-  }
+  const bool is_all_old = std::ranges::all_of(list, [&](const auto& each) { return channel(each.id); });
   channels_ = std::move(list);
   for (auto& [id, viewer] : viewers_) {
     for (const std::uint32_t channel : gone) {
+      if (channel < viewer->told.size() && viewer->told[channel]) {
+        viewer->told[channel] = false;
+        viewer->gone.push_back(channel);
+      }
       const auto found = viewer->subscriptions.find(channel);
       if (found == viewer->subscriptions.end()) continue;
       viewer->channels.erase(found->second);
       viewer->subscriptions.erase(found);
       --subscribers_[channel];
     }
-    std::vector<Item> news;
-    if (!gone.empty()) news.push_back(unadvertise(gone));
-    if (!added.empty()) news.push_back(advertise(added));
-    for (Item& item : news) item.keep = Keep::always;
-    if (viewer->wants_graph && !news.empty()) news.push_back(graph());
-    viewer->output.add_frame(std::move(news));
-    viewer->is_over |= viewer->output.is_too_much();
+    viewer->output.forget(gone);
+    viewer->knows_all &= is_all_old;
+    viewer->lacks_graph |= viewer->wants_graph && !(gone.empty() && is_all_old);
   }
   if (!gone.empty()) count_subscribers({});
 }

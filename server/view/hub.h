@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,7 +25,11 @@ struct Viewer {
   Output output;
   std::unordered_map<std::uint32_t, std::uint32_t> channels;  ///< subscription -> channel
   std::unordered_map<std::uint32_t, std::uint32_t> subscriptions;  ///< channel -> subscription
-  bool wants_parameters = false, wants_graph = false;
+  std::vector<bool> told;           ///< by channel: whether the viewer knows it
+  bool knows_all = false;           ///< no channel is left to be told
+  std::vector<std::uint32_t> gone;  ///< channels that it must forget
+  bool wants_parameters = false;
+  bool wants_graph = false, lacks_graph = false;  ///< at each change; the one of now
   std::int64_t time_ns = -1;  ///< the clock that it was told; -1: none yet
   unsigned faults = 0;      ///< messages in a row that are none of the protocol
   unsigned unanswered = 0;  ///< calls
@@ -35,6 +40,8 @@ class Hub {
  public:
   static constexpr unsigned most_faults = 100;
   static constexpr unsigned most_unanswered = 64;
+  /// Of a list of channels; a longer one is several messages, each made when the one before is sent [bytes]
+  static constexpr std::size_t longest_list = std::size_t{512} << 10;
   static constexpr std::size_t largest_queued = std::size_t{64} << 10;  ///< a call behind others [bytes]
 
   /// @param parameters  at the start
@@ -47,6 +54,8 @@ class Hub {
   std::size_t size() const { return viewers_.size(); }
 
   void receive(Viewer& viewer, std::string_view message, bool is_text);
+  /// What the viewer is to be sent next: answers, changes of the channels, then ticks.
+  std::optional<Item> next(Viewer& viewer);
 
   /// @param list  all channels of now, ascending by id
   void set_channels(std::vector<channels::Channel> list);
@@ -75,6 +84,7 @@ class Hub {
   std::string set(const Parameter& wish);
   const channels::Channel* channel(std::uint32_t id) const;
   void count_subscribers(std::vector<std::uint32_t> fresh);
+  std::optional<Item> next_list(Viewer& viewer) const;
   Item graph() const;
   std::vector<Parameter> values_of(std::span<const std::string> names) const;
 

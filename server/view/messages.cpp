@@ -304,14 +304,14 @@ Item server_info(const Introduction& from) {
                     {"sessionId", from.session}});
 }
 
-Item advertise(std::span<const channels::Channel> channels) {
+Item advertise(std::span<const channels::Channel* const> channels) {
   Json list = Json::array();
-  for (const channels::Channel& channel : channels) {
-    list.push_back({{"id", channel.id},
-                    {"topic", channel.topic},
+  for (const channels::Channel* channel : channels) {
+    list.push_back({{"id", channel->id},
+                    {"topic", channel->topic},
                     {"encoding", "protobuf"},
-                    {"schemaName", channel.schema->name},
-                    {"schema", base64(channel.schema->descriptors)},
+                    {"schemaName", channel->schema->name},
+                    {"schema", base64(channel->schema->descriptors)},
                     {"schemaEncoding", "protobuf"}});
   }
   return text_item({{"op", "advertise"}, {"channels", std::move(list)}});

@@ -66,7 +66,7 @@ struct Introduction {
   bool may_steer = false;
 };
 Item server_info(const Introduction& introduction);
-Item advertise(std::span<const channels::Channel> channels);
+Item advertise(std::span<const channels::Channel* const> channels);
 Item unadvertise(std::span<const std::uint32_t> ids);
 /// All services.
 Item advertise_services();

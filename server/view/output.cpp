@@ -50,6 +50,20 @@ void Output::drop(std::size_t place) {
   }
 }
 
+void Output::forget(std::span<const std::uint32_t> channels) {
+  for (Frame& frame : frames_) {
+    std::size_t kept = 0;
+    std::erase_if(frame.items, [&](const Item& item) {
+      const bool is_gone = std::ranges::binary_search(channels, item.channel);
+      if (!is_gone) kept += item.size();
+      return is_gone;
+    });
+    frame_bytes_ -= frame.bytes - kept;
+    frame.bytes = kept;
+  }
+  std::erase_if(frames_, [](const Frame& frame) { return frame.items.empty(); });
+}
+
 std::optional<Item> Output::next() {
   if (!answers_.empty()) {
     Item item = std::move(answers_.front());

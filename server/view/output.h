@@ -7,6 +7,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,6 @@ enum class Keep {
   nothing,  ///< the next tick replaces it
   newest,   ///< the newest one of its channel is sent
   all,      ///< each is sent, as long as they are few
-  always,   ///< each is sent: what later messages build on
 };
 
 /// A WebSocket message: `head`, then the content.
@@ -45,10 +45,15 @@ class Output {
   /// The messages of a tick. If too much waits, earlier ticks are dropped that were not begun.
   void add_frame(std::vector<Item> items);
 
+  /// Drops what waits of these channels.
+  /// @param channels  ascending
+  void forget(std::span<const std::uint32_t> channels);
+
   /// The next message to be sent: answers first, then ticks in their order.
   std::optional<Item> next();
   /// More waits than any viewer that reads leaves: it is to be disconnected.
   bool is_too_much() const { return size() > std::size_t{64} << 20; }
+  bool has_answer() const { return !answers_.empty(); }
   bool empty() const { return answers_.empty() && frames_.empty(); }
   std::size_t size() const { return answer_bytes_ + frame_bytes_; }  ///< [bytes]
   std::uint64_t dropped() const { return dropped_; }                 ///< ticks

@@ -105,7 +105,7 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
     if (!viewer_) return;
     if (viewer_->is_over) return close();
     if (is_writing_) return;
-    std::optional<Item> item = viewer_->output.next();
+    std::optional<Item> item = shared_.hub.next(*viewer_);
     if (!item) return;
     is_writing_ = true;
     sent_ = std::move(*item);

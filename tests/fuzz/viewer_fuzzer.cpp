@@ -78,8 +78,8 @@ class Play {
   }
 
   void read() {
-    hub_.for_each([](view::Viewer& viewer) {
-      while (viewer.output.next()) {
+    hub_.for_each([this](view::Viewer& viewer) {
+      while (hub_.next(viewer)) {
       }
       require(viewer.output.size() == 0);
     });

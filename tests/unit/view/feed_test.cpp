@@ -28,7 +28,7 @@ struct Watched {
     }
     std::ranges::sort(ids);
     hub.receive(viewer, nlohmann::json{{"op", "subscribe"}, {"subscriptions", entries}}.dump(), true);
-    while (viewer.output.next()) {
+    while (hub.next(viewer)) {
     }
   }
 
@@ -46,7 +46,7 @@ struct Watched {
   std::vector<std::string> sent() {
     feed.pass_on(hub);
     std::vector<std::string> all;
-    while (auto item = viewer.output.next()) {
+    while (auto item = hub.next(viewer)) {
       if (!item->content) continue;
       for (const channels::Channel& channel : world.channels.list()) {
         if (channel.id == item->channel) all.push_back(channel.topic + " " + tick_in(channel, *item));

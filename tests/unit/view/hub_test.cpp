@@ -29,7 +29,7 @@ struct Bench {
   /// All that waits: operations of texts, contents of messages.
   std::vector<std::string> sent(Viewer& viewer) {
     std::vector<std::string> all;
-    while (auto item = viewer.output.next()) {
+    while (auto item = hub.next(viewer)) {
       if (item->is_text)
         all.push_back(nlohmann::json::parse(item->head).at("op"));
       else if (item->content)
@@ -46,7 +46,7 @@ using Sent = std::vector<std::string>;
 TEST(Hub, IntroducesItselfAndSendsWhatIsSubscribed) {
   Bench bench;
   Viewer& viewer = bench.hub.add(true);
-  EXPECT_EQ(bench.sent(viewer), (Sent{"serverInfo", "advertise", "advertiseServices"}));
+  EXPECT_EQ(bench.sent(viewer), (Sent{"serverInfo", "advertiseServices", "advertise"}));
   bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":2}]})");
   const auto news = bench.desk.take();
   EXPECT_EQ(news.wanted, std::vector<std::uint32_t>{2});
@@ -136,15 +136,86 @@ TEST(Hub, ChannelsComeAndGo) {
   EXPECT_TRUE(bench.sent(viewer).empty());
 }
 
+/// Channels with these ids, which all have a schema of 100 kB.
+std::vector<channels::Channel> large_channels(std::uint32_t first, std::uint32_t last) {
+  static const channels::Schema large{"ziggurat.v1.Poses", std::string(100'000, 'x')};
+  std::vector<channels::Channel> list;
+  for (std::uint32_t id = first; id <= last; ++id) list.push_back({id, "/" + std::to_string(id), Kind::poses, &large, 0});
+  return list;
+}
+
+/// Ids of the channels in the texts that wait, each text by itself.
+std::vector<std::vector<std::uint32_t>> told(Bench& bench, Viewer& viewer, const std::string& op) {
+  std::vector<std::vector<std::uint32_t>> all;
+  while (auto item = bench.hub.next(viewer)) {
+    if (!item->is_text) continue;
+    const auto json = nlohmann::json::parse(item->head);
+    if (json.at("op") != op) continue;
+    EXPECT_LE(item->size(), Hub::longest_list + 10'000);
+    all.emplace_back();
+    for (const auto& each : json.at("channels")) all.back().push_back(each.at("id"));
+  }
+  return all;
+}
+
+TEST(Hub, ALongListOfChannelsIsMadeInPartsAsTheViewerReads) {
+  Bench bench;
+  bench.hub.set_channels(large_channels(1, 10));
+  Viewer& viewer = bench.hub.add(false);
+  Viewer& idle = bench.hub.add(false);
+  EXPECT_EQ(bench.hub.next(viewer)->is_text, true) << "serverInfo";
+  EXPECT_EQ(nlohmann::json::parse(bench.hub.next(viewer)->head).at("channels").size(), 3u);
+  auto list = large_channels(1, 12);
+  list.erase(list.begin() + 4);  // 5, which the viewer does not know yet
+  list.erase(list.begin() + 1);  // 2, which it knows
+  bench.hub.set_channels(list);
+  EXPECT_EQ(nlohmann::json::parse(bench.hub.next(viewer)->head).at("channelIds"), nlohmann::json({2}));
+  EXPECT_EQ(told(bench, viewer, "advertise"), (std::vector<std::vector<std::uint32_t>>{{4, 6, 7}, {8, 9, 10}, {11, 12}}));
+  for (int i = 0; i < 100; ++i) {
+    bench.hub.set_channels(large_channels(1, 1));
+    bench.hub.set_channels(large_channels(1, 4));
+  }
+  EXPECT_LT(idle.output.size(), 1000u) << "nothing but serverInfo waits for one that does not read";
+  EXPECT_EQ(told(bench, idle, "advertise"), (std::vector<std::vector<std::uint32_t>>{{1, 2, 3}, {4}}));
+  EXPECT_LE(viewer.gone.size(), 12u) << "each channel is told to be gone once";
+}
+
+TEST(Hub, AChannelThatGoesAndComesAgainIsToldAnew) {
+  Bench bench;
+  Viewer& viewer = bench.hub.add(false);
+  bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})");
+  bench.sent(viewer);
+  bench.hub.show(6, std::vector{message_of(2, "poses")});
+  bench.hub.set_channels({{1, "/world", Kind::world, &schema, 0}});
+  bench.hub.set_channels({{1, "/world", Kind::world, &schema, 0}, {2, "/poses", Kind::poses, &schema, 0}});
+  EXPECT_EQ(bench.sent(viewer), (Sent{"unadvertise", "advertise"})) << "and no message of the old one";
+  bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})");
+  bench.hub.show(7, std::vector{message_of(2, "poses")});
+  EXPECT_EQ(bench.sent(viewer), Sent{"poses"});
+}
+
+TEST(Hub, TheGraphIsSentOnceForManyQuestions) {
+  Bench bench;
+  Viewer& viewer = bench.hub.add(false);
+  bench.sent(viewer);
+  for (int i = 0; i < 100; ++i) bench.say(viewer, R"({"op":"subscribeConnectionGraph"})");
+  EXPECT_EQ(bench.sent(viewer), Sent{"connectionGraphUpdate"});
+  bench.hub.set_channels({{1, "/world", Kind::world, &schema, 0}});
+  EXPECT_EQ(bench.sent(viewer), (Sent{"unadvertise", "connectionGraphUpdate"}));
+  bench.say(viewer, R"({"op":"unsubscribeConnectionGraph"})");
+  bench.hub.set_channels({{1, "/world", Kind::world, &schema, 0}, {2, "/poses", Kind::poses, &schema, 0}});
+  EXPECT_EQ(bench.sent(viewer), Sent{"advertise"});
+}
+
 std::string call_of(std::uint32_t service, const std::string& payload) {
   return std::string("\x02") + static_cast<char>(service) + std::string(3, '\0') + std::string(4, '\7') +
          std::string("\4\0\0\0json", 8) + payload;
 }
 
 /// Clocks as their times [ns], other messages as -1.
-std::vector<std::int64_t> clocks(Viewer& viewer) {
+std::vector<std::int64_t> clocks(Bench& bench, Viewer& viewer) {
   std::vector<std::int64_t> all;
-  while (auto item = viewer.output.next()) {
+  while (auto item = bench.hub.next(viewer)) {
     std::int64_t time_ns = -1;
     if (item->head.starts_with('\x02')) std::memcpy(&time_ns, item->head.data() + 1, sizeof time_ns);
     all.push_back(time_ns);
@@ -160,13 +231,13 @@ TEST(Hub, EachViewerIsToldTheClockBeforeItsFirstMessage) {
   bench.sent(first);
   bench.sent(second);
   bench.hub.show(5, std::vector{message_of(1, "world")});
-  EXPECT_EQ(clocks(first), (std::vector<std::int64_t>{5, -1}));
-  EXPECT_TRUE(clocks(second).empty()) << "it has asked for nothing";
+  EXPECT_EQ(clocks(bench, first), (std::vector<std::int64_t>{5, -1}));
+  EXPECT_TRUE(clocks(bench, second).empty()) << "it has asked for nothing";
   bench.say(second, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":2}]})");
-  EXPECT_EQ(clocks(second), (std::vector<std::int64_t>{5, -1})) << "with the newest message";
+  EXPECT_EQ(clocks(bench, second), (std::vector<std::int64_t>{5, -1})) << "with the newest message";
   bench.hub.show(5, std::vector{message_of(1, "world"), message_of(2, "poses")});
-  EXPECT_EQ(clocks(first), std::vector<std::int64_t>{-1});
-  EXPECT_EQ(clocks(second), (std::vector<std::int64_t>{-1, -1})) << "once for a time";
+  EXPECT_EQ(clocks(bench, first), std::vector<std::int64_t>{-1});
+  EXPECT_EQ(clocks(bench, second), (std::vector<std::int64_t>{-1, -1})) << "once for a time";
 }
 
 TEST(Hub, AViewerThatComesWithinATimeIsToldTheClockWhichStartsAfterZero) {
@@ -177,7 +248,7 @@ TEST(Hub, AViewerThatComesWithinATimeIsToldTheClockWhichStartsAfterZero) {
     bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})");
     bench.sent(viewer);
     bench.hub.show(time_ns, std::vector{message_of(2, "poses")});
-    EXPECT_EQ(clocks(viewer), (std::vector<std::int64_t>{std::max<std::int64_t>(time_ns, 1), -1}));
+    EXPECT_EQ(clocks(bench, viewer), (std::vector<std::int64_t>{std::max<std::int64_t>(time_ns, 1), -1}));
   }
 }
 
@@ -188,7 +259,7 @@ TEST(Hub, TheClockStaysWithWhatIsKeptOfADroppedTick) {
   bench.sent(viewer);
   bench.hub.show(5, std::vector{message_of(1, "world")});
   for (int i = 0; i < 10; ++i) bench.hub.show(5, std::vector{message_of(2, "poses")});
-  const auto all = clocks(viewer);
+  const auto all = clocks(bench, viewer);
   ASSERT_FALSE(all.empty());
   EXPECT_EQ(all.front(), 5);
   EXPECT_EQ(std::ranges::count(all, 5), 1);

@@ -54,8 +54,7 @@ TEST(Output, ATickThatWasBegunIsSentToItsEnd) {
 TEST(Output, KeepsTheNewestWorldAndEachLine) {
   Output output;
   const auto fill = [&](char world, char line) {
-    output.add_frame({item(7, 10, Keep::newest, world), item(8, 10, Keep::all, line),
-                      item(9, 10, Keep::always, '+'), item(1, 3'000'000)});
+    output.add_frame({item(7, 10, Keep::newest, world), item(8, 10, Keep::all, line), item(1, 3'000'000)});
   };
   fill('A', '1');
   fill('B', '2');
@@ -65,17 +64,28 @@ TEST(Output, KeepsTheNewestWorldAndEachLine) {
   EXPECT_NE(all.find('C'), std::string::npos);
   EXPECT_LT(all.find('1'), all.find('2'));
   EXPECT_LT(all.find('2'), all.find('3'));
-  EXPECT_EQ(std::ranges::count(all, '+'), 3);
 }
 
 TEST(Output, ManyLinesDoNotTakeTheWorldWithThem) {
   Output output;
-  output.add_frame({item(7, 10, Keep::newest, 'W'), item(9, 10, Keep::always, '+'),
-                    item(8, Output::most_kept, Keep::all, '1'), item(8, 10, Keep::all, '2')});
+  output.add_frame({item(7, 10, Keep::newest, 'W'), item(8, Output::most_kept, Keep::all, '1'),
+                    item(8, 10, Keep::all, '2')});
   for (std::size_t i = 0; i < Output::most_waiting; ++i) output.add_frame({item(1, 10)});
   const std::string all = marks(output);
-  EXPECT_EQ(all.substr(0, 3), "W+2") << "the oldest line is too much";
+  EXPECT_EQ(all.substr(0, 2), "W2") << "the oldest line is too much";
   EXPECT_EQ(std::ranges::count(all, '1'), 0);
+}
+
+TEST(Output, WhatIsForgottenWaitsNoLonger) {
+  Output output;
+  output.add_frame({item(1, 10, Keep::nothing, 'a'), item(2, 10, Keep::nothing, 'b')});
+  output.add_frame({item(2, 10, Keep::nothing, 'c')});
+  output.add_frame({item(3, 10, Keep::nothing, 'd')});
+  const std::uint32_t gone = 2;
+  output.forget(std::span(&gone, 1));
+  EXPECT_EQ(output.size(), 20u);
+  EXPECT_EQ(marks(output), "ad");
+  EXPECT_EQ(output.size(), 0u);
 }
 
 TEST(Output, TooManyAnswersAreAnError) {
