@@ -36,6 +36,16 @@ std::string check(const Parameter& wish) {
   return fmt::format("The parameter \"{}\" can't be set.", wish.name.substr(0, 64));
 }
 
+/// Those of the names; all if there is none.
+std::vector<Parameter> values_of(std::span<const std::string> names, const std::vector<Parameter>& all) {
+  if (names.empty()) return all;
+  std::vector<Parameter> values;
+  for (const Parameter& parameter : all) {
+    if (std::ranges::find(names, parameter.name) != names.end()) values.push_back(parameter);
+  }
+  return values;
+}
+
 /// The clock comes before the messages of its time, to each viewer: one that has none takes the first for a jump, and
 /// may forget what was shown before. Some take a step away from 0 for a jump, too.
 void tell_time(std::int64_t time_ns, Viewer& viewer, std::vector<Item>& to) {
@@ -93,31 +103,9 @@ void Hub::receive(Viewer& viewer, std::string_view message, bool is_text) {
 
 std::optional<Item> Hub::next(Viewer& viewer) {
   if (viewer.output.has_answer()) return viewer.output.next();
-  if (!viewer.gone.empty()) {
-    return unadvertise(std::exchange(viewer.gone, {}));
-  }
-  if (auto list = next_list(viewer)) return list;
+  if (auto news = viewer.known.next(channels_)) return news;
   if (std::exchange(viewer.lacks_graph, false)) return graph();
   return viewer.output.next();
-}
-
-/// Some of the channels that the viewer does not know; none if it knows all.
-std::optional<Item> Hub::next_list(Viewer& viewer) const {
-  if (viewer.knows_all) return std::nullopt;
-  if (!channels_.empty()) viewer.told.resize(std::max<std::size_t>(viewer.told.size(), channels_.back().id + 1));
-  std::vector<const channels::Channel*> list;
-  std::size_t bytes = 0;
-  viewer.knows_all = true;
-  for (const channels::Channel& each : channels_) {
-    if (viewer.told[each.id]) continue;
-    bytes += each.topic.size() + each.schema->descriptors.size() / 3 * 4;
-    viewer.knows_all = list.empty() || bytes <= longest_list;
-    if (!viewer.knows_all) break;
-    viewer.told[each.id] = true;
-    list.push_back(&each);
-  }
-  if (list.empty()) return std::nullopt;
-  return advertise(list);
 }
 
 void Hub::handle(Viewer& viewer, const Wrong& message) {
@@ -173,17 +161,8 @@ void Hub::count_subscribers(std::vector<std::uint32_t> fresh) {
   desk_.set_wanted(std::move(wanted), std::move(fresh), kinds);
 }
 
-std::vector<Parameter> Hub::values_of(std::span<const std::string> names) const {
-  if (names.empty()) return parameters_;
-  std::vector<Parameter> values;
-  for (const Parameter& parameter : parameters_) {
-    if (std::ranges::find(names, parameter.name) != names.end()) values.push_back(parameter);
-  }
-  return values;
-}
-
 void Hub::handle(Viewer& viewer, const GetParameters& message) {
-  send(viewer, parameter_values(values_of(message.names), message.id));
+  send(viewer, parameter_values(values_of(message.names, parameters_), message.id));
 }
 
 /// What is wrong with it; empty: it holds now.
@@ -202,7 +181,7 @@ void Hub::handle(Viewer& viewer, const SetParameters& message) {
         viewer.may_steer ? set(wish) : "Parameters are set with the token in the address only.";
     if (!why.empty()) send(viewer, warning(why));
   }
-  if (!names.empty()) send(viewer, parameter_values(values_of(names), message.id));
+  if (!names.empty()) send(viewer, parameter_values(values_of(names, parameters_), message.id));
 }
 
 void Hub::handle(Viewer& viewer, const SubscribeParameters& message) {
@@ -253,10 +232,6 @@ void Hub::set_channels(std::vector<channels::Channel> list) {
   channels_ = std::move(list);
   for (auto& [id, viewer] : viewers_) {
     for (const std::uint32_t channel : gone) {
-      if (channel < viewer->told.size() && viewer->told[channel]) {
-        viewer->told[channel] = false;
-        viewer->gone.push_back(channel);
-      }
       const auto found = viewer->subscriptions.find(channel);
       if (found == viewer->subscriptions.end()) continue;
       viewer->channels.erase(found->second);
@@ -264,7 +239,7 @@ void Hub::set_channels(std::vector<channels::Channel> list) {
       --subscribers_[channel];
     }
     viewer->output.forget(gone);
-    viewer->knows_all &= is_all_old;
+    viewer->known.change(gone, is_all_old);
     viewer->lacks_graph |= viewer->wants_graph && !(gone.empty() && is_all_old);
   }
   if (!gone.empty()) count_subscribers({});

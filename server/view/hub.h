@@ -14,6 +14,7 @@
 #include "channels/channel.h"
 #include "channels/message.h"
 #include "view/desk.h"
+#include "view/known_channels.h"
 #include "view/messages.h"
 #include "view/output.h"
 
@@ -25,9 +26,7 @@ struct Viewer {
   Output output;
   std::unordered_map<std::uint32_t, std::uint32_t> channels;  ///< subscription -> channel
   std::unordered_map<std::uint32_t, std::uint32_t> subscriptions;  ///< channel -> subscription
-  std::vector<bool> told;           ///< by channel: whether the viewer knows it
-  bool knows_all = false;           ///< no channel is left to be told
-  std::vector<std::uint32_t> gone;  ///< channels that it must forget
+  KnownChannels known;
   bool wants_parameters = false;
   bool wants_graph = false, lacks_graph = false;  ///< at each change; the one of now
   std::int64_t time_ns = -1;  ///< the clock that it was told; -1: none yet
@@ -40,8 +39,6 @@ class Hub {
  public:
   static constexpr unsigned most_faults = 100;
   static constexpr unsigned most_unanswered = 64;
-  /// Of a list of channels; a longer one is several messages, each made when the one before is sent [bytes]
-  static constexpr std::size_t longest_list = std::size_t{512} << 10;
   static constexpr std::size_t largest_queued = std::size_t{64} << 10;  ///< a call behind others [bytes]
 
   /// @param parameters  at the start
@@ -84,9 +81,7 @@ class Hub {
   std::string set(const Parameter& wish);
   const channels::Channel* channel(std::uint32_t id) const;
   void count_subscribers(std::vector<std::uint32_t> fresh);
-  std::optional<Item> next_list(Viewer& viewer) const;
   Item graph() const;
-  std::vector<Parameter> values_of(std::span<const std::string> names) const;
 
   Introduction introduction_;
   std::vector<Parameter> parameters_;

@@ -7,10 +7,32 @@
 namespace ziggurat::lua {
 namespace {
 
+/// Whether the first argument is the table that the function is a field of, as a colon passes it.
+bool is_called_with_colon(lua_State* state) {
+  lua_Debug call;
+  if (!lua_istable(state, 1) || lua_getstack(state, 0, &call) == 0) return false;
+  luaL_checkstack(state, 4, nullptr);
+  lua_getinfo(state, "f", &call);
+  const int function = lua_gettop(state);
+  bool is_field = false;
+  lua_pushnil(state);
+  while (!is_field && lua_next(state, 1) != 0) {
+    is_field = lua_rawequal(state, -1, function) != 0;
+    lua_pop(state, 1);
+  }
+  lua_settop(state, function - 1);
+  return is_field;
+}
+
+/// What to write instead.
+const char* hint(lua_State* state) {
+  return is_called_with_colon(state) ? "; write a dot, not a colon, before the function's name" : "";
+}
+
 void check_type(lua_State* state, int index, int type) {
   if (lua_type(state, index) == type) return;
-  const char* message = lua_pushfstring(state, "%s expected, got %s", lua_typename(state, type),
-                                        luaL_typename(state, index));
+  const char* message = lua_pushfstring(state, "%s expected, got %s%s", lua_typename(state, type),
+                                        luaL_typename(state, index), hint(state));
   luaL_argerror(state, index, message);
 }
 
@@ -19,7 +41,8 @@ void check_type(lua_State* state, int index, int type) {
 void check_count(lua_State* state, int min, int max, const char* usage) {
   const int count = lua_gettop(state);
   if (count >= min && count <= max) return;
-  luaL_error(state, "wrong number of arguments: %s expected, got %d", usage, count);
+  luaL_error(state, "wrong number of arguments: %s expected, got %d%s", usage, count,
+             hint(state));
 }
 
 double check_number(lua_State* state, int index) {

@@ -48,6 +48,21 @@ TEST_F(Arguments, WrongTypesNameTheLineOfTheScript) {
       << *failure;
 }
 
+TEST_F(Arguments, AColonInsteadOfADotIsNamed) {
+  const std::string script = R"(
+    local _, message = pcall(function() robot.joints.both:set_target(1) end)
+    log(message)
+    _, message = pcall(function() robot.joints.both:set_target() end)
+    log(message)
+    _, message = pcall(robot.joints.both.set_target, {set_target = 1}, 2)
+    log(message))";
+  const auto lines = logged(script);
+  ASSERT_EQ(lines.size(), 3u) << lines[0];
+  EXPECT_NE(lines[0].find("expected, got 2; write a dot, not a colon"), std::string::npos) << lines[0];
+  EXPECT_NE(lines[1].find("got table; write a dot, not a colon"), std::string::npos) << lines[1];
+  EXPECT_EQ(lines[2].find("colon"), std::string::npos) << lines[2];
+}
+
 TEST_F(Arguments, SensorAndActuatorShareATable) {
   EXPECT_EQ(logged("local j = robot.joints "
                    "log(j.both.encoder, type(j.both.set_target)) "
