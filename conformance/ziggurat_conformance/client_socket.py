@@ -1,5 +1,7 @@
 """The server's socket in client mode."""
 
+import os
+import secrets
 import socket
 import time
 from dataclasses import dataclass
@@ -9,10 +11,13 @@ import zmq
 import zmq.auth.thread
 import zmq.utils.monitor
 
+from .client_relay import Relay
 from .server_process import free_port
 
-_LONGEST = 128 << 20  # [bytes]: twice a controller's limit; above, the connection is closed (T4)
 _REBINDING = 5.0  # [s] until a port is free again
+_MOST_WAITING = 100  # messages of each connection, in each direction
+_SETTLING = 2.0  # [s] until what the relay has passed on is a message, on a busy machine too
+_AROUND_ENCRYPTED = 33  # [bytes] of each frame of an encrypted connection
 _PEER_NAMES = ("Socket-Type", "User-Id")
 
 
@@ -27,7 +32,7 @@ class Arrival:
 
 
 class ServerSocket:
-    """A ROUTER at a port of its own. It may be closed and opened again there."""
+    """A ROUTER behind a relay that listens at a port of its own. It may be closed and opened again there."""
 
     def __init__(self, secret_key: Optional[bytes] = None, is_open: bool = True,
                  listens: bool = True):
@@ -39,7 +44,9 @@ class ServerSocket:
             self._authenticator = zmq.auth.thread.ThreadAuthenticator(self._context)
             self._authenticator.start()
             self._authenticator.configure_curve_callback(credentials_provider=_Doorkeeper(is_open))
-        self.endpoint = f"tcp://127.0.0.1:{free_port()}"
+        self._port = free_port()
+        self.endpoint = f"tcp://127.0.0.1:{self._port}"
+        self._relay: Optional[Relay] = None
         self._socket: Optional[zmq.Socket] = None
         self._monitor: Optional[zmq.Socket] = None
         self._connected: set[int] = set()  # descriptors
@@ -47,20 +54,29 @@ class ServerSocket:
             self.open()
 
     def open(self) -> None:
+        """Raises Failed for what a client sent before it was closed."""
+        if self._relay is not None:
+            self._relay.check()
+        name = f"ziggurat-kit-{secrets.token_hex(16)}"
         self._socket = self._context.socket(zmq.ROUTER)
         self._socket.setsockopt(zmq.LINGER, 0)
-        self._socket.setsockopt(zmq.MAXMSGSIZE, _LONGEST)
+        self._socket.setsockopt(zmq.RCVHWM, _MOST_WAITING)
+        self._socket.setsockopt(zmq.SNDHWM, _MOST_WAITING)
+        self._socket.setsockopt(zmq.IPC_FILTER_PID, os.getpid())  # the relay alone may connect
         if self._secret_key is not None:
             self._socket.curve_secretkey = self._secret_key
             self._socket.curve_server = True
         self._connected = set()
         self._monitor = self._socket.get_monitor_socket(zmq.EVENT_ACCEPTED | zmq.EVENT_DISCONNECTED)
+        self._socket.bind(f"ipc://@{name}")
+        self._relay = self._listen(name)
+
+    def _listen(self, name: str) -> Relay:
         deadline = time.monotonic() + _REBINDING
         while True:
             try:
-                self._socket.bind(self.endpoint)
-                return
-            except zmq.ZMQError:
+                return Relay(self._port, name)
+            except OSError:
                 if time.monotonic() > deadline:
                     raise
                 time.sleep(0.005)
@@ -71,6 +87,8 @@ class ServerSocket:
             self._socket.disable_monitor()
             self._monitor.close(linger=0)
             self._socket.close()
+        if self._relay is not None:
+            self._relay.close()
 
     def connections(self) -> int:
         """How many there are now."""
@@ -87,15 +105,31 @@ class ServerSocket:
         self._context.term()
 
     def receive(self, seconds: float) -> Optional[Arrival]:
+        """Raises Failed for what is more than the kit takes."""
         if self._socket is None:
             time.sleep(max(0.0, seconds))
             return None
         self.connections()  # no more events wait than those of one call
-        if not self._socket.poll(max(0, int(1000 * seconds))):
+        if not self._is_there(seconds):
             return None
         first, *frames = self._socket.recv_multipart(copy=False)
+        around = _AROUND_ENCRYPTED if self._secret_key is not None else 0
+        self._relay.take(sum(len(frame) + around for frame in frames), len(frames))
         facts = {name: _fact(frames[-1] if frames else first, name) for name in _PEER_NAMES}
         return Arrival(first.bytes, tuple(frames), facts["Socket-Type"], facts["User-Id"])
+
+    def _is_there(self, seconds: float) -> bool:
+        """A message, within so many seconds."""
+        self._relay.check()
+        if self._socket.poll(max(0, int(1000 * seconds))):
+            return True
+        self._relay.check()
+        if not self._relay.is_full():
+            return False
+        if self._socket.poll(int(1000 * _SETTLING)):
+            return True
+        self._relay.check_room()
+        return False
 
     def send(self, routing_id: bytes, data: bytes) -> None:
         self._socket.send_multipart([routing_id, data])

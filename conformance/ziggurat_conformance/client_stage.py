@@ -195,7 +195,7 @@ class ClientStage:
             self._lose(is_connected=True)
         while True:
             message = self._receive(deadline - time.monotonic(), is_new=True)
-            if message is None:
+            if message is None or time.monotonic() >= deadline and not message.HasField("hello"):
                 _judge(f"it did not resume its session within {max(step.within, self.patience):g} s (M3, L4)"
                        f"{self._gone()}", True)
                 return
@@ -271,13 +271,14 @@ class ClientStage:
                 raise Failed(f"the client said {wire.text_of(message, 300)}: "
                              + "; ".join(map(str, broken[:5])))
             self._count(message)
-            if self._refuses_token(message):
-                continue
             if message.HasField("command"):
                 self.last_commands = [*self.last_commands[-1:], message.command]
-            if not message.HasField("heartbeat") or is_new and self.session.state is State.NEW:
-                return message
-            self._tell(protocol.ServerMessage(heartbeat=message.heartbeat))
+            if not self._refuses_token(message):
+                if not message.HasField("heartbeat") or is_new and self.session.state is State.NEW:
+                    return message
+                self._tell(protocol.ServerMessage(heartbeat=message.heartbeat))
+            if time.monotonic() >= deadline:  # else they could come without end
+                return None
 
     def _refuses_token(self, message: protocol.ClientMessage) -> bool:
         """As a server does: there is no such session (L4)."""
