@@ -269,6 +269,8 @@ class Attacks(SceneTest):
                 told = supervisor.ask(spawn=v1.SpawnRequest(xml=xml))
                 self.assertTrue(told, xml[:60])
                 self.assertNotIn("root:", told)
+            large = BOX.format("large", "0.8,0.8,0.5") + " " * (1 << 20)
+            self.assertIn("at most 1048576 are allowed", supervisor.ask(spawn=v1.SpawnRequest(xml=large)))
             for position in ([float("nan"), 0, 0], [1e308, 0, 0], [0] * 2, [0] * 100_000):
                 self.assertTrue(supervisor.ask(move=v1.MoveRequest(entity="r0", position=position)))
             self.assertEqual(supervisor.ask(spawn=v1.SpawnRequest(xml=BOX.format("good", "0.8,0.8,0.5"))), "")
