@@ -13,6 +13,7 @@
 
 #include "text/names.h"
 #include "text/numbers.h"
+#include "text/shortened.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -150,6 +151,20 @@ void check_apart(const Values& values, const char* other, std::initializer_list<
     if (!values.has(option) || !values.has(other)) continue;
     throw text::UsageError(fmt::format("--{} has no effect with --{}; leave out one of them", option, other));
   }
+}
+
+std::vector<std::string> first_of(const std::vector<std::pair<std::string, std::string>>& pairs) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : pairs) names.push_back(name);
+  return names;
+}
+
+void check_once(const char* option, std::vector<std::string> subjects) {
+  std::ranges::sort(subjects);
+  const auto twice = std::ranges::adjacent_find(subjects);
+  if (twice == subjects.end()) return;
+  throw text::UsageError(fmt::format("{} is given twice for {}, and only one of them would have an effect; leave out one",
+                                     option, twice->empty() ? "all" : "'" + text::shortened(*twice) + "'"));
 }
 
 const std::string& only_recording(std::string_view command,

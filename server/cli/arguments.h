@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/commands.h"
@@ -43,6 +44,13 @@ Parsed parse(const Arguments& arguments, const boost::program_options::options_d
 void check_needs(const Values& values, std::initializer_list<const char*> options, const char* other);
 /// Refuses options that have no effect beside another one. @throws text::UsageError
 void check_apart(const Values& values, const char* other, std::initializer_list<const char*> options);
+
+/// The names of NAME=VALUE.
+std::vector<std::string> first_of(const std::vector<std::pair<std::string, std::string>>& pairs);
+
+/// Refuses an option that is given twice for the same: one of its values would have no effect.
+/// @param subjects  what each is for; empty: for all. @throws text::UsageError
+void check_once(const char* option, std::vector<std::string> subjects);
 
 /// The one recording that a command is for. @throws text::UsageError if there is none or more
 const std::string& only_recording(std::string_view command,

@@ -241,6 +241,7 @@ Exit codes: 0 no scene has a fault; 1 at least one has, or with --strict a warni
 
 int execute_check(const Arguments& arguments) {
   const auto options = parse_options(arguments, check_options());
+  check_apart(Values(parse(arguments, check_options()).values), "json", {"quiet"});
   if (options.scenes.empty())
     throw text::UsageError("no scene is given; write: ziggurat check SCENE...");
   reports::Console console({options.quiet, false});

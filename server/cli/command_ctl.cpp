@@ -5,11 +5,13 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <iostream>
-#include <iterator>
 #include <limits>
 #include <optional>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
@@ -17,8 +19,10 @@
 #include "reports/console.h"
 #include "scene/files.h"
 #include "scene/values.h"
+#include "simulation/snapshot.h"
 #include "text/names.h"
 #include "text/numbers.h"
+#include "text/shortened.h"
 #include "ziggurat/error.h"
 
 namespace ziggurat::cli {
@@ -37,85 +41,129 @@ po::options_description ctl_options() {
   return options;
 }
 
+/// What the command line says.
+struct Given {
+  std::vector<std::string> words;  ///< after the verb
+  Values values;
+};
+
 struct Call {
   Supervisor& server;
   reports::Console& console;
-  std::vector<std::string> words;  ///< after the verb
-  po::variables_map values;
+  bool as_json;
 };
 
+/// What is asked of the server. Its words were checked before: a wrong one is told also if no server is there.
+using Request = std::function<void(const Call&)>;
+
 void print_result(const Call& call, std::string_view done, std::uint64_t tick) {
-  if (call.values.count("json") > 0) {
+  if (call.as_json) {
     call.console.result(fmt::format(R"({{"tick":{}}})", tick));
   } else {
     call.console.result(fmt::format("{} at tick {}", done, tick));
   }
 }
 
-void print_status(const Call& call) {
-  const ServerStatus status = call.server.status();
-  const bool json = call.values.count("json") > 0;
-  call.console.result(json ? call.server.last_answer_json() : to_text(status));
+Request status(const Given&) {
+  return [](const Call& call) {
+    const ServerStatus status = call.server.status();
+    call.console.result(call.as_json ? call.server.last_answer_json() : to_text(status));
+  };
 }
 
-void pause(const Call& call) { print_result(call, "paused", call.server.pause()); }
-void resume(const Call& call) { print_result(call, "resumed", call.server.resume()); }
-
-void step(const Call& call) {
-  const std::uint64_t ticks = call.words.empty() ? 1 : text::to_integer("step", call.words[0]);
-  print_result(call, "paused", call.server.step(ticks));
+Request pause(const Given&) {
+  return [](const Call& call) { print_result(call, "paused", call.server.pause()); };
 }
 
-void reset(const Call& call) {
-  const auto seed = call.values.find("seed");
-  if (seed == call.values.end()) {
-    call.server.reset();
-  } else {
-    call.server.reset(text::to_integer("--seed", seed->second.as<std::string>()));
+Request resume(const Given&) {
+  return [](const Call& call) { print_result(call, "resumed", call.server.resume()); };
+}
+
+Request step(const Given& given) {
+  const std::uint64_t ticks = given.words.empty() ? 1 : text::to_integer("step", given.words[0]);
+  if (ticks == 0) throw text::UsageError("step is 0; write 1 or more ticks");
+  return [ticks](const Call& call) { print_result(call, "paused", call.server.step(ticks)); };
+}
+
+Request reset(const Given& given) {
+  std::optional<std::uint64_t> seed;
+  if (given.values.has("seed")) seed = text::to_integer("--seed", given.values.text("seed"));
+  return [seed](const Call& call) {
+    call.server.reset(seed);
+    print_result(call, "reset", 0);
+  };
+}
+
+std::string snapshot_name(const Given& given) {
+  const std::string& name = given.words[0];
+  if (const auto why = simulation::fault_of_snapshot_name(name)) {
+    throw text::UsageError(fmt::format("{}; '{}' is none", *why, text::shortened(name)));
   }
-  print_result(call, "reset", 0);
+  return name;
 }
 
-void snapshot(const Call& call) { print_result(call, "kept", call.server.snapshot(call.words[0])); }
+Request snapshot(const Given& given) {
+  return [name = snapshot_name(given)](const Call& call) { print_result(call, "kept", call.server.snapshot(name)); };
+}
 
-void restore(const Call& call) {
-  print_result(call, "restored", call.server.restore(call.words[0]));
+Request restore(const Given& given) {
+  return [name = snapshot_name(given)](const Call& call) {
+    print_result(call, "restored", call.server.restore(name));
+  };
+}
+
+/// No more than the server takes: a device may have no end.
+std::string element_of(std::istream& from, std::string_view name) {
+  std::string text;
+  for (char block[65536]; from.read(block, sizeof block) || from.gcount() > 0;) {
+    text.append(block, static_cast<std::size_t>(from.gcount()));
+    if (text.size() <= simulation::longest_spawned) continue;
+    throw text::UsageError(fmt::format("{} has more than {} bytes, the most that an element may have; write one entity, and spawn "
+                                       "others by further requests",
+                                       name, simulation::longest_spawned));
+  }
+  return text;
 }
 
 std::string contents_of(const std::string& path) {
-  if (path == "-") return {std::istreambuf_iterator<char>(std::cin), {}};
+  if (path == "-") return element_of(std::cin, "standard input");
   if (const auto fault = scene::fault_of_file(path)) {
     throw text::UsageError("'" + path + "' " + *fault + ", or write - to read from standard input");
   }
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
+  std::ifstream file(path, std::ios::binary);
+  return element_of(file, "'" + path + "'");
 }
 
-void spawn(const Call& call) {
-  print_result(call, "spawned", call.server.spawn(contents_of(call.words[0])));
+Request spawn(const Given& given) {
+  return [xml = contents_of(given.words[0])](const Call& call) {
+    print_result(call, "spawned", call.server.spawn(xml));
+  };
 }
 
-void remove(const Call& call) { print_result(call, "removed", call.server.remove(call.words[0])); }
+Request remove(const Given& given) {
+  return [entity = given.words[0]](const Call& call) { print_result(call, "removed", call.server.remove(entity)); };
+}
 
-void move(const Call& call) {
+Request move(const Given& given) {
   std::array<double, 3> position{};
-  text::to_numbers("position", call.words[1], "x,y,z in metres, as 1,-1,0.5", position);
+  text::to_numbers("position", given.words[1], "x,y,z in metres, as 1,-1,0.5", position);
   std::optional<std::array<double, 4>> orientation;
-  if (call.words.size() == 3) {
+  if (given.words.size() == 3) {
     math::Vector3 angles;
-    text::to_numbers("orientation", call.words[2], "turns about z,y,x in degrees, as 90,0,0", {angles.data(), 3});
+    text::to_numbers("orientation", given.words[2], "turns about z,y,x in degrees, as 90,0,0", {angles.data(), 3});
     const math::Quaternion turned = scene::orientation_from_degrees(angles);
     orientation = {turned.w(), turned.x(), turned.y(), turned.z()};
   }
-  print_result(call, "moved", call.server.move(call.words[0], position, orientation));
+  return [entity = given.words[0], position, orientation](const Call& call) {
+    print_result(call, "moved", call.server.move(entity, position, orientation));
+  };
 }
 
 // To four decimals, without the sign of what is rounded to zero.
 double shown(double value) { return std::abs(value) < 0.5e-4 ? 0.0 : value; }
 
-void read(const Call& call) {
-  const WorldStates states = call.server.read(call.words);
-  if (call.values.count("json") > 0) {
+void print_states(const Call& call, const WorldStates& states) {
+  if (call.as_json) {
     return call.console.result(call.server.last_answer_json());
   }
   call.console.result(fmt::format("tick {}, hash {}", states.tick, states.hash));
@@ -129,9 +177,12 @@ void read(const Call& call) {
   }
 }
 
-void shutdown(const Call& call) {
-  const auto reason = call.values.find("reason");
-  call.server.shutdown(reason == call.values.end() ? "" : reason->second.as<std::string>());
+Request read(const Given& given) {
+  return [patterns = given.words](const Call& call) { print_states(call, call.server.read(patterns)); };
+}
+
+Request shutdown(const Given& given) {
+  return [reason = given.values.text("reason")](const Call& call) { call.server.shutdown(reason); };
 }
 
 struct Verb {
@@ -139,13 +190,13 @@ struct Verb {
   std::string_view words;   ///< after the name, for messages
   std::size_t least, most;  ///< how many
   std::string_view summary;
-  void (*execute)(const Call&);
+  Request (*read)(const Given&);  ///< @throws text::UsageError
 };
 
 constexpr std::size_t any_number = std::numeric_limits<std::size_t>::max();
 
 constexpr Verb verbs[] = {
-    {"status", "", 0, 0, "the controllers that the world waits for, and how long", print_status},
+    {"status", "", 0, 0, "the controllers that the world waits for, and how long", status},
     {"pause", "", 0, 0, "stop between two ticks; returns when the world has stopped", pause},
     {"resume", "", 0, 0, "continue", resume},
     {"step", "[TICKS]", 0, 1, "advance a paused world, by 1 tick if TICKS is missing", step},
@@ -217,21 +268,16 @@ int execute_ctl(const Arguments& arguments) {
     throw text::UsageError(fmt::format("write: ziggurat ctl [URL] {}{}{}", verb.name,
                                        verb.words.empty() ? "" : " ", verb.words));
   }
-  if (parsed.values.count("seed") > 0 && verb.name != "reset") {
-    throw text::UsageError(fmt::format("--seed is for reset; remove it from {}", verb.name));
+  const Given given{std::move(words), Values(parsed.values)};
+  for (const auto& [option, of] : {std::pair{"seed", "reset"}, std::pair{"reason", "shutdown"}}) {
+    if (!given.values.has(option) || verb.name == of) continue;
+    throw text::UsageError(fmt::format("--{} is for {}; remove it from {}", option, of, verb.name));
   }
-  if (const auto reason = parsed.values.find("reason"); reason != parsed.values.end()) {
-    if (verb.name != "shutdown") {
-      throw text::UsageError(fmt::format("--reason is for shutdown; remove it from {}", verb.name));
-    }
-    if (reason->second.as<std::string>().empty()) {
-      throw text::UsageError("--reason is empty; write why the run ends, or leave it out");
-    }
-  }
+  const Request request = verb.read(given);
   const std::string endpoint = take_endpoint(where);
   reports::Console console;
   const auto server = connect(supervisor_options(endpoint, parsed.values, false, "ziggurat ctl"), console);
-  verb.execute({*server, console, words, parsed.values});
+  request({*server, console, given.values.has("json")});
   console.flush();
   return reports::exit_code::finished;
 }

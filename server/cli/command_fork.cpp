@@ -27,6 +27,7 @@ run::ForkOptions read_fork(const boost::program_options::variables_map& values) 
     }
     fork.scripts.emplace_back(each.substr(0, equals), each.substr(equals + 1));
   }
+  check_once("--script", first_of(fork.scripts));
   return fork;
 }
 

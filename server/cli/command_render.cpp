@@ -117,6 +117,7 @@ std::optional<run::PictureOptions> to_pictures(const po::variables_map& values) 
   const auto text = [&](const char* name) { return values[name].as<std::string>(); };
   pictures.film = film_options(values);
   if (values.count("out")) pictures.out = text("out");
+  run::check_picture_path(pictures.out);
   if (pictures.out.empty() && !pictures.film) {
     for (const char* name : {"at", "follow", "layers", "eye", "look-at", "size", "fov"}) {
       if (!values.count(name)) continue;
@@ -134,6 +135,9 @@ std::optional<run::PictureOptions> to_pictures(const po::variables_map& values) 
   if (values.count("layers")) pictures.view.layers = to_layers(text("layers"));
   if (values.count("eye")) pictures.view.eye = to_point("--eye", text("eye"));
   if (values.count("look-at")) pictures.view.look_at = to_point("--look-at", text("look-at"));
+  if (pictures.view.eye && pictures.view.eye == pictures.view.look_at) {
+    throw text::UsageError("--eye and --look-at are the same point, which gives no direction; write two different points");
+  }
   if (values.count("size")) read_size(text("size"), pictures);
   if (values.count("fov")) {
     const double degrees = text::to_number("--fov", text("fov"));

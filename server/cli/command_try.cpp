@@ -79,6 +79,7 @@ int execute_try(const Arguments& arguments, processes::Signals& signals) {
   if (parsed.values.count("until")) options.until = text::to_integer("--until", text("until"));
   if (parsed.values.count("differences")) {
     options.most_told = text::to_integer("--differences", text("differences"));
+    if (options.most_told == 0) throw text::UsageError("--differences is 0; write 1 or more");
   }
   return run::Rehearsal(options, signals).execute();
 }

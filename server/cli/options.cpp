@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "cli/arguments.h"
 #include "cli/variation.h"
@@ -57,6 +58,38 @@ void read_length(const Values& values, run::Options& options) {
   if (options.ticks && options.duration) {
     throw text::UsageError("--ticks and --duration both set the length; give one of them");
   }
+}
+
+/// For whom each option is, by name; without one for all.
+template <class Option>
+std::vector<std::string> controllers_of(const std::vector<Option>& options) {
+  std::vector<std::string> names;
+  for (const Option& option : options) names.push_back(option.controller);
+  return names;
+}
+
+/// Of both directions, if an injection is for both.
+std::vector<std::string> directions_of(const std::vector<run::InjectOption>& options) {
+  using network::Direction;
+  std::vector<std::string> subjects;
+  for (const run::InjectOption& option : options) {
+    const std::string who = option.controller.empty() ? "" : option.controller + "=";
+    if (option.direction != Direction::commands) subjects.push_back(who + "observations");
+    if (option.direction != Direction::observations) subjects.push_back(who + "commands");
+  }
+  return subjects;
+}
+
+/// Each is for something: a second one for the same would replace the first.
+void check_subjects(const run::Options& options) {
+  check_once("--controller", first_of(options.controllers));
+  check_once("--deadline", controllers_of(options.deadlines));
+  check_once("--restart", controllers_of(options.restarts));
+  check_once("--inject", directions_of(options.injections));
+  check_once("--param", first_of(options.scene_file.variation.parameters));
+  std::vector<std::string> paths;
+  for (const scene::Setting& setting : options.scene_file.variation.settings) paths.push_back(setting.path);
+  check_once("--set", std::move(paths));
 }
 
 /// What is passed to ziggurat-lua.
@@ -234,6 +267,7 @@ run::Options parse_options(const Arguments& arguments, const po::options_descrip
   read_network(values, options);
   read_outputs(values, options);
   read_recording(values, options);
+  check_subjects(options);
   check_effects(values, known, options);
   options.arguments = without_secrets(arguments);
   return options;

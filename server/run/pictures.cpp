@@ -113,6 +113,20 @@ std::uint64_t last_tick(const PictureOptions& options, const scene::Experiment& 
   return last;
 }
 
+void check_picture_path(const std::string& out) {
+  constexpr std::string_view between = "-+#0123456789", conversions = "diouxXeEfFgGaAcspn";
+  const auto number = find_placeholder(out);
+  for (std::size_t begin = out.find('%'); begin != std::string::npos; begin = out.find('%', begin + 1)) {
+    const std::size_t end = out.find_first_not_of(between, begin + 1);
+    const bool is_other = end != std::string::npos && conversions.find(out[end]) != conversions.npos;
+    if (!is_other || (number && begin == number->begin)) continue;
+    throw text::UsageError(fmt::format("--out is '{}': '{}' {}; write %03d once, for the number of the picture", out,
+                                       out.substr(begin, end + 1 - begin),
+                                       number && begin > number->begin ? "stands behind another place for a number"
+                                                                       : "is no place for a number"));
+  }
+}
+
 std::string picture_path(const std::string& out, std::size_t number, std::size_t of) {
   const auto placeholder = find_placeholder(out);
   if (placeholder) {

@@ -34,6 +34,10 @@ struct PictureOptions {
 /// The tick of the last picture. @throws text::UsageError if the film has no end
 std::uint64_t last_tick(const PictureOptions& options, const scene::Experiment& experiment);
 
+/// That a path has one place at most for the number of a picture, and nothing else that printf() would replace.
+/// @throws text::UsageError
+void check_picture_path(const std::string& out);
+
 /// The path of a picture. A single one is `out`. For several, `%d` or `%03d` in it is replaced by
 /// the number; without that the number goes before the suffix.
 std::string picture_path(const std::string& out, std::size_t number, std::size_t of);

@@ -36,6 +36,16 @@ void read_commands(std::span<const std::byte> bytes, const world::Layout& layout
 
 }  // namespace
 
+std::optional<std::string> fault_of_snapshot_name(std::string_view name) {
+  constexpr std::size_t longest = 64;
+  const auto is_allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '.';
+  };
+  const bool is_name = !name.empty() && name.size() <= longest && name[0] != '.' && std::ranges::all_of(name, is_allowed);
+  if (is_name) return std::nullopt;
+  return fmt::format("The name of a snapshot has 1 to {} letters, digits, '-', '_' and '.', and does not begin with '.'", longest);
+}
+
 std::size_t common_robots(const History& now, const History& then, const world::Layout& layout) {
   std::size_t entities = layout.entities.size();
   const auto is_same = [](const Act& a, const Act& b) {

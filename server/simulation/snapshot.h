@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "math/pose.h"
@@ -21,6 +23,10 @@ namespace ziggurat::simulation {
 
 /// Entities that may be spawned in a world, since its start or a reset.
 inline constexpr std::size_t most_spawned = 10'000;
+inline constexpr std::size_t longest_spawned = std::size_t{1} << 20;  ///< the text of one [bytes]
+
+/// Why a snapshot can't have this name, without a full stop; none if it can.
+std::optional<std::string> fault_of_snapshot_name(std::string_view name);
 
 /// Something that was done to a world between two ticks.
 struct Act {

@@ -20,12 +20,12 @@
 
 namespace ziggurat::supervision {
 
+using simulation::longest_spawned;
 using simulation::most_spawned;
 using wire::ErrorCode;
 
 namespace {
 
-constexpr std::size_t longest_text = std::size_t{1} << 20;     // of an element [bytes]
 constexpr std::size_t most_links = 256;                        // of an entity
 constexpr double largest_mass = 1e6;                           // of an entity [kg]
 constexpr std::size_t longest_message = std::size_t{1} << 14;  // of an error [bytes]
@@ -117,10 +117,10 @@ Population::Population(const Settings& settings, World& world, network::Server& 
 std::variant<Population::Candidate, wire::Fault> Population::read(
     const std::string& xml, const std::function<bool(const std::string&)>& is_taken,
     const EarlierSpawns& earlier) const {
-  if (xml.size() > longest_text) {
+  if (xml.size() > longest_spawned) {
     return wire::make_fault(ErrorCode::too_large, "spawn.xml",
                             fmt::format("The element has {} bytes; at most {} are allowed.",
-                                        xml.size(), longest_text));
+                                        xml.size(), longest_spawned));
   }
   if (spawned_ + earlier.count >= most_spawned) {
     return wire::make_fault(

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <fstream>
 #include <span>
 #include <stdexcept>
@@ -23,23 +22,11 @@ namespace {
 constexpr std::size_t most = 1024;                          // snapshots in memory
 constexpr std::size_t most_bytes = std::size_t{1} << 30;    // of all of them
 constexpr std::size_t longest_file = std::size_t{512} << 20;  // what a recording can embed [bytes]
-constexpr std::size_t longest_name = 64;
-
-bool is_name(std::string_view name) {
-  const auto is_allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
-           c == '_' || c == '.';
-  };
-  return !name.empty() && name.size() <= longest_name && name[0] != '.' &&
-         std::ranges::all_of(name, is_allowed);
-}
 
 std::optional<wire::Fault> fault_of_name(const std::string& name, const char* field) {
-  if (is_name(name)) return std::nullopt;
-  return make_fault(
-      ErrorCode::bad_value, field,
-      "The name of a snapshot has 1 to 64 letters, digits, '-', '_' and '.', and does "
-      "not begin with '.'.");
+  const auto why = simulation::fault_of_snapshot_name(name);
+  if (!why) return std::nullopt;
+  return make_fault(ErrorCode::bad_value, field, *why + ".");
 }
 
 std::vector<std::byte> read_file(const std::filesystem::path& path) {

@@ -124,6 +124,9 @@ class RenderTest(SceneTest):
                 (["--fps", "10", "--out", "x.png"], "--video"),
                 (["--layers", "rays,smoke", "--out", "x.png"], "no layer 'smoke'"),
                 (["--follow", "ghost", "--out", "x.png"], "no entity 'ghost'"),
+                (["--eye", "1,2,3", "--look-at", "1,2,3.0", "--out", "x.png"], "are the same point"),
+                (["--at", "0,1", "--out", "x%03d_%03d.png"], "write %03d once"),
+                (["--out", "x%s.png"], "'%s' is no place for a number"),
                 (["--follow", "arm", "--look-at", "0,0,0", "--out", "x.png"], "--look-at"),
                 ([], "--out")]:
             outcome = self.ziggurat("render", self.scene, *options)

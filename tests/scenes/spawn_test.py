@@ -146,7 +146,7 @@ class Spawn(SceneTest):
                     'config="swing" />', 'config="swing"><params script="no.lua"/></controller>'),
                  "spawn:3:"),
                 ('<distribute/>', "unknown element <distribute> in <spawn>"),
-                (BOX.format("b", "0,3,0") + " " * (1 << 20), "TOO_LARGE")):
+                (BOX.format("b", "0,3,0") + " " * (1 << 20), "has more than 1048576 bytes")):
             with self.subTest(reason=reason):
                 self.assertIn(reason, self.spawn(text, code=1))
         self.assertIn("UNKNOWN_ENTITY", self.ctl("remove", "unknown", code=1))

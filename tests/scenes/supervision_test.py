@@ -84,7 +84,6 @@ class Ctl(unittest.TestCase):
             self.assertEqual(1, spawned.returncode)
             self.assertIn("BAD_VALUE", spawned.stderr)
             for words, reason in ((("move", "unknown", "0,0,0"), "UNKNOWN_ENTITY"),
-                                  (("step", "0"), "BAD_VALUE"),
                                   (("spawn", os.devnull), "not a regular file"),
                                   (("move", entity, "1,2,3,4"), "position is '1,2,3,4'; it must be x,y,z"),
                                   (("move", entity, "1,2,3", "90"), "orientation is '90'; it must be turns"),
@@ -92,6 +91,24 @@ class Ctl(unittest.TestCase):
                 outcome = server.ask("ctl", *words, check=False)
                 self.assertEqual(1, outcome.returncode, words)
                 self.assertIn(reason, outcome.stderr)
+
+    def test_wrong_words_are_told_also_if_no_server_is_there(self):
+        with tempfile.TemporaryDirectory() as folder:
+            large, pipe = pathlib.Path(folder, "large"), pathlib.Path(folder, "pipe")
+            large.write_bytes(b"<" * ((1 << 20) + 1))
+            os.mkfifo(pipe)
+            for words, reason in ((("step", "0"), "step is 0; write 1 or more"), (("step", "x"), "step is 'x'"),
+                                  (("reset", "--seed", "-1"), "--seed is '-1'"), (("move", "a", "1,2"), "position is '1,2'"),
+                                  (("snapshot", "a/b"), "The name of a snapshot has 1 to 64"),
+                                  (("restore", ".x"), "does not begin with '.'; '.x' is none"), (("spawn", folder), "is a folder"),
+                                  (("spawn", large), "has more than 1048576 bytes"), (("spawn", pipe), "is not a regular file"),
+                                  (("spawn", "-"), "standard input has more than 1048576 bytes"),
+                                  (("pause", "--seed", "1"), "--seed is for reset")):
+                with self.subTest(words), open("/dev/zero", "rb") as endless:
+                    outcome = subprocess.run([BIN / "ziggurat", "ctl", f"ipc://{folder}/none", *words], capture_output=True,
+                                             text=True, stdin=endless, timeout=30)
+                    self.assertEqual(1, outcome.returncode)
+                    self.assertIn(reason, outcome.stderr)
 
     def test_a_server_that_is_not_there_is_told_while_it_is_waited_for(self):
         with socket.socket() as closed:

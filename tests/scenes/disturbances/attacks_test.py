@@ -134,6 +134,10 @@ class Attacks(SceneTest):
                  "--controller has no effect with --without-controllers"),
                 (("verify", "run.mcap", "--controller", "swing=true"), "--controller has no effect without --controllers"),
                 (("verify", "run.mcap", "--controllers", "--json"), "--json has no effect with --controllers"),
+                (("check", self.scene, "--json", "--quiet"), "--quiet has no effect with --json"),
+                (("try", "run.mcap", "--robot", "r0", "--differences", 0, "--", "true"), "--differences is 0; write 1 or more"),
+                *[(("keygen", "--out", out), f"'{out}', a folder; write .* as {where}/server")
+                  for out, where in ((".", "."), ("x/..", "x/.."), ("run/", "run"))],
                 (("export", "run.mcap", "--csv", "x.csv", "--topics", "/poses"), "--topics has no effect without --jsonl"),
                 (("sweep", "results", "y", "--runs", "--by", "seed"), "--by has no effect with --runs"),
                 ((*open_sweep, "--slurm", "--kubernetes", "x.yaml"), "--slurm has no effect with --kubernetes"),
@@ -269,6 +273,8 @@ class Attacks(SceneTest):
                 told = supervisor.ask(spawn=v1.SpawnRequest(xml=xml))
                 self.assertTrue(told, xml[:60])
                 self.assertNotIn("root:", told)
+            large = BOX.format("large", "0.8,0.8,0.5") + " " * (1 << 20)
+            self.assertIn("at most 1048576 are allowed", supervisor.ask(spawn=v1.SpawnRequest(xml=large)))
             for position in ([float("nan"), 0, 0], [1e308, 0, 0], [0] * 2, [0] * 100_000):
                 self.assertTrue(supervisor.ask(move=v1.MoveRequest(entity="r0", position=position)))
             self.assertEqual(supervisor.ask(spawn=v1.SpawnRequest(xml=BOX.format("good", "0.8,0.8,0.5"))), "")

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "text/numbers.h"
 
 namespace ziggurat::cli {
@@ -88,6 +90,25 @@ TEST(Options, InsecureNeedsAnAddressThatOthersCanReach) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     EXPECT_TRUE(run(arguments).insecure) << more.front();
   }
+}
+
+TEST(Options, WhatIsGivenTwiceForTheSameIsRefused) {
+  for (const auto& [option, first, second] :
+       {std::array{"--deadline", "hold:50", "wait"}, std::array{"--deadline", "a=hold:50", "a=wait"},
+        std::array{"--set", "arena/@size=1,1,1", "arena/@size=2,2,2"}, std::array{"--param", "gain=1", "gain=2"},
+        std::array{"--controller", "a=x", "a=y"}, std::array{"--restart", "1", "2"},
+        std::array{"--inject", "latency=1ms", "commands:loss=1%"}}) {
+    try {
+      run({"s", option, first, option, second});
+      ADD_FAILURE() << option;
+    } catch (const text::UsageError& error) {
+      EXPECT_NE(std::string(error.what()).find(std::string(option) + " is given twice for "), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_EQ(run({"s", "--deadline", "hold:50", "--deadline", "a=wait", "--inject", "a=commands:loss=1%", "--inject",
+                 "a=observations:loss=2%", "--restart", "1", "--restart", "a=2", "--param", "a=1", "--param", "b=1"})
+                .deadlines.size(),
+            2u);
 }
 
 TEST(Options, KeysNeedEachOther) {

@@ -45,6 +45,28 @@ TEST(PicturePath, IsTheNameItselfForOnePicture) {
   EXPECT_EQ(picture_path("b", 0, 1), "b");
 }
 
+TEST(PicturePath, HasOnePlaceForANumberAndNoOtherDirection) {
+  const auto complaint = [](const std::string& out) -> std::string {
+    try {
+      check_picture_path(out);
+    } catch (const text::UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (const char* good : {"", "a.png", "%d.png", "f%03d.png", "100%/f%02d.png", "50%.png", "50% off.png", "%%.png", "%"}) {
+    EXPECT_EQ(complaint(good), "") << good;
+  }
+  EXPECT_EQ(complaint("%03d_%03d.png"),
+            "--out is '%03d_%03d.png': '%03d' stands behind another place for a number; write %03d once, for the number of the "
+            "picture");
+  EXPECT_EQ(complaint("f%s.png"),
+            "--out is 'f%s.png': '%s' is no place for a number; write %03d once, for the number of the picture");
+  for (const char* bad : {"%-3d.png", "%03i.png", "%x%d.png", "f%99999999999999999999d.png"}) {
+    EXPECT_NE(complaint(bad), "") << bad;
+  }
+}
+
 TEST(PicturePath, NumbersSeveral) {
   EXPECT_EQ(picture_path("a/b.png", 7, 8), "a/b_007.png");
   EXPECT_EQ(picture_path("b", 1234, 2000), "b_1234");
