@@ -5,6 +5,7 @@ import time
 from dataclasses import dataclass
 from typing import Callable
 
+from .printable import printable
 from .server_scene import MAIN
 
 
@@ -81,7 +82,7 @@ def judge(outcome: Outcome, play: Callable[[], None]) -> None:
     try:
         play()
     except tuple(verdicts) as reason:
-        outcome.verdict, outcome.reason = verdicts[type(reason)], str(reason)
+        outcome.verdict, outcome.reason = verdicts[type(reason)], printable(str(reason))
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-        outcome.verdict, outcome.reason = Verdict.FAIL, f"what it said made the case stumble: {error!r}"
+        outcome.verdict, outcome.reason = Verdict.FAIL, printable(f"what it said made the case stumble: {error!r}")
     outcome.seconds = time.monotonic() - start

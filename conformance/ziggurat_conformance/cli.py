@@ -13,6 +13,7 @@ from . import chaos, client_mode, interruption, outputs, process_group, report, 
 from .case import Level
 from .cases import SERVER_CASES
 from .client_stage import Options
+from .printable import printable
 from .scene_robots import robots_of
 from .server_scene import SCENE
 
@@ -220,7 +221,7 @@ def _play(options) -> int:
         terminal.end(outcomes, left_out, time.monotonic() - start)
         reports.write(_contents(options, outcomes, left_out))
     except (RuntimeError, _Mistake, outputs.WrongOutput) as error:
-        print(f"ziggurat-conformance: {error}", file=sys.stderr)
+        print(printable(f"ziggurat-conformance: {error}"), file=sys.stderr)
         return 2
     missing = report.missing_badges(outcomes, left_out, options.badge)
     if missing:

@@ -8,6 +8,7 @@ import zmq
 from . import wire
 from .case import Failed
 from .keys import MISLED, PLAIN, UNLISTED
+from .printable import printable
 from .rules.answers import Answers
 from .rules.fault import musts
 from .rules.session import Session
@@ -17,6 +18,9 @@ from .wire import protocol
 
 # [s] that a message waits for room in the queue; ZeroMQ has no queue for a connection that was refused.
 _LONGEST_SEND, _LONGEST_SEND_IF_REFUSED = 60.0, 2.0
+
+
+_BELOW = "\n" + 25 * " "  # a line of the transcript begins with time, peer and direction
 
 
 def longest_wait(patience: float) -> float:
@@ -32,7 +36,8 @@ class Transcript:
         self.lines: list[tuple[float, str, str, str]] = []
 
     def add(self, peer: str, direction: str, text: str) -> None:
-        self.lines.append((time.monotonic() - self.start, peer, direction, text))
+        """Further lines of a text are indented: none looks like one of the transcript."""
+        self.lines.append((time.monotonic() - self.start, peer, direction, printable(text).replace("\n", _BELOW)))
 
     def text(self) -> str:
         return "\n".join(

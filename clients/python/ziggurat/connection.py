@@ -13,7 +13,7 @@ from google.protobuf.message import DecodeError
 
 from . import protocol_pb2 as v1
 from .cost import excess, excess_of_robots
-from .errors import ConnectionLost, ProtocolError, Refused, Timeout
+from .errors import ConnectionLost, Malformed, ProtocolError, Refused, Timeout, printable
 from .find_server import find_server
 
 VERSION = v1.Version(major=1, minor=4)
@@ -136,7 +136,8 @@ class Connection:
     def receive(self, wait: Wait) -> v1.ServerMessage:
         """The next message.
 
-        Raises Timeout, and ConnectionLost when all messages that arrived before have been read.
+        Raises Timeout, and ConnectionLost when all messages that arrived before have been read. Raises Malformed for what
+        is no message; the connection stays open for the Leave.
         """
         if self.closed:
             raise ConnectionLost("the session is closed")
@@ -168,17 +169,21 @@ class Connection:
                 return v1.ServerMessage.FromString(data)
             except DecodeError:
                 fault = "what is no message of the protocol; is it a Ziggurat server?"
-        self.close()
-        raise ProtocolError(v1.Error(code=v1.Error.MALFORMED, severity=v1.Error.FATAL,
-                                     message=f"{self.endpoint} sent {fault}"))
+        raise Malformed(v1.Error(code=v1.Error.MALFORMED, severity=v1.Error.FATAL,
+                                 message=f"{self.endpoint} sent {fault}"))
+
+    def leave(self, failure: str) -> None:
+        """As failed, with the cause, and closes the connection: where there is no session yet that has more to say."""
+        if not self.closed:
+            self.send(v1.ClientMessage(leave=v1.Leave(reason=v1.Leave.FAILED, message=printable(failure))), is_last=True)
+            self.close()
 
     def _check(self, welcome: v1.Welcome) -> None:
         """H2: the major version is the same. And there can be handles for all robots."""
         fault = excess_of_robots(welcome)
         if fault:
-            self.close(linger_ms=0)
-            raise ProtocolError(v1.Error(code=v1.Error.MALFORMED, severity=v1.Error.FATAL,
-                                         message=f"{self.endpoint} sent {fault}"))
+            raise Malformed(v1.Error(code=v1.Error.MALFORMED, severity=v1.Error.FATAL,
+                                     message=f"{self.endpoint} sent {fault}"))
         theirs = welcome.version
         if theirs.major == VERSION.major:
             return
@@ -221,12 +226,20 @@ class Connection:
         return None
 
     def begin(self, hello: v1.Hello, connect_timeout: float, is_patient: bool = False) -> v1.Welcome:
-        """Sends Hello and waits for the Welcome. Each Loading restarts the time-out.
+        """Sends Hello and waits for the Welcome. Each Loading restarts the time-out. Leaves if it is one that the client
+        does not take: the server may have given it robots.
 
         is_patient  it does not count while the server has accepted the connection
         """
         hello.version.CopyFrom(VERSION)
         self.send(v1.ClientMessage(hello=hello))
+        try:
+            return self._welcome(connect_timeout, is_patient)
+        except Malformed as error:
+            self.leave(str(error))
+            raise
+
+    def _welcome(self, connect_timeout: float, is_patient: bool) -> v1.Welcome:
         while True:
             try:
                 message = self.receive(Wait(connect_timeout))

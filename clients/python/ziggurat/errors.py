@@ -56,6 +56,10 @@ class ProtocolError(ZigguratError):
         super().__init__(f"{self.code}: {error.message}{where}")
 
 
+class Malformed(ProtocolError):
+    """The server sent what is no message of the protocol, or one that would take too much memory."""
+
+
 class Refused(ProtocolError):
     """The server refused the session. For ROBOT_TAKEN, `holder` is the robot's owner."""
 

@@ -8,7 +8,7 @@ from typing import Any, Dict, Iterable, Iterator, List, Optional, Union
 
 from . import protocol_pb2 as v1
 from .connection import Connection, Curve, Wait
-from .errors import ConnectionLost, Displaced, ProtocolError, Refused, name_of, printable
+from .errors import ConnectionLost, Displaced, Malformed, ProtocolError, Refused, name_of, printable
 from .exchange import Exchange
 from .named import Named
 from .robot import Robot
@@ -125,6 +125,9 @@ class Session:
                 self._resume(loss)
                 wait = Wait(self._wait_timeout, "observation")
                 continue
+            except Malformed as error:
+                self.close(str(error))
+                raise
             kind = message.WhichOneof("message")
             if kind in ("observation", "world_state"):  # a director is told the latter
                 seen = getattr(message, kind)

@@ -9,7 +9,7 @@ from . import protocol_pb2 as v1
 from .connection import Connection, Curve, Wait
 from .devices import Color, Quaternion, Vector
 from .devices.led import color_of
-from .errors import ConnectionLost, ProtocolError, name_of, printable
+from .errors import ConnectionLost, Malformed, ProtocolError, name_of, printable
 from .ticks import Ending
 
 
@@ -120,7 +120,11 @@ class Supervisor:
             v1.ClientMessage(request=v1.Request(id=self._next_id, **request)))
         wait = Wait(self._wait_timeout, "answer")
         while True:
-            message = self._connection.receive(wait)
+            try:
+                message = self._connection.receive(wait)
+            except Malformed as error:
+                self._connection.leave(str(error))
+                raise
             kind = message.WhichOneof("message")
             if kind == "response" and message.response.id == self._next_id:
                 if message.response.HasField("error"):

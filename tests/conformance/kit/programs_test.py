@@ -1,5 +1,6 @@
 """Programs under test that print without end, leave others behind, or are running when the kit is ended."""
 
+import json
 import os
 import shlex
 import signal
@@ -100,6 +101,19 @@ class WhatTheyPrint(Programs):
         self.assertLess(sum(files), 1 << 20)
         out, err = kit.communicate(timeout=LONGEST)
         self.assertEqual((0, ""), (kit.returncode, err), out)
+
+    def test_has_no_effect_on_a_terminal(self):
+        words = r"printf '\033]52;c;eA==\007 \342\200\256 \303\251\n   0.001 s  client forged\n\377'; exit 3"
+        report = self.folder / "report.json"
+        kit = self.start("client", "--only", "H1.hello-first", "--json", str(report), "--", "sh", "-c", words)
+        out, _ = kit.communicate(timeout=LONGEST)
+        for text in (out, json.loads(report.read_text())["cases"][0]["transcript"]):
+            self.assertIn("printed: \\u001b]52;c;eA==\\u0007 \\u202e é\n", text)
+            self.assertIn("\n" + 25 * " " + "   0.001 s  client forged\n", text.replace("\n" + 15 * " ", "\n") if text is out else text)
+            self.assertFalse(set("\x1b\x07\u202e") & set(text))
+        kit = self.start("server", "--only", "S9.stale", "--", "sh", "-c", words)
+        _, err = kit.communicate(timeout=LONGEST)
+        self.assertIn("\\u001b]52;c;eA==\\u0007 \\u202e é\n", err)
 
     def test_by_one_that_escapes_holds_nothing_up(self):
         group = ProcessGroup(["setsid", "-f", "sh", "-c", f"echo $$ > {self.folder}/pid; exec cat /dev/zero"])

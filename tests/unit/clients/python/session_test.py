@@ -131,7 +131,8 @@ class Lies(SessionCase):
     def refused(self, data):
         """The exception of a client that is answered so."""
         def part(server):
-            server.receive()
+            while not isinstance(server.receive(), v1.Hello):
+                pass  # the Leave of the client before
             server.socket.send_multipart([server.peer, data])
 
         caught = []
@@ -143,6 +144,55 @@ class Lies(SessionCase):
 
         self.play(part, client)
         return caught[0]
+
+    def left(self, data, client, welcomed=True):
+        """The Leave of a client that is told this, behind its Welcome or instead of it."""
+        leaves = []
+
+        def part(server):
+            if welcomed:
+                open_with(server)
+            else:
+                server.receive()
+            server.socket.send_multipart([server.peer, data])
+            leaves.append(server.receive())
+            while not isinstance(leaves[-1], v1.Leave):  # a supervisor's request
+                leaves.append(server.receive())
+
+        self.play(part, client)
+        self.assertEqual(leaves[-1].reason, v1.Leave.FAILED)
+        return leaves[-1].message
+
+    def test_who_refuses_a_message_leaves_with_the_cause(self):
+        def in_a_block():
+            with self.assertRaises(ziggurat.ProtocolError):
+                with self.connect() as session:
+                    next(session)
+
+        def without_block():
+            session = self.connect()
+            with self.assertRaises(ziggurat.ProtocolError):
+                next(session)
+            with self.assertRaises(ziggurat.ConnectionLost):
+                next(session)
+
+        def supervisor():
+            with self.assertRaises(ziggurat.ProtocolError):
+                ziggurat.Supervisor(self.server.endpoint).status()
+
+        for client in (in_a_block, without_block, supervisor):
+            with self.subTest(client.__name__):
+                self.assertRegex(self.left(b"\xff no message", client), "^MALFORMED: .* what is no message of the protocol")
+        self.assertRegex(self.left(b"\x0a\x00" * (1 << 22), in_a_block), "more than 2097152 fields")
+
+    def test_who_refuses_a_welcome_leaves_with_the_cause(self):
+        def client():
+            with self.assertRaises(ziggurat.ProtocolError):
+                self.connect()
+
+        robot = v1.RobotDescription(id="a", range_and_bearing=v1.RangeAndBearingDescription(range=1, data_size=65_537, sends=True))
+        data = v1.ServerMessage(welcome=welcome(robot)).SerializeToString()
+        self.assertRegex(self.left(data, client, welcomed=False), "^MALFORMED: .*range-and-bearing packets of 65537 bytes")
 
     def test_a_message_of_2_gib_is_not_waited_for(self):
         greeting = b"\xff" + bytes(8) + b"\x7f\x03\x01NULL" + bytes(48)
