@@ -111,6 +111,10 @@ class Attacks(SceneTest):
             with self.subTest(arguments):
                 self.refuses(*arguments, pattern=pattern)
 
+    def test_a_controller_without_params_is_told_with_its_line(self):
+        self.change('<params script="swing.lua" speed="2" />', "")
+        self.refuses("check", self.scene, pattern=r"arms\.argos:\d+:\d+: <params> names no script")
+
     def test_options_that_would_do_nothing(self):
         self.run_scene("--ticks", 5, "--quiet", "--record", "run.mcap")
         self.write("c", "").chmod(0o600)
