@@ -10,6 +10,7 @@
 
 #include "processes/scripts.h"
 #include "processes/spawned_scripts.h"
+#include "run/askers.h"
 #include "run/background.h"
 #include "run/clients_file.h"
 #include "run/files.h"
@@ -182,9 +183,9 @@ Plan Run::make_plan() const {
 network::Config Run::complete_config() {
   add_controllers(options_, world_.scene, config_);
   const auto& controllers = world_.scene.controllers;
-  const bool may_be_asked = service_ == Service::serve || !options_.endpoints.empty() ||
-                            !std::ranges::all_of(controllers, processes::runs_script);
-  check_gate(options_.gate, {std::span(config_.deadlines).first(controllers.size()), may_be_asked,
+  const Askers askers = askers_of(options_, world_.scene, service_ == Service::serve, with_controllers_);
+  check_askers(options_, askers, config_);
+  check_gate(options_.gate, {std::span(config_.deadlines).first(controllers.size()), askers.clients,
                              plan_.real_time.has_value()});
   if (service_ == Service::run) config_.private_endpoint = "ipc://" + folder_.path() + "/run";
   return config_;

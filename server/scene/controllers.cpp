@@ -58,7 +58,7 @@ void read_controller(Draft& draft, Element& element, bool included,
   Controller controller;
   ControllerUse use;
   if (included) draft.missing_parts = &use.missing_parts;
-  controller.where = element.where();
+  controller.where = controller.params_where = element.where();  // until there is <params>
   controller.type = element.name();
   controller.lua = element.name() == "lua_controller";
   controller.id = element.required("id", identifier);

@@ -109,7 +109,7 @@ Document::Document(std::string text, std::size_t file, bool lenient, ReadBudget&
       parameters_(parameters) {
   line_starts_.push_back(0);
   for (std::size_t i = 0; i < source_.size(); ++i) {
-    if (source_[i] == '\n') line_starts_.push_back(i + 1);
+    if (ends_line(source_, i)) line_starts_.push_back(i + 1);
   }
   if (check_text()) parse();
 }

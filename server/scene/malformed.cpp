@@ -220,7 +220,9 @@ class Scanner {
   char next() const { return at_ < source_.size() ? source_[at_] : '\0'; }
   void advance(std::size_t count) { at_ += count; }
   std::ptrdiff_t line_of(std::size_t offset) const {
-    return 1 + std::ranges::count(source_.substr(0, offset), '\n');
+    std::ptrdiff_t line = 1;
+    for (std::size_t i = 0; i < offset; ++i) line += ends_line(source_, i) ? 1 : 0;
+    return line;
   }
   void fail(std::size_t offset, std::string text) { found_ = Malformed{offset, std::move(text)}; }
 

@@ -9,6 +9,11 @@
 
 namespace ziggurat::scene {
 
+/// Whether a line ends with this character: a line feed, or a carriage return without one.
+inline bool ends_line(std::string_view text, std::size_t i) {
+  return text[i] == '\n' || (text[i] == '\r' && (i + 1 == text.size() || text[i + 1] != '\n'));
+}
+
 struct Malformed {
   std::size_t offset = 0;  ///< into the text
   std::string text;        ///< what is wrong, and what to write

@@ -22,6 +22,11 @@ std::vector<std::string> names_of(const Parameters& parameters) {
 }
 
 Wrong unknown(std::string_view name, const Parameters& parameters) {
+  if (parameters.is_open()) {
+    return {fmt::format("uses ${{{}}}, and values in <parameters> are not made of other parameters; write the value itself, or $${{ "
+                        "for a literal ${{",
+                        text::shortened(name))};
+  }
   return {parameters.empty()
               ? fmt::format("uses ${{{0}}}, and the scene has no parameters; write <parameters "
                             "{0}=\"…\"/> into <argos-configuration>, or $${{ for a literal ${{",
@@ -126,7 +131,10 @@ Params with_parameters(Params params, const Parameters& parameters) {
 
 void read_parameters(Draft& draft, Element& root) {
   if (auto element = root.child("parameters")) {
-    for (auto& [name, value] : element->all_attributes()) {
+    draft.parameters.set_open(true);
+    auto declared = element->all_attributes();
+    draft.parameters.set_open(false);
+    for (auto& [name, value] : declared) {
       draft.parameters.declare(std::move(name), std::move(value));
     }
     element->done();

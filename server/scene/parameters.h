@@ -28,6 +28,9 @@ class Parameters {
 
   /// The parameter of that name, or null.
   const Parameter* find(std::string_view name) const;
+  /// While they are declared, none can be used.
+  void set_open(bool is_open) { is_open_ = is_open; }
+  bool is_open() const { return is_open_; }
   /// Of several with the same name, the first counts.
   void declare(std::string name, std::string value);
   /// A value of the command line. @returns whether a parameter has that name
@@ -35,6 +38,7 @@ class Parameters {
 
  private:
   std::vector<Parameter> list_;
+  bool is_open_ = false;
   std::unordered_map<std::string, std::size_t> index_;  ///< by name; only looked up
 };
 

@@ -111,6 +111,10 @@ class Attacks(SceneTest):
             with self.subTest(arguments):
                 self.refuses(*arguments, pattern=pattern)
 
+    def test_a_controller_without_params_is_told_with_its_line(self):
+        self.change('<params script="swing.lua" speed="2" />', "")
+        self.refuses("check", self.scene, pattern=r"arms\.argos:\d+:\d+: <params> names no script")
+
     def test_options_that_would_do_nothing(self):
         self.run_scene("--ticks", 5, "--quiet", "--record", "run.mcap")
         self.write("c", "").chmod(0o600)
@@ -138,6 +142,10 @@ class Attacks(SceneTest):
                 (("try", "run.mcap", "--robot", "r0", "--differences", 0, "--", "true"), "--differences is 0; write 1 or more"),
                 *[(("keygen", "--out", out), f"'{out}', a folder; write .* as {where}/server")
                   for out, where in ((".", "."), ("x/..", "x/.."), ("run/", "run"))],
+                (("run", self.scene, "--snapshot-folder", "."), "--snapshot-folder has no effect.*write --endpoint URL too"),
+                (("run", self.scene, "--allow-director"), "--allow-director has no effect.*write --endpoint URL too"),
+                (("run", self.scene, "--allow-spawned-scripts", "."), "--allow-spawned-scripts has no effect.* or --view too"),
+                (("run", self.scene, "--hil", "--allow-drops"), "--allow-drops has no effect.*write --deadline drop:1000"),
                 (("export", "run.mcap", "--csv", "x.csv", "--topics", "/poses"), "--topics has no effect without --jsonl"),
                 (("sweep", "results", "y", "--runs", "--by", "seed"), "--by has no effect with --runs"),
                 ((*open_sweep, "--slurm", "--kubernetes", "x.yaml"), "--slurm has no effect with --kubernetes"),

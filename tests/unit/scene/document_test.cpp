@@ -128,6 +128,12 @@ TEST(Text, MalformedXmlIsAFaultAtItsPlace) {
   EXPECT_TRUE(contains(only_fault(read_text("<a b=c/>", "t")), "t:1:6: malformed XML"));
 }
 
+TEST(Text, LinesEndWithLineFeedReturnOrBoth) {
+  for (const char* text : {"<a>\n\n  <b></c>\n</a>", "<a>\r\r  <b></c>\r</a>", "<a>\r\n\r\n  <b></c>\r\n</a>"}) {
+    EXPECT_TRUE(contains(only_fault(read_text(text, "t")), "t:3:6: malformed XML: </c> does not close <b> of line 3"));
+  }
+}
+
 TEST(Text, WhatOtherParsersRefuseIsTold) {
   SceneText text;
   text.arena = arena_with(R"(<box id="a < b" size="1,1,1" movable="false"><body/></box>)");

@@ -190,6 +190,15 @@ TEST(Parameters, MustBeDeclared) {
   EXPECT_NE(only_fault(unknown.read()).find("write <parameters hz=\"…\"/>"), std::string::npos);
 }
 
+TEST(Parameters, AreNotMadeOfOthers) {
+  for (const char* name : {"m", "nowhere"}) {
+    SceneText text = boxes();
+    text.rest = "<parameters m='2' n='${" + std::string(name) + "}'/>\n";
+    const std::string fault = only_fault(text.read());
+    EXPECT_NE(fault.find("values in <parameters> are not made of other parameters; write the value itself"), std::string::npos) << fault;
+  }
+}
+
 TEST(Parameters, ADoubledDollarIsOne) {
   Parameters parameters;
   parameters.declare("a", "1");
