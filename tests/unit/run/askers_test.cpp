@@ -69,7 +69,7 @@ TEST_F(AskersTest, DropsAreAllowedWhereADeadlineDrops) {
   options.allow_drops = true;
   EXPECT_EQ(refused(), "--allow-drops");
   config.deadlines[0].policy = {scene::DeadlineAction::hold, 50, 0};
-  EXPECT_EQ(refused(), "--allow-drops") << "it holds for ever";
+  EXPECT_EQ(refused(), "--allow-drops") << "it holds without end";
   config.deadlines[0].policy.miss_budget = 3;
   EXPECT_EQ(refused(), "");
   config.deadlines[0].policy = {scene::DeadlineAction::stop, 50, 3};
