@@ -17,10 +17,9 @@ constexpr std::chrono::milliseconds longest_chunk = longest_unwritten / 4 * 3;
 
 mcap::Header header_of(const Start& start) { return {"ziggurat", "ziggurat " + start.build.version}; }
 
-/// What is true of the wall clock only is not recorded.
-bool is_recorded(Kind kind) { return kind != Kind::barrier && kind != Kind::phases; }
-
 }  // namespace
+
+bool is_recorded(Kind kind) { return kind != Kind::barrier && kind != Kind::phases; }
 
 Recording::Recording(mcap::Sink sink, mcap::Compression compression, Contents contents,
                      const Start& start)

@@ -31,6 +31,9 @@ struct Contents {
   std::uint64_t picture_interval = 1;                 ///< pictures of each Nth tick
 };
 
+/// Whether it can be kept: what is true of the wall clock only is not.
+bool is_recorded(channels::Kind kind);
+
 class Recording {
  public:
   using clock = std::chrono::steady_clock;

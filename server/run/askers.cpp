@@ -33,9 +33,9 @@ Askers askers_of(const Options& options, const scene::Scene& scene, bool is_serv
 
 void check_askers(const Options& options, const Askers& askers, const network::Config& config) {
   if (askers.clients) return;
-  constexpr const char* no_asker = "the run has no endpoint and starts Lua scripts at most, so that no client can connect";
-  if (!options.snapshot_folder.empty()) refuse_option("--snapshot-folder", no_asker, "--endpoint URL");
-  if (options.allows_directors) refuse_option("--allow-director", no_asker, "--endpoint URL");
+  constexpr const char* none = "the run has no endpoint and starts Lua scripts at most, so that no client can connect";
+  if (!options.snapshot_folder.empty()) refuse_option("--snapshot-folder", none, "--endpoint URL");
+  if (options.allows_directors) refuse_option("--allow-director", none, "--endpoint URL");
   if (!options.spawned_script_folders.empty() && !askers.directors && !options.view) {
     refuse_option("--allow-spawned-scripts", "neither a client nor a director or viewer can spawn robots in this run",
                   "--endpoint URL or --view");

@@ -15,7 +15,7 @@ struct Askers {
 /// @param with_controllers  whether the run starts controllers and directors
 Askers askers_of(const Options& options, const scene::Scene& scene, bool is_serve, bool with_controllers);
 
-/// @throws text::UsageError if an option is for what no one can ask for, or for drops where no deadline drops
+/// @throws text::UsageError if an option is for what no client can ask for, or for drops where no deadline drops
 void check_askers(const Options& options, const Askers& askers, const network::Config& config);
 
 }  // namespace ziggurat::run

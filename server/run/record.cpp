@@ -12,14 +12,18 @@
 #include <utility>
 #include <variant>
 
+#include "channels/channels.h"
 #include "network/glob.h"
 #include "processes/places.h"
 #include "processes/required_scripts.h"
 #include "processes/scripts.h"
+#include "recorder/recording.h"
 #include "recording/output_file.h"
 #include "run/build.h"
+#include "text/names.h"
 #include "text/numbers.h"
 #include "text/printable.h"
+#include "text/shortened.h"
 
 namespace ziggurat::run {
 namespace {
@@ -88,6 +92,34 @@ std::function<bool(std::string_view)> wish_of(const std::vector<std::string>& pa
     return std::ranges::any_of(
         patterns, [&](const std::string& each) { return network::matches(each, topic); });
   };
+}
+
+/// Those that a recording of the world as it is can have.
+std::vector<std::string> topics_of(const supervision::World& world) {
+  std::vector<std::string> topics{"/run", "/inputs", "/state"};
+  channels::Channels channels;
+  channels.populate({world.scene, world.path, world.scene_hash, world.seed, 0, world.simulation.layout(),
+                     world.simulation.entities(), world.simulation.state()});
+  for (const channels::Channel& channel : channels.list()) {
+    if (recorder::is_recorded(channel.kind)) topics.push_back(channel.topic);
+  }
+  return topics;
+}
+
+/// Robots that are spawned later have topics that fit then: only a warning. @throws text::UsageError
+void check_topics(const std::vector<std::string>& patterns, const supervision::World& world, reports::Console& console) {
+  constexpr std::string_view of_robots = "/robots/";
+  const std::vector<std::string> topics = patterns.empty() ? std::vector<std::string>() : topics_of(world);
+  for (const std::string& pattern : patterns) {
+    if (std::ranges::any_of(topics, [&](const std::string& topic) { return network::matches(pattern, topic); })) continue;
+    const std::string told = fmt::format("--record-topics: '{}' fits no topic", text::shortened(pattern));
+    if (pattern.starts_with(of_robots)) {
+      console.warning(told + " of this world; it is for robots that are spawned later, if any");
+      continue;
+    }
+    throw text::UsageError(fmt::format("{}; {}", told,
+                                       text::advice(pattern, topics, "write /poses or '/robots/*', for example (docs/recordings.md)")));
+  }
 }
 
 /// Names in a recording are UTF-8: others would not be found again. @throws text::UsageError
@@ -243,6 +275,7 @@ std::unique_ptr<RecordedRun> start_recording(const Options& options, supervision
                                              const std::vector<std::size_t>& idle, const Past* past,
                                              reports::Console& console) {
   if (options.record.empty()) return nullptr;
+  check_topics(options.record_topics, world, console);
   return std::make_unique<RecordedRun>(options, world, files, last_tick, idle, past, console);
 }
 

@@ -36,6 +36,17 @@ class RecordingTest(SceneTest):
         out, err = process.communicate(timeout=120)
         return process.returncode, out, err
 
+    def test_a_pattern_that_fits_no_topic_is_told(self):
+        record = ("run", "arms.argos", "--ticks", 1, "--record", "a.mcap", "--record-topics")
+        for pattern, told in (("/pose", "'/pose' fits no topic; did you mean '/poses'"), ("/barrier*", "fits no topic; write /poses")):
+            code, _, err = self.outcome(*record, pattern)
+            self.assertEqual(code, FAULT)
+            self.assertIn(told, err)
+            self.assertFalse((self.folder / "a.mcap").exists())
+        code, _, err = self.outcome(*record, "/robots/new/*", "--record-topics", "/state")
+        self.assertEqual(code, FINISHED, err)
+        self.assertIn("warning: --record-topics: '/robots/new/*' fits no topic of this world", err)
+
     def test_a_run_is_recorded_whole(self):
         self.write("part.lua", "part = 1\n")
         (self.folder / "swing.lua").write_text('require "part"\n' + (self.folder / "swing.lua").read_text())
