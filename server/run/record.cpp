@@ -106,14 +106,20 @@ std::vector<std::string> topics_of(const supervision::World& world) {
   return topics;
 }
 
+/// Whether it can fit the topic of a robot.
+bool is_of_robots(std::string_view pattern) {
+  constexpr std::string_view robots = "/robots/";
+  const std::size_t exact = std::min(pattern.find_first_of("*?"), robots.size());
+  return pattern.substr(0, exact) == robots.substr(0, exact);
+}
+
 /// Robots that are spawned later have topics that fit then: only a warning. @throws text::UsageError
 void check_topics(const std::vector<std::string>& patterns, const supervision::World& world, reports::Console& console) {
-  constexpr std::string_view of_robots = "/robots/";
   const std::vector<std::string> topics = patterns.empty() ? std::vector<std::string>() : topics_of(world);
   for (const std::string& pattern : patterns) {
     if (std::ranges::any_of(topics, [&](const std::string& topic) { return network::matches(pattern, topic); })) continue;
     const std::string told = fmt::format("--record-topics: '{}' fits no topic", text::shortened(pattern));
-    if (pattern.starts_with(of_robots)) {
+    if (is_of_robots(pattern)) {
       console.warning(told + " of this world; it is for robots that are spawned later, if any");
       continue;
     }

@@ -43,9 +43,10 @@ class RecordingTest(SceneTest):
             self.assertEqual(code, FAULT)
             self.assertIn(told, err)
             self.assertFalse((self.folder / "a.mcap").exists())
-        code, _, err = self.outcome(*record, "/robots/new/*", "--record-topics", "/state")
-        self.assertEqual(code, FINISHED, err)
-        self.assertIn("warning: --record-topics: '/robots/new/*' fits no topic of this world", err)
+        for pattern in ("/robots/new/*", "*/new/observation"):
+            code, _, err = self.outcome(*record, pattern, "--record-topics", "/state")
+            self.assertEqual(code, FINISHED, err)
+            self.assertIn(f"warning: --record-topics: '{pattern}' fits no topic of this world", err)
 
     def test_a_run_is_recorded_whole(self):
         self.write("part.lua", "part = 1\n")
