@@ -109,7 +109,7 @@ std::vector<std::string> topics_of(const supervision::World& world) {
 /// Whether it can fit the topic of a robot.
 bool is_of_robots(std::string_view pattern) {
   constexpr std::string_view robots = "/robots/";
-  const std::size_t exact = std::min(pattern.find_first_of("*?"), robots.size());
+  const std::size_t exact = std::min(pattern.find_first_of("*?["), robots.size());
   return pattern.substr(0, exact) == robots.substr(0, exact);
 }
 
