@@ -5,7 +5,7 @@ from typing import Callable
 from .case import Case, Level, Outcome, Verdict, judge
 from .cases.client import CLIENT_CASES as CASES
 from .client_stage import ClientStage, Options
-from .client_steps import TellWelcome
+from .client_steps import SinceMinor, TellWelcome
 
 _TRIES_WITH_DEADLINES = 3
 
@@ -43,4 +43,5 @@ def _play_one(case: Case, command: list, options: Options) -> Outcome:
 
 def _names_robots(steps: tuple) -> bool:
     return any(_names_robots(step) if isinstance(step, (list, tuple)) else
+               _names_robots(step.steps) if isinstance(step, SinceMinor) else
                isinstance(step, TellWelcome) and bool(step.robots) for step in steps)

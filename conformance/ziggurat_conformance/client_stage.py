@@ -364,7 +364,7 @@ class ClientStage:
         if self.options.scene is None:
             return [wire.from_dict(protocol.RobotDescription, robot(id)) for id in ("arm0", "arm1")]
         if self.session.hello.session_token:
-            return self._played
+            return self._played or self.options.scene.of(self.options.controller)  # or of the session before the program
         try:
             self._played = self.options.scene.chosen_by(self.session.hello)
         except LookupError as error:

@@ -27,6 +27,10 @@ class SceneRobots:
         external = [robot.controller for robot in self.robots if not robot.script]
         return wanted or (external or ids)[0]
 
+    def of(self, controller: str) -> list:
+        """All robots of a controller."""
+        return [robot for robot in self.robots if robot.controller == controller]
+
     def chosen_by(self, hello: protocol.Hello) -> list:
         """Robots that fit the criteria of a Hello (H4). Raises LookupError for what is not there."""
         chosen = [robot for robot in self.robots

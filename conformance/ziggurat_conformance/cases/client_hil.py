@@ -2,6 +2,7 @@
 
 from ..case import Case, Level
 from ..client_messages import HELLO, answered, end, error, heartbeat, observation, ticks, welcome
+from ..client_robots import robot
 from ..client_steps import Ends, HearLate, Quiet, SinceMinor, Tell, Wait
 
 MS = 150  # a deadline that no idle machine misses by itself
@@ -47,7 +48,7 @@ CASES = [
           *_held(), Tell({"paused": {"tick": 0}}), Quiet(1.0), *ticks(1, 3)),
     _case("W10.dropped", "When one of its robots was dropped, it goes on with the other",
           HELLO, SinceMinor(1, (
-              welcome(version={"major": 1, "minor": 1},
+              welcome(robot("arm0"), robot("arm1"), version={"major": 1, "minor": 1},
                       deadline_policy={"action": "DROP", "wall_deadline_ms": MS, "miss_budget": 1}),
               *ticks(0, 2), observation(3), error("DEADLINE_MISSED", "WARNING", 3),
               Tell({"error": {"code": "ROBOTS_DROPPED", "severity": "WARNING", "tick": 3, "message": "too late",
