@@ -18,12 +18,12 @@ namespace ziggurat::run {
 namespace {
 
 /// The place of `%d` or `%0Nd` in a path, or nothing.
-struct Placeholder {
+struct NumberPlace {
   std::size_t begin, size;
   std::size_t digits;
 };
 
-std::optional<Placeholder> find_placeholder(std::string_view text) {
+std::optional<NumberPlace> find_number_place(std::string_view text) {
   for (std::size_t begin = text.find('%'); begin != std::string_view::npos;
        begin = text.find('%', begin + 1)) {
     std::size_t end = begin + 1;
@@ -32,7 +32,7 @@ std::optional<Placeholder> find_placeholder(std::string_view text) {
       digits = 10 * digits + static_cast<std::size_t>(text[end++] - '0');
     }
     if (end < text.size() && text[end] == 'd' && digits < 20) {
-      return Placeholder{begin, end + 1 - begin, digits};
+      return NumberPlace{begin, end + 1 - begin, digits};
     }
   }
   return std::nullopt;
@@ -115,7 +115,7 @@ std::uint64_t last_tick(const PictureOptions& options, const scene::Experiment& 
 
 void check_picture_path(const std::string& out) {
   constexpr std::string_view between = "-+#0123456789", conversions = "diouxXeEfFgGaAcspn";
-  const auto number = find_placeholder(out);
+  const auto number = find_number_place(out);
   for (std::size_t begin = out.find('%'); begin != std::string::npos; begin = out.find('%', begin + 1)) {
     const std::size_t end = out.find_first_not_of(between, begin + 1);
     const bool is_other = end != std::string::npos && conversions.find(out[end]) != conversions.npos;
@@ -128,11 +128,11 @@ void check_picture_path(const std::string& out) {
 }
 
 std::string picture_path(const std::string& out, std::size_t number, std::size_t of) {
-  const auto placeholder = find_placeholder(out);
-  if (placeholder) {
-    return out.substr(0, placeholder->begin) +
-           fmt::format("{:0{}}", number, std::max<std::size_t>(placeholder->digits, 1)) +
-           out.substr(placeholder->begin + placeholder->size);
+  const auto place = find_number_place(out);
+  if (place) {
+    return out.substr(0, place->begin) +
+           fmt::format("{:0{}}", number, std::max<std::size_t>(place->digits, 1)) +
+           out.substr(place->begin + place->size);
   }
   if (of == 1) return out;
   const std::filesystem::path path(out);
