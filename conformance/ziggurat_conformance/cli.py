@@ -252,6 +252,8 @@ def _guarded(words: list, version: str) -> int:
     """Nothing that was started is left behind, however it ends."""
     try:
         return _main(words, version)
+    except SystemExit as end:  # after --help, or a mistake
+        return end.code
     finally:
         with interruption.postponed():
             process_group.end_all()
@@ -259,19 +261,18 @@ def _guarded(words: list, version: str) -> int:
 
 def main(arguments=None, version="of a source tree") -> int:
     outputs.keep_descriptors()
-    stdout = outputs.Stdout(sys.stdout)
-    with contextlib.redirect_stdout(stdout):
+    stdout, stderr = outputs.Output("stdout", sys.stdout), outputs.Output("stderr", sys.stderr)
+    with contextlib.redirect_stdout(stdout), contextlib.redirect_stderr(stderr), interruption.handled():
         try:
-            with interruption.handled():
-                code = _guarded(sys.argv[1:] if arguments is None else list(arguments), version)
-        except SystemExit as end:  # after --help, or a mistake
-            code = end.code
+            code = _guarded(sys.argv[1:] if arguments is None else list(arguments), version)
+            stdout.flush()
+            if stdout.fault:
+                print(f"ziggurat-conformance: {stdout.fault}", file=stderr)
+                code = 2
         except interruption.Interrupted as end:
+            interruption.ignore()  # the end takes a moment only
+            stdout.end()
             how = "interrupted" if end.number == signal.SIGINT else f"ended by {signal.Signals(end.number).name}"
-            print(f"ziggurat-conformance: {how}; no report was written", file=sys.stderr)
+            stderr.end(f"ziggurat-conformance: {how}; no report was written\n")
             code = _SIGNAL_BEFORE + end.number
-        stdout.flush()
-    if stdout.fault:
-        print(f"ziggurat-conformance: {stdout.fault}", file=sys.stderr)
-        return 2
     return code

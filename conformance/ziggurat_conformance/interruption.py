@@ -18,6 +18,7 @@ class Interrupted(KeyboardInterrupt):
 class _State:
     depth = 0  # of postponed()
     pending = 0  # the signal that came meanwhile
+    ignores = False  # for good
 
 
 def _handle(number: int, _frame) -> None:
@@ -40,9 +41,17 @@ def postponed() -> Iterator[None]:
             raise Interrupted(number)
 
 
+def ignore() -> None:
+    """Behind an Interrupted: further signals have no effect, also while the interpreter ends."""
+    for number in _SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
+    _State.ignores = True
+
+
 @contextlib.contextmanager
 def handled() -> Iterator[None]:
     """Signals that were ignored at the start stay so."""
+    _State.ignores = False
     before = {number: signal.getsignal(number) for number in _SIGNALS}
     for number, handler in before.items():
         if handler not in (signal.SIG_IGN, None):  # None: not one of Python
@@ -51,5 +60,5 @@ def handled() -> Iterator[None]:
         yield
     finally:
         for number, handler in before.items():
-            if handler is not None:
+            if handler is not None and not _State.ignores:
                 signal.signal(number, handler)

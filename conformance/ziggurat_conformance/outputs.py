@@ -1,7 +1,8 @@
-"""What is written to: reports, checked before the first case is played, so that no run is lost; and stdout."""
+"""What is written to: reports, checked before the first case is played, so that no run is lost; stdout and stderr."""
 
 import errno
 import os
+import signal
 import time
 from pathlib import Path
 from typing import Callable, Optional, TextIO
@@ -13,6 +14,7 @@ _KINDS = {  # what a file begins with → what it is worth more than a report as
 }
 _SPACE = b" \t\r\n"
 _READER_STARTS = 1.0  # [s] that a reader which was started beside this program may take
+_READER_TAKES = 0.3  # [s] for the last words
 
 
 class WrongOutput(Exception):
@@ -105,12 +107,13 @@ def keep_descriptors() -> None:
     os.close(descriptor)
 
 
-class Stdout:
-    """Takes the place of sys.stdout. What can't be written is let go, so that the run goes on to its reports; `fault`
-    says why."""
+class Output:
+    """Takes the place of sys.stdout or sys.stderr. What can't be written is let go, so that the run goes on to its reports;
+    `fault` says why."""
 
-    def __init__(self, stream: Optional[TextIO]):
+    def __init__(self, name: str, stream: Optional[TextIO]):
         """stream: None if it is closed, which is no fault."""
+        self._name = name
         self._stream = stream or open(os.devnull, "w")
         self.fault = ""
         if hasattr(self._stream, "reconfigure"):
@@ -126,6 +129,22 @@ class Stdout:
     def isatty(self) -> bool:
         return self._stream.isatty()
 
+    def end(self, text: str = "") -> None:
+        """Writes the text and what waits, or lets them go if its reader does not take them soon. For the main thread."""
+        before = signal.signal(signal.SIGALRM, _raise_timeout)
+        try:
+            self._attempt(lambda: self._write_soon(text))
+        finally:
+            signal.signal(signal.SIGALRM, before)
+
+    def _write_soon(self, text: str) -> None:
+        signal.setitimer(signal.ITIMER_REAL, _READER_TAKES)
+        try:
+            self._stream.write(text)
+            self._stream.flush()
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+
     def _attempt(self, act: Callable) -> None:
         try:
             act()
@@ -134,4 +153,8 @@ class Stdout:
             os.dup2(nothing, self._stream.fileno())  # what is left in its buffer, too
             os.close(nothing)
             if not isinstance(error, BrokenPipeError):  # of a reader such as head
-                self.fault = f"stdout can't be written: {error.strerror}"
+                self.fault = f"{self._name} can't be written: {error.strerror}"
+
+
+def _raise_timeout(*_) -> None:
+    raise TimeoutError(errno.ETIMEDOUT, "it is not read")

@@ -1,5 +1,6 @@
 """Programs under test that print without end, leave others behind, or are running when the kit is ended."""
 
+import contextlib
 import json
 import os
 import shlex
@@ -80,6 +81,73 @@ class WhatTheyStart(Programs):
                     self.assertEqual((128 + number, f"ziggurat-conformance: {how}; no report was written\n"),
                                      (kit.returncode, err))
                     self.assert_ends(pid)
+
+
+class Signals(Programs):
+    """They end the kit in a moment, also while what it prints is not read."""
+
+    def unread(self):
+        """A pipe that is full."""
+        reader, writer = os.pipe()
+        self.addCleanup(os.close, reader)
+        os.set_blocking(writer, False)
+        with contextlib.suppress(BlockingIOError):
+            while True:
+                os.write(writer, bytes(4096))
+        os.set_blocking(writer, True)
+        return writer
+
+    def closed(self):
+        reader, writer = os.pipe()
+        os.close(reader)
+        return writer
+
+    def assert_ends(self, out, err, numbers):
+        """Its last words, if err is a pipe of this test's."""
+        (self.folder / "pid").unlink(missing_ok=True)
+        kit = subprocess.Popen([sys.executable, "-B", "-m", "ziggurat_conformance", "client", "-v", "--patience", "0.1", "--",
+                                *self.script("exit 0")], stdout=out, stderr=err, text=True)
+        self.addCleanup(kit.kill)
+        self.left()
+        time.sleep(0.5)  # it prints its lines, or waits for their reader
+        begin = time.monotonic()
+        for number in numbers:
+            kit.send_signal(number)
+        _, words = kit.communicate(timeout=LONGEST)
+        self.assertLess(time.monotonic() - begin, 5.0)
+        self.assertIn(kit.returncode, [128 + number for number in numbers])
+        return words
+
+    def test_end_it_while_its_output_is_not_read(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            for pipe in (self.unread, self.closed):
+                with self.subTest(number=number, pipe=pipe.__name__):
+                    out = pipe()
+                    self.addCleanup(os.close, out)
+                    self.assert_ends(out, out, [number])
+
+    def test_leave_last_words_where_they_are_read(self):
+        out = self.unread()
+        self.addCleanup(os.close, out)
+        self.assertEqual("ziggurat-conformance: interrupted; no report was written\n",
+                         self.assert_ends(out, subprocess.PIPE, [signal.SIGINT]))
+
+    def test_are_one_if_many_come(self):
+        for _ in range(5):
+            words = self.assert_ends(subprocess.DEVNULL, subprocess.PIPE, [signal.SIGINT, signal.SIGTERM] * 4)
+            self.assertRegex(words, r"\Aziggurat-conformance: (interrupted|ended by SIGTERM); no report was written\n\Z")
+
+    def test_end_it_while_its_modules_are_loaded(self):
+        (self.folder / "google").mkdir()
+        (self.folder / "google/protobuf.py").write_text(
+            f"import pathlib, time; pathlib.Path({str(self.folder / 'loads')!r}).touch(); time.sleep(60)")
+        kit = subprocess.Popen([os.environ["ZIGGURAT_KIT"], "--version"], stderr=subprocess.PIPE,
+                               env={**os.environ, "PYTHONPATH": str(self.folder)})
+        self.addCleanup(kit.kill)
+        self.soon((self.folder / "loads").exists, "it has not started")
+        kit.send_signal(signal.SIGINT)
+        self.assertEqual(b"", kit.communicate(timeout=LONGEST)[1])
+        self.assertEqual(-signal.SIGINT, kit.returncode)
 
 
 class WhatTheyPrint(Programs):
