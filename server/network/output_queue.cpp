@@ -42,8 +42,10 @@ void OutputQueue::send(Buffer& frame, std::size_t size, bool is_observation) {
     std::erase_if(waiting_,
                   [](const Parcel& each) { return each.is_observation && each.sent == 0; });
   } else {
-    is_congested_ = waiting_bytes_ > 0 && waiting_bytes_ + parcel.memory() > most_waiting;
+    const bool is_alone = waiting_bytes_ == 0;
+    is_congested_ = !is_alone && waiting_bytes_ - alone_ + parcel.memory() > most_waiting;
     if (is_congested_) return;
+    if (is_alone && parcel.memory() > most_waiting) alone_ = parcel.memory();
     waiting_bytes_ += parcel.memory();
   }
   waiting_.push_back(std::move(parcel));
@@ -54,14 +56,17 @@ void OutputQueue::flush() {
     Parcel& first = waiting_.front();
     first.sent += write({first.frame.bytes.get() + first.sent, first.size - first.sent});
     if (first.sent < first.size) return;
-    if (!first.is_observation) waiting_bytes_ -= first.memory();
+    if (!first.is_observation) {
+      waiting_bytes_ -= first.memory();
+      alone_ = 0;
+    }
     waiting_.pop_front();
   }
 }
 
 void OutputQueue::drop() {
   waiting_.clear();
-  waiting_bytes_ = 0;
+  waiting_bytes_ = alone_ = 0;
 }
 
 }  // namespace ziggurat::network

@@ -169,6 +169,19 @@ TEST_F(PeerSocketTest, OneThatDoesNotReadIsDisconnected) {
   EXPECT_LT(count, 60);
 }
 
+TEST_F(PeerSocketTest, MessagesBehindOneThatIsLongerThanWhatMayWaitAreKept) {
+  open();
+  peer->set_standing(Standing::controller, 64 * mebibyte, Time{});
+  const std::size_t size = 2 * most_waiting;
+  tell(size, false, 'l');
+  tell(100, false, 'h');
+  EXPECT_FALSE(peer->is_over());
+  EXPECT_EQ(hear().size(), size + 9 + 102);
+  tell(most_waiting - kibibyte, false, 'r');
+  tell(size, false, 'l');
+  EXPECT_TRUE(peer->output().is_congested()) << "something waited before it";
+}
+
 /// Small messages that wait take no memory that was for a large one.
 TEST_F(PeerSocketTest, WhatWaitsTakesNoMoreMemoryThanItIsCountedFor) {
   open();
