@@ -204,9 +204,14 @@ bool world_layout(Outbox& outbox, const Run& run, const Truth& truth, WorldView&
   const bool is_short = fill(view, truth, run.controllers, limit, layout);
   outbox.finish();
   const std::size_t size = outbox.message_->size;
-  if (!is_short || size > limit) layout.Clear();
+  bool fits = is_short && size <= limit;
+  if (fits) {
+    view.laid_out += v1::decoded_size(layout.SerializeAsString(), *v1::WorldLayout::descriptor(), v1::most_laid_out);
+    fits = view.laid_out <= v1::most_laid_out;
+  }
+  if (!fits) layout.Clear();
   outbox.message_->forget(size);
-  return is_short && size <= limit;
+  return fits;
 }
 
 bool world_state(Outbox& outbox, const Truth& truth, const WorldView& view, std::size_t limit,

@@ -1,6 +1,7 @@
 // Parsing of the frames from the server; no sockets.
 
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "connection.h"
@@ -18,10 +19,17 @@ constexpr std::size_t longest_welcome = std::size_t{64} << 20;  // and of all el
 constexpr std::size_t most_fields = std::size_t{1} << 21;
 constexpr std::size_t cheap = std::size_t{1} << 20;  // so few bytes have few fields
 
+/// The content of a message that is a WorldLayout.
+std::optional<std::string_view> layout_in(std::string_view content, const google::protobuf::Message& message) {
+  if (message.GetDescriptor() != v1::ServerMessage::descriptor()) return std::nullopt;
+  return v1::sole_field(content, v1::ServerMessage::kWorldLayoutFieldNumber);
+}
+
 /// What is wrong with the cost of a message; empty: nothing.
 std::string excess(std::string_view content, const google::protobuf::Message& message) {
   if (content.size() <= cheap) return {};
   const auto& type = *message.GetDescriptor();
+  if (layout_in(content, message)) return {};  // all that were told count together
   if (&type == v1::ServerMessage::descriptor() && content.size() > longest_welcome) {
     return "a message of " + std::to_string(content.size()) + " bytes, more than " + std::to_string(longest_welcome);
   }
@@ -46,6 +54,12 @@ void Connection::forget(std::size_t size) {
   v1::WorldState().Swap(&world_state_);
 }
 
+void Connection::throw_too_much_laid_out() const {
+  throw ConnectionError(options_.endpoint + ": the server told of entities that take more than " +
+                        std::to_string(v1::most_laid_out) + " bytes of memory, which this client does not decode: let the "
+                        "director see fewer");
+}
+
 Connection::Kind Connection::parse() {
   silence_ = std::chrono::milliseconds{0};
   const std::string_view bytes = transport_->content();
@@ -66,6 +80,12 @@ Connection::Kind Connection::parse() {
     throw ConnectionError(options_.endpoint + ": the server sent " + fault + ", which this client does not decode: "
                           "run fewer robots in each session (--lua-processes for scripts), or let them hear and see less");
   }
+  const auto layout = layout_in(content, *message);
+  const std::size_t layout_size =
+      layout ? v1::decoded_size(*layout, *v1::WorldLayout::descriptor(), v1::most_laid_out) : 0;
+  if (layout_size > v1::most_laid_out) throw_too_much_laid_out();
+  if (message == &message_ && message_size_ > cheap) v1::ServerMessage().Swap(&message_);  // its memory is free
+  if (message == &message_) message_size_ = content.size();
   constexpr std::size_t longest = std::numeric_limits<int>::max();
   if (transport_->has_more() || content.size() > longest ||
       !message->ParseFromArray(content.data(), static_cast<int>(content.size()))) {
@@ -74,6 +94,10 @@ Connection::Kind Connection::parse() {
         ": the answer is not a message of ziggurat.v1; is this the endpoint of a server?");
   }
   if (message != &message_) return kind;
+  if (layout && message_.has_world_layout()) {
+    laid_out_ = layout_size + (message_.world_layout().first() == 0 ? 0 : laid_out_);
+    if (laid_out_ > v1::most_laid_out) throw_too_much_laid_out();
+  }
   if (message_.has_observation()) observation_.Swap(message_.mutable_observation());
   if (message_.has_world_state()) world_state_.Swap(message_.mutable_world_state());
   return message_.message_case();

@@ -10,11 +10,17 @@ CHEAP = 1 << 20  # [bytes]; so few have few fields
 LONGEST_WELCOME = 64 << 20  # and of all else that is sent once [bytes]
 MOST_FIELDS = 1 << 21  # Welcomes of ten thousand robots with a hundred fields each have half of that
 MOST_DECODED = (2 << 30) + (512 << 20)  # of what is sent at each tick: what a server counts at most (D5), and some [bytes]
+MOST_LAID_OUT = 1 << 30  # of all WorldLayouts since one that began anew (R4) [bytes]
 MOST_ROBOTS = 1 << 18
 LARGEST_PACKET = 1 << 16  # of range and bearing, as in scenes [bytes]
 MOST_PACKETS = 1 << 30  # of all robots of a session, which are in one message [bytes]
 _OFTEN = tuple(bytes([v1.ServerMessage.DESCRIPTOR.fields_by_name[name].number << 3 | 2])
                for name in ("observation", "world_state"))  # a tag of one byte
+_LAYOUT = bytes([v1.ServerMessage.DESCRIPTOR.fields_by_name["world_layout"].number << 3 | 2])
+BYTES_PER_FIELD = 64  # no more than a server counts
+BYTES_PER_ENTITY = 256  # likewise
+TOO_MUCH_LAID_OUT = (f"entities that take more than {MOST_LAID_OUT} bytes of memory, which this client does not decode; "
+                     "let the director see fewer")
 _GO_ON = bytes(range(0x80, 0x100))  # bytes of a number that are not its last
 
 
@@ -28,6 +34,9 @@ def excess(data: bytes) -> str:
             return ""
         return (f"a message that takes more than {MOST_DECODED} bytes of memory, which this client does not decode; "
                 "control fewer robots in each session, or let them hear and see less")
+    if data.startswith(_LAYOUT):
+        fields = _count(data, 0, len(data), v1.ServerMessage.DESCRIPTOR, MOST_LAID_OUT // BYTES_PER_FIELD)
+        return TOO_MUCH_LAID_OUT if BYTES_PER_FIELD * fields + len(data) > MOST_LAID_OUT else ""
     if len(data) > LONGEST_WELCOME:
         return f"a message of {len(data)} bytes, more than {LONGEST_WELCOME}, which this client does not decode"
     if _count(data, 0, len(data), v1.ServerMessage.DESCRIPTOR, MOST_FIELDS) > MOST_FIELDS:

@@ -19,6 +19,10 @@ inline constexpr std::size_t most_counted = std::size_t{2} << 30;
 /// numbers [bytes].
 inline constexpr std::size_t most_decoded = most_counted + (std::size_t{512} << 20);
 
+/// Of all `WorldLayout`s since one that began anew, as decoded_size() says it: a server tells no more, and a client takes no more (R4)
+/// [bytes].
+inline constexpr std::size_t most_laid_out = std::size_t{1} << 30;
+
 /// What each part counts, beside its content: no less than decoded_size() says of it [bytes].
 inline constexpr std::size_t counted_radio_message = 256, counted_packet = 256, counted_payload = 128, counted_color = 24,
                              counted_led = 96, counted_tag = 384;

@@ -248,6 +248,50 @@ TEST(Director, AStateThatWasNotAnnouncedIsRefused) {
   EXPECT_THROW(director.next(), ConnectionError);
 }
 
+/// @param links  without id, of a body each
+v1::ServerMessage laid_out(std::uint32_t first, int entities, int links) {
+  v1::ServerMessage message;
+  message.mutable_world_layout()->set_first(first);
+  for (int i = 0; i < entities; ++i) {
+    v1::EntityDescription& entity = *message.mutable_world_layout()->add_entities();
+    entity.set_id("b" + std::to_string(i));
+    entity.set_kind("box");
+    for (int l = 0; l < links; ++l) entity.add_links("");
+  }
+  return message;
+}
+
+TEST(Director, IsToldOfAMillionBoxes) {
+  constexpr int count = 1'000'000;
+  FakeServer server([](FakeServer& self) {
+    self.welcome(judge());
+    self.send(laid_out(0, count, 1));
+    self.send(state(0, count));
+    self.receive();
+  });
+  Director director(options_of(server));
+  ASSERT_TRUE(director.next());
+  EXPECT_EQ(director.entities().size(), std::size_t{count});
+}
+
+/// In one layout, and in many.
+TEST(Director, EntitiesThatTakeAllMemoryAreRefused) {
+  for (const auto& [parts, links] : {std::pair{1U, 12'000'000}, {12U, 1'000'000}}) {
+    FakeServer server([parts = parts, links = links](FakeServer& self) {
+      self.welcome(judge());
+      for (std::uint32_t i = 0; i < parts; ++i) self.send(laid_out(i, 1, links));
+      self.receive();
+    });
+    Director director(options_of(server));
+    try {
+      director.next();
+      ADD_FAILURE() << "no exception";
+    } catch (const ConnectionError& error) {
+      EXPECT_NE(std::string(error.what()).find("entities that take more than 1073741824 bytes"), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST(Director, ResumesAndSendsTheAnswerAgain) {
   FakeServer server([](FakeServer& self) {
     self.welcome(judge());

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 import unittest
+from unittest import mock
 
 import zmq
 
@@ -248,6 +249,18 @@ class Lies(SessionCase):
         self.assertIn("fewer robots in each session", excess(bomb))
         self.assertEqual(excess(observation((of["tag_payloads"] + b"\x017") * (5 << 19))), "")
         self.assertIn("more than 2097152 fields", excess(observation(b"") + b"\x0a\x00" * (1 << 22)))
+
+    def test_a_layout_of_600_000_boxes_is_decoded_and_one_that_could_take_all_memory_is_not(self):
+        box = v1.WorldLayout(entities=[v1.EntityDescription(id="b123456", kind="box", links=[""])]).SerializeToString()
+
+        def layout(content):
+            return v1.ServerMessage(world_layout=v1.WorldLayout.FromString(content)).SerializeToString()
+
+        self.assertEqual("", excess(layout(box * 600_000)))
+        size = 1 << 22
+        bomb = b"\x72" + bytes([size >> shift & 0x7F | 0x80 for shift in (0, 7, 14)]) + bytes([size >> 21]) + b"\x12\x00" * (size // 2)
+        with mock.patch("ziggurat.cost.MOST_LAID_OUT", 1 << 26):
+            self.assertIn("entities that take more than 1073741824 bytes of memory", excess(bomb))
 
     def test_packets_that_could_take_all_memory_are_refused(self):
         def with_packets(size, count):
