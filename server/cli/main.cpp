@@ -46,7 +46,12 @@ int execute(const Command& command, const Arguments& arguments, std::span<char*>
   processes::check_limits();
   processes::Guardian guardian(texts);
   processes::Signals signals(&guardian);
-  return std::get<ExecuteWithSignals>(command.execute)(arguments, signals);
+  try {
+    return std::get<ExecuteWithSignals>(command.execute)(arguments, signals);
+  } catch (...) {
+    signals.limit_what_follows();
+    throw;
+  }
 }
 
 /// @param texts  the arguments of main()

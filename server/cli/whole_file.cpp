@@ -1,6 +1,7 @@
 #include "cli/whole_file.h"
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -23,7 +24,10 @@ void remove_and_end(int number) {
   constexpr std::string_view words = "ziggurat: interrupted; the file was not finished and is removed\n";
   if (const char* const path = unfinished.exchange(nullptr)) {
     ::unlink(path);
-    [[maybe_unused]] const ssize_t told = ::write(STDERR_FILENO, words.data(), words.size());
+    pollfd reader{STDERR_FILENO, POLLOUT, 0};  // a full pipe must not hold up the end
+    if (::poll(&reader, 1, 0) == 1) {
+      [[maybe_unused]] const ssize_t told = ::write(STDERR_FILENO, words.data(), words.size());
+    }
   }
   ::signal(number, SIG_DFL);
   ::raise(number);

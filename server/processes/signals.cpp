@@ -114,9 +114,16 @@ void Signals::watch() {
     // take() may have reset the count already.
     bool is_interrupted = receive();
     if (descriptors[2].revents != 0) is_interrupted |= has_input_ended();
+    was_interrupted_ = was_interrupted_ || is_interrupted;
     if (is_interrupted && !deadline) deadline = clock::now() + patience;
     ::eventfd_write(news_, 1);
   }
+}
+
+void Signals::limit_what_follows() const {
+  if (!was_interrupted_) return;
+  ::signal(SIGALRM, [](int) { ::_exit(interrupted); });
+  ::alarm(1);
 }
 
 /// Without destructors: another thread is in the middle of something.

@@ -50,6 +50,10 @@ class Signals {
   /// What can be read is read and ignored. @param descriptor  stays open while this exists
   void interrupt_at_end_of(int descriptor);
 
+  /// For what is said behind this, which may find no reader either: the process ends with exit code 130 after a second, if
+  /// there was an interruption.
+  void limit_what_follows() const;
+
   Guardian* guardian() const { return guardian_; }
 
  private:
@@ -62,6 +66,7 @@ class Signals {
   int signals_ = -1, news_ = -1, order_ = -1;
   sigset_t former_;
   std::atomic<int> interruptions_ = 0, exit_code_ = 0;
+  std::atomic<bool> was_interrupted_ = false;
   std::atomic<int> input_ = -1;
   std::atomic<bool> child_ = false, is_completed_ = false, is_ending_ = false;
   std::thread thread_;

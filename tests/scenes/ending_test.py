@@ -1,5 +1,6 @@
 """The end of the program: by signals in any situation, and by force; what is left behind."""
 
+import contextlib
 import json
 import os
 import pathlib
@@ -8,7 +9,7 @@ import signal
 import subprocess
 import time
 
-from harness import (CONTROLLER_FAILED, INTERRUPTED, LUA, SceneTest, main)
+from harness import (CONTROLLER_FAILED, INTERRUPTED, LUA, SceneTest, ZIGGURAT, main)
 
 ENDLESS = ("--duration", "0")
 MOST = 1.5  # [s]: the program promises 1; the rest is for a busy machine
@@ -95,6 +96,32 @@ class Signals(SceneTest):
                           "ticks beyond what the pipe holds")
             self.assert_ends_soon(process, signal.SIGINT)
             hashes.unlink()
+
+    def unread(self):
+        """A pipe that is full."""
+        reader, writer = os.pipe()
+        for end in (reader, writer):
+            self.addCleanup(os.close, end)
+        os.set_blocking(writer, False)
+        with contextlib.suppress(BlockingIOError):
+            while True:
+                os.write(writer, bytes(4096))
+        os.set_blocking(writer, True)
+        return writer
+
+    def test_messages_to_a_pipe_that_is_not_read(self):
+        recording = self.folder / "r.mcap"
+        self.run_scene("--ticks", 20000, "--record", recording, "--quiet")
+        for number in (signal.SIGINT, signal.SIGTERM):
+            for words, code in ((("top", "tcp://127.0.0.1:1"), INTERRUPTED),
+                                (("export", recording, "--jsonl", self.folder / "x.jsonl"), -number)):
+                with self.subTest(words[0], number=number):
+                    pipe = self.unread()
+                    process = subprocess.Popen([str(ZIGGURAT), *map(str, words)], cwd=self.folder, env=self.environment, stdout=pipe,
+                                               stderr=pipe)
+                    self.started.append(process)
+                    time.sleep(0.3)
+                    self.assert_ends_soon(process, number, code)
 
     def test_trace_to_a_pipe_without_reader(self):
         fifo = self.folder / "t.csv"
