@@ -131,6 +131,28 @@ Polygon feature_of(const Cylinder& cylinder, const Body& body, const btVector3& 
   return polygon;
 }
 
+/// Moves the corners of a polygon that lie beyond the rim, as those of the clipping planes do by up to 2 % of the radius, towards the
+/// axis onto it. Where the axis passes beside the polygon that would leave it.
+void pull_to_rim(const Cylinder& cylinder, const Body& body, Polygon& polygon) {
+  const btVector3& axis = body.axis[2];
+  const auto arm = [&](int i) {
+    const btVector3 from_centre = polygon.vertices[i] - body.centre;
+    return from_centre - axis * axis.dot(from_centre);
+  };
+  btScalar least = BT_LARGE_FLOAT, most = -BT_LARGE_FLOAT;
+  for (int i = 0; i < polygon.count; ++i) {
+    const btScalar area = axis.dot(arm(i).cross(arm((i + 1) % polygon.count)));
+    least = btMin(least, area);
+    most = btMax(most, area);
+  }
+  if (least < 0 && most > 0) return;
+  for (int i = 0; i < polygon.count; ++i) {
+    const btVector3 out = arm(i);
+    const btScalar far = out.length();
+    if (far > cylinder.radius) polygon.vertices[i] -= out * (1 - cylinder.radius / far);
+  }
+}
+
 void clip_to(const Cylinder& cylinder, const Body& body, int, Polygon& polygon) {
   static const btScalar cosines[16] = {1,  .92387953251128674,  SIMDSQRT12,  .38268343236508978,
                                        0,  -.38268343236508978, -SIMDSQRT12, -.92387953251128674,
@@ -140,6 +162,7 @@ void clip_to(const Cylinder& cylinder, const Body& body, int, Polygon& polygon) 
     const btVector3 normal = body.axis[0] * cosines[i] + body.axis[1] * cosines[(i + 12) % 16];
     clip(polygon, normal, normal.dot(body.centre) + cylinder.radius);
   }
+  pull_to_rim(cylinder, body, polygon);
 }
 
 bool side_of(const Cylinder& cylinder, const Body& body, Line& line) {

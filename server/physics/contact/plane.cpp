@@ -1,5 +1,6 @@
 // All shapes against a half-space.
 
+#include <algorithm>
 #include <cmath>
 
 #include "physics/contact/pairs.h"
@@ -49,6 +50,23 @@ void add_lower_face(const Box& box, const Placement& at, Contacts& out) {
     point[u] = corner & 1 ? box.half[u] : -box.half[u];
     point[v] = corner & 2 ? box.half[v] : -box.half[v];
     add(at.a * point, at.b, at.reach, out);
+  }
+}
+
+/// The same of a hull, and other corners that are as low as its lowest one: an edge or a corner that carries may be of other faces.
+void add_lower_face(const Hull& hull, const Placement& at, Contacts& out) {
+  constexpr btScalar as_low = btScalar(1e-5);  // [m]
+  const Polyhedron& polyhedron = *hull.polyhedron;
+  const btVector3 down = at.a.getBasis().transpose() * -out.normal;  // in the hull
+  const Polyhedron::Face* face = &polyhedron.faces[0];
+  for (const Polyhedron::Face& each : polyhedron.faces) {
+    if (each.normal.dot(down) > face->normal.dot(down)) face = &each;
+  }
+  const btScalar lowest = reach_along(hull, down);
+  for (std::size_t i = 0; i < polyhedron.corners.size(); ++i) {
+    const btVector3& corner = polyhedron.corners[i];
+    const bool carries = corner.dot(down) > lowest - as_low || std::ranges::find(face->corners, static_cast<int>(i)) != face->corners.end();
+    if (carries) add(at.a * corner, at.b, at.reach, out);
   }
 }
 
@@ -111,6 +129,7 @@ void contact_points(const Capsule& a, const HalfSpace&, const Placement& at, Con
 void contact_points(const Hull& a, const HalfSpace&, const Placement& at, Contacts& out) {
   const auto& [pose_a, plane, reach, support, useful] = at;
   out.normal = plane.getBasis().getColumn(2);
+  if (support == Support::face) return add_lower_face(a, at, out);
   for (const btVector3& corner : a.polyhedron->corners) add(pose_a * corner, plane, reach, out);
 }
 

@@ -75,9 +75,9 @@ struct Contacts {
   }
 };
 
-/// Which points of a box carry it on a half-space.
+/// Which points of a box or a hull carry it on a half-space.
 enum class Support {
-  lowest,  ///< its four lowest corners, for solver="sweeps"
+  lowest,  ///< of a box, its four lowest corners, for solver="sweeps"; of a hull, all
   face,    ///< the corners of the face that looks down most: those that land when a plank falls flat
   all      ///< all its corners, for what tumbles
 };

@@ -125,6 +125,20 @@ btScalar least(const Contacts& contacts) {
   return distance;
 }
 
+// Those of the planes that clip stand beyond it by up to 2 % of the radius.
+TEST(CylinderOn, TouchesNowhereBeyondTheSmallerRim) {
+  const btTransform below = btTransform::getIdentity(), above(btQuaternion::getIdentity(), btVector3(0, 0, 0.1));
+  const Cylinder large{0.15, 0.05}, small{0.1, 0.05};
+  const Box slab{{0.3, 0.3, 0.05}};
+  for (const auto& [lower, upper] : {std::pair<Shape, Shape>{large, small}, {small, large}, {slab, small}, {small, slab}}) {
+    const Contacts contacts = find(upper, above, lower, below, 1e-3, Support::face);
+    btScalar farthest = 0;
+    for (int i = 0; i < contacts.count; ++i) farthest = std::max(farthest, std::hypot(contacts.points[i].on_b.x(), contacts.points[i].on_b.y()));
+    EXPECT_GE(contacts.count, 4);
+    EXPECT_NEAR(farthest, 0.1, 1e-9);
+  }
+}
+
 class AllPairs : public ::testing::TestWithParam<Pair> {
  protected:
   static constexpr int poses = 300;

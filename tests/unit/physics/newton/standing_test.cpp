@@ -86,6 +86,30 @@ TEST(NewtonPlank, FallsOntoItsRollersThoughItBeginsTilted) {
   }
 }
 
+/// An ellipsoid of 60 corners.
+scene::Geometry pebble() {
+  std::vector<Vector3> corners;
+  for (int i = 0; i < 60; ++i) {
+    const double z = 1 - (2 * i + 1) / 60.0, angle = i * std::numbers::pi * (3 - std::sqrt(5.0)), around = std::sqrt(1 - z * z);
+    corners.push_back({0.1 * around * std::cos(angle), 0.05 * around * std::sin(angle), 0.03 * z});
+  }
+  return std::get<scene::Hull>(scene::make_hull(corners));
+}
+
+// Of its corners within reach of the floor, those that are higher displaced those that carry it: it trembled, and never slept.
+TEST(NewtonHull, OfManyCornersComesToRestOnTheFloor) {
+  for (const double hz : {50.0, 100.0, 500.0}) {
+    for (const double angle : {0.1, 0.8}) {
+      World world(newton(true), 1 / hz);
+      world.add(loose(tilted(0, 0, 0.08, angle), pebble(), 1, 1));
+      run(world, 10, 1 / hz);
+      const Pose rest = origin(world, 0);
+      run(world, 1, 1 / hz);
+      EXPECT_EQ(origin(world, 0).position, rest.position) << hz << " from " << angle;
+    }
+  }
+}
+
 // The contacts of sleepers are told again in the very substep in which they wake.
 TEST(NewtonStack, IsCarriedWhenItIsWoken) {
   const double h = 0.01;
