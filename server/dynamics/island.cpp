@@ -18,14 +18,6 @@ bool free_to_drift(const Tree& tree) {
   return tree.links[0].joint == JointType::floating && tree.freedoms == all_freedoms;
 }
 
-/// Whether a block does more than push out what is pressed in, or a joint is beyond its limit, as a scene may begin.
-/// @param allowed  [m], [rad]
-bool holds(const Block& block, double allowed) {
-  const double pushed = block.yield > 0 ? 2 * std::max(0.0, block.seek[0]) : 0;
-  return std::abs(block.impulse[0]) * block.mobility[0] > pushed ||
-         (block.kind == Block::Source::limit && block.gap < -allowed);
-}
-
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
@@ -95,38 +87,6 @@ void put_back(std::vector<Tree>& trees, std::span<const int> island, const std::
     place(tree);
     move(tree);
   }
-}
-
-/// Whether bodies would pass through a surface on the way that gravity bends, though their speed at its end does not say so:
-/// what a push nearly carries.
-bool is_crossed(const Problem& problem, const Block& block, double allowed) {
-  if (block.kind != Block::Source::contact) return false;
-  const auto fall = [&](int place) -> Vector3 {
-    if (place < 0 || !problem.trees[place]->free_root) return Vector3::Zero();
-    return problem.trees[place]->gravity;
-  };
-  const double pull = block.frame.col(0).dot(fall(block.a) - fall(block.b));
-  if (pull <= 0) return false;  // as for all that lies on something
-  double u[Block::most_rows];
-  problem.speeds(block, u);
-  return block.gap + problem.length * (u[0] - problem.length / 2 * pull) < -allowed;
-}
-
-/// Notes which trees of an island nothing but motors of joints acts on: what they come near does not hold them.
-/// @param allowed  see holds()
-/// @return         how many
-std::size_t find_free(const Problem& problem, std::span<const Servo> servos, double allowed, std::vector<unsigned char>& out) {
-  std::size_t count = problem.trees.size();
-  out.assign(count, 1);
-  const auto touch = [&](int tree) { count -= tree >= 0 && std::exchange(out[tree], 0); };
-  for (const Block& block : problem.blocks) {
-    const bool is_motor = block.kind == Block::Source::servo && servos[block.source].dof >= 0;
-    if (is_motor || !(holds(block, allowed) || is_crossed(problem, block, allowed))) continue;
-    touch(block.a);
-    touch(block.b);
-    if (count == 0) break;
-  }
-  return count;
 }
 
 /// Moves a tree of the island. What nothing fixed rubs keeps its momentum, and so does what would gain energy.
@@ -316,7 +276,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   const auto island = std::span(tree_order_).subspan(first_tree, last_tree - first_tree);
   gather_island(first_tree, last_tree, first_item, last_item);
   const Outcome outcome = solve_velocities(problem_, solver_);
-  std::size_t free = find_free(problem_, servos_, allowed_overlap, free_);
+  std::size_t free = find_free(problem_, servos_, work_, free_velocities_, free_);
   const bool touched = free < free_.size();
   if (most_parts > 1) {
     const int parts = std::max({touched ? parts_for_tension(problem_, contacts_, work_, tension_) : 1, parts_for_nutation(problem_, work_),

@@ -11,6 +11,7 @@
 #include "dynamics/newton.h"
 #include "dynamics/rebound.h"
 #include "dynamics/tension.h"
+#include "dynamics/unheld.h"
 
 namespace ziggurat::dynamics {
 
@@ -196,6 +197,7 @@ class System {
   std::vector<int> first_tree_, tree_order_, first_item_;
   std::vector<Item> items_, item_order_;
   std::vector<unsigned char> driven_, free_;  // of each tree of an island
+  FreeVelocities free_velocities_;
   std::vector<double> kept_, step_;
   Excesses excesses_;
   Rebound rebound_;
