@@ -14,3 +14,11 @@ export function encode(name: string, value: Record<string, unknown>): Uint8Array
   assert.ok(type, name);
   return toBinary(type, create(type, value));
 }
+
+/** A part again and again, as often as it fits into so many bytes. */
+export function repeated(part: Uint8Array, bytes: number): Uint8Array {
+  const all = new Uint8Array(Math.floor(bytes / part.length) * part.length);
+  all.set(part);
+  for (let filled = part.length; filled < all.length; filled *= 2) all.copyWithin(filled, 0, filled);
+  return all;
+}

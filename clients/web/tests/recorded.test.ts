@@ -9,7 +9,7 @@ import type { Contacts, World } from "../source/model/messages";
 import { Playback } from "../source/model/playback";
 import { Recorded } from "../source/model/recorded";
 import { Series } from "../source/model/series";
-import { encode, schema } from "./encode";
+import { encode, repeated, schema } from "./encode";
 
 const tickNs = 100_000_000;
 
@@ -138,7 +138,7 @@ test("a place in a large recording is found without reading the rest", async () 
 
 /** So many empty parts, of two bytes each. */
 function parts(tag: number, count: number): Uint8Array {
-  return new Uint8Array(new Uint16Array(count).fill(tag).buffer); // of the little-endian: the tag, then a length of 0
+  return repeated(new Uint8Array([tag, 0]), 2 * count);
 }
 
 test("messages of many small parts are told with topic and time, and the rest is shown", async () => {
@@ -181,9 +181,9 @@ function fileOf(records: Uint8Array): Uint8Array {
 }
 
 test("a chunk of very many messages, and schemas of very many bytes, are refused", async () => {
-  const messages = new Uint8Array(31 * 1_000_001);
-  for (let at = 0; at < messages.length; at += 31) messages.set([5, 22], at); // empty ones
-  await assert.rejects(open(fileOf(messages)), /a chunk has more than 1000000 messages/);
+  const empty = new Uint8Array(31);
+  empty.set([5, 22]);
+  await assert.rejects(open(fileOf(repeated(empty, 31 * 1_000_001))), /a chunk has more than 1000000 messages/);
   const schemas = Array.from({ length: 17 }, (_, id) => {
     const record = new DataView(new ArrayBuffer(9 + 14 + 4e6));
     record.setUint8(0, 3);
@@ -223,7 +223,7 @@ test("a file that is no recording gives one sentence", async () => {
 test("flipped bits: an error in words, or frames, and never anything else", async () => {
   const whole = await write(60);
   let refused = 0, told = 0;
-  for (let i = 0; i < 300; ++i) {
+  for (let i = 0; i < 150; ++i) {
     const bytes = whole.slice();
     bytes[(i * 7919) % bytes.length] ^= 1 << (i % 8);
     const heard = new Heard();
