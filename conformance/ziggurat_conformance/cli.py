@@ -221,6 +221,7 @@ def _play(options) -> int:
         terminal.end(outcomes, left_out, time.monotonic() - start)
         reports.write(_contents(options, outcomes, left_out))
     except (RuntimeError, _Mistake, outputs.WrongOutput) as error:
+        interruption.repeat()
         print(printable(f"ziggurat-conformance: {error}"), file=sys.stderr)
         return 2
     missing = report.missing_badges(outcomes, left_out, options.badge)

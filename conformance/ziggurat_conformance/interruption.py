@@ -2,9 +2,11 @@
 
 import contextlib
 import signal
+import time
 from typing import Iterator
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+_ONE = 1.0  # [s] in which several are one: a second exception may break off what ends by the first
 
 
 class Interrupted(KeyboardInterrupt):
@@ -19,13 +21,28 @@ class _State:
     depth = 0  # of postponed()
     pending = 0  # the signal that came meanwhile
     ignores = False  # for good
+    last = 0  # the signal that was raised last
+    raised = 0.0  # when [s]
+
+
+def _raise(number: int) -> None:
+    if _State.last and time.monotonic() - _State.raised < _ONE:
+        return
+    _State.last, _State.raised = number, time.monotonic()
+    raise Interrupted(number)
 
 
 def _handle(number: int, _frame) -> None:
     if _State.depth:
         _State.pending = number
     else:
-        raise Interrupted(number)
+        _raise(number)
+
+
+def repeat() -> None:
+    """Where something ended with another error: a signal may have broken it off, in a lock for example."""
+    if _State.last:
+        raise Interrupted(_State.last)
 
 
 @contextlib.contextmanager
@@ -38,7 +55,7 @@ def postponed() -> Iterator[None]:
         _State.depth -= 1
         if not _State.depth and (number := _State.pending):
             _State.pending = 0
-            raise Interrupted(number)
+            _raise(number)
 
 
 def ignore() -> None:
@@ -51,7 +68,7 @@ def ignore() -> None:
 @contextlib.contextmanager
 def handled() -> Iterator[None]:
     """Signals that were ignored at the start stay so."""
-    _State.ignores = False
+    _State.ignores, _State.last = False, 0
     before = {number: signal.getsignal(number) for number in _SIGNALS}
     for number, handler in before.items():
         if handler not in (signal.SIG_IGN, None):  # None: not one of Python
