@@ -230,13 +230,8 @@ btVector3 normal_of(const Hull& hull, const Body& body, int face, const btVector
 }
 
 Polygon feature_of(const Hull& hull, const Body& body, const btVector3& towards) {
-  const btVector3 in_body = to_body(body, towards);
-  const Polyhedron::Face* best = &hull.polyhedron->faces[0];
-  for (const Polyhedron::Face& face : hull.polyhedron->faces) {
-    if (face.normal.dot(in_body) > best->normal.dot(in_body)) best = &face;
-  }
   Polygon polygon;
-  for (const int corner : best->corners) polygon.add(corner_of(hull, body, corner));
+  for (const int corner : face_along(*hull.polyhedron, to_body(body, towards)).corners) polygon.add(corner_of(hull, body, corner));
   return polygon;
 }
 

@@ -134,6 +134,14 @@ bool holds(const Shape& shape, const btVector3& point, btScalar slack) {
   return std::visit([&](const auto& each) { return inside(each, point, slack); }, shape);
 }
 
+const Polyhedron::Face& face_along(const Polyhedron& polyhedron, const btVector3& direction) {
+  const Polyhedron::Face* best = &polyhedron.faces[0];
+  for (const Polyhedron::Face& face : polyhedron.faces) {
+    if (face.normal.dot(direction) > best->normal.dot(direction)) best = &face;
+  }
+  return *best;
+}
+
 btScalar reach_along(const Shape& shape, const btVector3& direction) {
   return std::visit([&](const auto& each) { return reach_of(each, direction); }, shape);
 }

@@ -58,14 +58,11 @@ void add_lower_face(const Hull& hull, const Placement& at, Contacts& out) {
   constexpr btScalar as_low = btScalar(1e-5);  // [m]
   const Polyhedron& polyhedron = *hull.polyhedron;
   const btVector3 down = at.a.getBasis().transpose() * -out.normal;  // in the hull
-  const Polyhedron::Face* face = &polyhedron.faces[0];
-  for (const Polyhedron::Face& each : polyhedron.faces) {
-    if (each.normal.dot(down) > face->normal.dot(down)) face = &each;
-  }
+  const std::vector<int>& face = face_along(polyhedron, down).corners;
   const btScalar lowest = reach_along(hull, down);
   for (std::size_t i = 0; i < polyhedron.corners.size(); ++i) {
     const btVector3& corner = polyhedron.corners[i];
-    const bool carries = corner.dot(down) > lowest - as_low || std::ranges::find(face->corners, static_cast<int>(i)) != face->corners.end();
+    const bool carries = corner.dot(down) > lowest - as_low || std::ranges::find(face, static_cast<int>(i)) != face.end();
     if (carries) add(at.a * corner, at.b, at.reach, out);
   }
 }

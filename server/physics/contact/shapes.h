@@ -93,6 +93,9 @@ Contacts find(const Shape& a, const btTransform& pose_a, const Shape& b, const b
 /// @param point  in the shape's frame [m];  @param slack  [m]
 bool holds(const Shape& shape, const btVector3& point, btScalar slack);
 
+/// The face that looks most along a direction of the polyhedron's frame; of equals the first.
+const Polyhedron::Face& face_along(const Polyhedron& polyhedron, const btVector3& direction);
+
 /// How far a shape reaches from its centre along a unit direction of its frame [m]; without bound:
 /// BT_LARGE_FLOAT.
 btScalar reach_along(const Shape& shape, const btVector3& direction);
