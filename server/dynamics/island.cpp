@@ -14,6 +14,9 @@
 namespace ziggurat::dynamics {
 namespace {
 
+/// Instead of the contact that pushes a tree.
+constexpr int no_contact = -1, several_contacts = -2;
+
 bool free_to_drift(const Tree& tree) {
   return tree.links[0].joint == JointType::floating && tree.freedoms == all_freedoms;
 }
@@ -141,12 +144,35 @@ void take_velocities(const Problem& problem, const std::vector<unsigned char>& f
   }
 }
 
+/// Notes of each tree the contact that pushes it, or that several do: those of another body, or along another normal.
+void find_only_contacts(const Problem& problem, std::vector<int>& out) {
+  constexpr double parallel = 1 - 1e-6;  // cosine of the angle between normals
+  out.assign(problem.trees.size(), no_contact);
+  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
+    const Block& block = problem.blocks[i];
+    if (block.kind != Block::Source::contact || block.impulse[0] == 0) continue;
+    for (const int tree : {block.a, block.b}) {
+      if (tree < 0 || out[tree] == several_contacts) continue;
+      const Block& first = problem.blocks[out[tree] == no_contact ? i : static_cast<std::size_t>(out[tree])];
+      const bool same = first.a == block.a && first.b == block.b && first.frame.col(0).dot(block.frame.col(0)) > parallel;
+      out[tree] = !same ? several_contacts : out[tree] == no_contact ? static_cast<int>(i) : out[tree];
+    }
+  }
+}
+
 /// Friction between two that meet within the substep acts when they do. So what turns them, about the points that meet, and what moves
-/// them are one impulse, and angular momentum stays.
-void wait_for_friction(const Problem& problem, std::span<const Contact> contacts, std::vector<double>& step) {
+/// them are one impulse, and angular momentum stays. What is nipped between others moves as it is solved: friction of one contact
+/// balances impulses of another one, and is no part of its motion by itself.
+/// @param only  memory
+void wait_for_friction(const Problem& problem, std::span<const Contact> contacts, std::vector<int>& only, std::vector<double>& step) {
+  const auto waits = [&](const Block& block) {
+    if (block.kind != Block::Source::contact || block.rows < 3 || block.impulse[0] == 0 || block.a < 0 || block.b < 0) return false;
+    return -contacts[block.source].until_met.dot(contacts[block.source].normal) >= touching;
+  };
+  if (std::ranges::none_of(problem.blocks, waits)) return;
+  find_only_contacts(problem, only);
   for (const Block& block : problem.blocks) {
-    if (block.kind != Block::Source::contact || block.rows < 3 || block.impulse[0] == 0) continue;
-    if (-contacts[block.source].until_met.dot(contacts[block.source].normal) < touching) continue;
+    if (!waits(block) || only[block.a] == several_contacts || only[block.b] == several_contacts) continue;
     const Vector3 friction = block.frame.col(1) * block.impulse[1] + block.frame.col(2) * block.impulse[2];
     const double time = block.bounces ? block.met : problem.length;
     const auto shift = [&](int place, double sign) {
@@ -296,7 +322,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   const double before = energy_if_passive(problem_);
   note_excesses(problem_, work_, excesses_);
   take_velocities(problem_, free_, step_);
-  wait_for_friction(problem_, contacts_, step_);
+  wait_for_friction(problem_, contacts_, only_, step_);
   const bool grounded = world_rubs(problem_), rests = world_carries(problem_) && !motors_move(problem_);
   if (problem_.turn_into_displacement()) {
     solver_.solve_displacement(problem_);

@@ -198,6 +198,7 @@ class System {
   std::vector<Item> items_, item_order_;
   std::vector<unsigned char> driven_, free_;  // of each tree of an island
   FreeVelocities free_velocities_;
+  std::vector<int> only_;  // memory of a function
   std::vector<double> kept_, step_;
   Excesses excesses_;
   Rebound rebound_;

@@ -179,6 +179,28 @@ TEST(NewtonCollision, OfAGasKeepsItsEnergy) {
   }
 }
 
+// A ball of 10 g on the floor is nipped by one of 10 kg: its friction is more than tan(12.3 degrees), so it rolls out below the other one. It went
+// by up to 11 m in a substep: the frictions on it, which normal impulses balance, were taken out of its way alone.
+TEST(NewtonCollision, NipsALightBallWithoutThrowingIt) {
+  for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+    scene::Physics physics = newton(true);
+    physics.floor->surface.friction = 1;
+    World world(physics, 1 / hz);
+    world.add(ball(0.06, 0.01, {0, 0, 0}, {.friction = 0.8}));
+    world.add(ball(0.06, 10, {0.05, 0.003, 0.62}, {.friction = 0.8}));
+    const auto centre = [&] { return Vector3(state_of(world).links[0].pose * Vector3(0, 0, 0.06)); };
+    Vector3 before = centre();
+    for (int i = 0; i < 0.46 * hz; ++i) {
+      world.step();
+      const Vector3 now = centre();
+      ASSERT_LT((now - before).norm(), 0.6 / hz) << hz << ' ' << i;
+      before = now;
+    }
+    EXPECT_NEAR(before.z(), 0.06, 1e-4) << hz;
+    EXPECT_LT(before.head<2>().norm(), 0.06) << hz;
+  }
+}
+
 // Ground friction of a body that slides in a plane: it stops after m v^2 / 2 F, whatever its heading.
 TEST(NewtonPlaneFriction, IsTheSameInAllDirections) {
   constexpr double mass = 2, force = 1.49, speed = 1;
