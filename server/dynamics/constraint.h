@@ -31,6 +31,7 @@ struct Contact {
   /// Of a round body that touches another one that moves: the velocity of the point of contact, which is that of neither's material [m/s].
   Vector3 velocity{0, 0, 0};
   bool rolls = false;       ///< it has that velocity
+  Vector3 face_turning{0, 0, 0};  ///< of the other body, with which the normal turns [rad/s]
   double gap = 0;           ///< along the normal; negative = overlap [m]
   double friction = 0;      ///< Coulomb coefficient
   double rolling = 0;       ///< lever of the torque that resists rolling [m]

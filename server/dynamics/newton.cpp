@@ -111,6 +111,13 @@ double wrong_energy(const Problem& problem, const Speeds& speeds) {
   return sum;
 }
 
+/// Whether masses are so alike that what is little for the speeds of one tree is so for those of another.
+bool are_alike(std::span<const double> masses) {
+  constexpr double most = 100;  // the heaviest over the lightest
+  const auto [least, greatest] = std::ranges::minmax(masses);
+  return greatest <= most * least;
+}
+
 /// Of a problem that is not solved yet.
 Beginning beginning_of(const Problem& problem) {
   Beginning out;
@@ -319,7 +326,8 @@ bool Solver::still_solved(const Problem& problem, Outcome& outcome) {
   outcome.miss = finite ? miss_beyond(problem, speeds_, enough) : HUGE_VAL;
   if (outcome.miss > enough) return false;
   const double balanced = options.absolute_tolerance + options.still_tolerance * std::max(scale, of_joints);
-  return imbalance(problem, residual_) <= balanced;
+  if (imbalance(problem, residual_) > balanced) return false;
+  return are_alike(problem.total_mass) || is_balanced(problem, residual_, options.still_tolerance, options.absolute_tolerance, given_);
 }
 
 Outcome Solver::solve(Problem& problem) {

@@ -89,6 +89,10 @@ void add_impulse(const Problem& problem, const Block& block, const double* impul
 /// out := p + J^T g - M v, with the joints' damping in M.
 /// @return  the largest change of a coordinate's speed that is missing, about [m/s] or [rad/s]
 double imbalance(const Problem& problem, std::vector<double>& out);
+/// Whether of each coordinate little is missing beside its own impulses.
+/// @param missing  see imbalance();  @param share  of its impulses;  @param least  what never counts [m/s] or [rad/s]
+/// @param given    memory
+bool is_balanced(const Problem& problem, std::span<const double> missing, double share, double least, std::vector<double>& given);
 
 /// The mass matrices of a problem, with the joints' damping.
 /// @param matrix  of its shape
@@ -150,7 +154,7 @@ class Solver {
   Beginning beginning_;
   Snapshot start_, snapshot_, rebounding_, earlier_;
   std::vector<double> seeks_;
-  std::vector<double> direction_, residual_;
+  std::vector<double> direction_, residual_, given_;
   std::vector<InteriorBlock> interior_;
   Sweeps sweeps_;
 };

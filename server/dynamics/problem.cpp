@@ -199,6 +199,28 @@ void Problem::press(Block& block) const {
   if (weight > 0) block.yield = std::min(block.yield, deepest / (length * length * weight));
 }
 
+/// Lets what touches stay together where both sides turn: by half of what their points part faster by within the substep while all
+/// coordinates keep their speeds. The normal turns with the side whose face it is, or with both.
+void Problem::turn_together(Block& block, const Contact& contact) const {
+  const LinkIndex sides[] = {contact.a, contact.b};
+  const Vector3 points[] = {contact.point, contact.point + contact.until_met};
+  const int places[] = {block.a, block.b};
+  Vector3 faster = Vector3::Zero(), speed = Vector3::Zero(), turning = Vector3::Zero();  // of a less b; of both
+  for (int i = 0; i < 2; ++i) {
+    const Tree& tree = *trees[places[i]];
+    const Motion& motion = tree.motion[sides[i].link];
+    const double sign = i == 0 ? 1 : -1;
+    faster += sign * bend(places[i], sides[i].link, points[i], contact);
+    speed += sign * (motion.linear + motion.angular.cross(points[i] - tree.origin));
+    turning += motion.angular;
+  }
+  for (int r = 1; r < std::min(block.rows, 3); ++r) block.seek[r] = -length / 2 * block.frame.col(r).dot(faster);
+  const Vector3 normal = block.frame.col(0);
+  const Vector3 normal_turns = contact.rolls ? contact.face_turning.cross(normal) : Vector3(turning.cross(normal));
+  block.bend = normal.dot(faster) + normal_turns.dot(speed);
+  block.seek[0] -= length / 2 * block.bend;
+}
+
 void Problem::add(const Contact& contact, int a, int b, int source) {
   Block& block = blocks.emplace_back();
   block.law = Block::Law::contact;
@@ -234,13 +256,7 @@ void Problem::add(const Contact& contact, int a, int b, int source) {
   for (int r = 1; r < std::min(block.rows, 3); ++r) block.impulse[r] = impulse[r];
   for (int r = 3; r < block.rows; ++r) block.impulse[r] = angular[r - 3];
   press(block);
-  if (a >= 0 && b >= 0) {  // what lies on a turntable does not drift outwards
-    const Vector3 apart = bend(a, contact.a.link, contact.point, contact) -
-                          bend(b, contact.b.link, contact.point + contact.until_met, contact);
-    for (int r = 1; r < std::min(block.rows, 3); ++r) {
-      block.seek[r] = -length / 2 * block.frame.col(r).dot(apart);
-    }
-  }
+  if (a >= 0 && b >= 0) turn_together(block, contact);
   block.restitution = contact.restitution;
   if (a >= 0 && b >= 0 && a != b) {
     const std::pair<int, int> pair(std::min(a, b), std::max(a, b));
@@ -353,7 +369,7 @@ void Problem::harden() {
   for (Block& block : blocks) {
     if (block.yield == 0) continue;
     block.yield = 0;
-    block.seek[0] = std::min(0.0, block.seek[0]);
+    block.seek[0] = std::min(0.0, block.seek[0] + length / 2 * block.bend) - length / 2 * block.bend;
   }
 }
 
@@ -377,7 +393,7 @@ bool Problem::turn_into_displacement() {
     }
     double u[Block::most_rows];
     speeds(block, u);
-    const double after = block.gap + length * u[0];
+    const double after = block.gap + length * (u[0] + length / 2 * block.bend);
     const bool bounced = bounces(block), both_ways = bounced || holds(block);
     block.law = Block::Law::bounded;
     block.lower = both_ways ? -std::numeric_limits<double>::infinity() : 0;

@@ -39,6 +39,7 @@ struct Block {
   std::array<double, most_rows> anchor{};  ///< of the softened law, see law.h [N s], [N m s]
 
   double gap = 0;                   ///< of contacts and limits [m] or [rad]
+  double bend = 0;                  ///< of a contact that turns: by how much faster its surfaces part in a second without forces [m/s^2]
   double range = 0;                 ///< of a limit: between its bounds [m] or [rad]
   double restitution = 0;           ///< of a contact
   bool bounces = false;             ///< a contact that is met within the substep and rebounds
@@ -116,6 +117,7 @@ struct Problem {
   void weigh(Block& block) const;
   Vector3 bend(int tree, int link, const Vector3& point, const Contact& contact) const;
   void press(Block& block) const;
+  void turn_together(Block& block, const Contact& contact) const;
 };
 
 /// Calls f with a block's number of rows, as a number that the compiler knows.

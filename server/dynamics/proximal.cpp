@@ -66,6 +66,30 @@ double imbalance(const Problem& problem, std::vector<double>& out) {
   return worst;
 }
 
+bool is_balanced(const Problem& problem, std::span<const double> missing, double share, double least, std::vector<double>& given) {
+  given.assign(problem.momentum.size(), 0.0);
+  const auto add_side = [&](const Block& block, int place, int first, std::span<const int> dofs) {
+    for (std::size_t e = 0; place >= 0 && e < dofs.size(); ++e) {
+      double& sum = given[problem.offset[place] + dofs[e]];
+      for (int r = 0; r < block.rows; ++r) sum += std::abs(problem.jacobian[first + dofs[e] * block.rows + r] * block.impulse[r]);
+    }
+  };
+  for (const Block& block : problem.blocks) {
+    if (!gives(block)) continue;
+    add_side(block, block.a, block.ja, block.dofs_a);
+    add_side(block, block.b, block.jb, block.dofs_b);
+  }
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    const int n = problem.trees[i]->dofs;
+    for (int k = 0; k < n; ++k) {
+      const int place = problem.offset[i] + k;
+      const double enough = share * (given[place] + std::abs(problem.momentum[place])) + least * problem.mass_of(i)[k * n + k];
+      if (std::abs(missing[place]) > enough) return false;
+    }
+  }
+  return true;
+}
+
 namespace {
 
 /// Impulses of the softened law at speeds.

@@ -107,7 +107,7 @@ bool is_round(const Collider& collider, const btVector3& normal) {
 }
 
 /// Notes how the point of contact moves where one of two colliders that move is round and the other one is not: with its centre,
-/// and about the normal, unless that turns it far in the substep.
+/// and as the other one's face turns; about the normal as it turns itself, unless that turns it far in the substep.
 void note_rolling(const Collider& a, const Collider& b, double length, dynamics::Contact& contact) {
   constexpr double far = 0.2;  // [rad]
   const btVector3 normal = to_bullet(contact.normal);
@@ -119,7 +119,9 @@ void note_rolling(const Collider& a, const Collider& b, double length, dynamics:
   const bool is_ball = std::holds_alternative<contact::Sphere>(round.shape);
   if (!is_ball && length * btFabs(turning) > far) return;
   contact.rolls = true;
-  contact.velocity = from_bullet(is_ball ? round.velocity : round.velocity + turning * normal.cross(arm));
+  const btVector3 face_turning = (round_a ? b : a).angular_velocity, tilt = face_turning.cross(normal) * arm.dot(normal);
+  contact.face_turning = from_bullet(face_turning);
+  contact.velocity = from_bullet(is_ball ? round.velocity + tilt : round.velocity + tilt + turning * normal.cross(arm));
 }
 
 /// How two colliders turn in a substep.

@@ -233,5 +233,22 @@ TEST_P(NewtonAt, WhatComesAtThreeHundredMetresPerSecondIsStopped) {
   EXPECT_NEAR(origin(world, 2).position.z(), 0, 1e-3);
 }
 
+// A push was less than what counted as none beside the impulses on the light balls over their mass: the plate stood still for good.
+TEST(NewtonPush, MovesAHeavyPlateOnLightBalls) {
+  const double mass = 1e4, ball = 1e-3, push = 2000, seconds = 0.8;
+  for (const double hz : {50, 100, 200, 500, 1000}) {
+    World world(newton(true), 1 / hz);
+    for (const double x : {-1, 1}) {
+      for (const double y : {-1, 1}) world.add(loose(at(x, y, 0), scene::Sphere{0.02}, ball, 0.7));
+    }
+    world.add(loose(at(0, 0, 0.04), scene::Box{{2.5, 2.5, 0.5}}, mass, 0.7));
+    run(world, 0.1, 1 / hz);
+    const world::Push along{4, Vector3(push, 0, 0), Vector3::Zero()};
+    set_pushes(world, std::span(&along, 1));
+    run(world, seconds, 1 / hz);
+    EXPECT_NEAR(state_of(world).links[4].velocity.x(), push * seconds / (mass + 4 * ball * 1.4 / 4), 1e-4) << hz;
+  }
+}
+
 }  // namespace
 }  // namespace ziggurat::physics
