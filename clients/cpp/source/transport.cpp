@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <zmq.hpp>
 
-#include "local_stream.h"
+#include "plain_stream.h"
 #include "ziggurat/error.h"
 
 namespace ziggurat {
@@ -36,7 +36,7 @@ bool receive_from(zmq::socket_t& socket, zmq::message_t& message, zmq::recv_flag
   }
 }
 
-/// A DEALER of libzmq: over networks, and encrypted.
+/// A DEALER of libzmq: encrypted, and for endpoints that only libzmq knows.
 class ZeroMq final : public Transport {
  public:
   explicit ZeroMq(const SessionOptions& options);
@@ -205,7 +205,7 @@ void ZeroMq::take_event(std::uint16_t event, std::uint32_t value) {
 }  // namespace
 
 std::unique_ptr<Transport> make_transport(const SessionOptions& options) {
-  if (LocalStream::path_of(options)) return std::make_unique<LocalStream>(options);
+  if (auto endpoint = PlainEndpoint::of(options)) return std::make_unique<PlainStream>(*std::move(endpoint));
   return std::make_unique<ZeroMq>(options);
 }
 

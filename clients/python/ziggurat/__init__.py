@@ -15,7 +15,7 @@ except ImportError as error:
                       "install pyzmq protobuf; for Debian's /usr/bin/python3: apt-get install python3-zmq "
                       "python3-protobuf") from None
 
-from .connection import Curve
+from .curve import Curve
 from .devices import *
 from .direct import World, direct
 from .errors import ConnectionLost, Displaced, ProtocolError, Refused, Timeout, ZigguratError

@@ -12,7 +12,7 @@ import os
 from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 from . import protocol_pb2 as v1
-from .connection import Curve
+from .curve import Curve
 from .cost import BYTES_PER_ENTITY, MOST_LAID_OUT, TOO_MUCH_LAID_OUT
 from .devices import Color, Quaternion, Vector
 from .devices.led import color_of

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Optional, Sequence, Union
 
 from . import protocol_pb2 as v1
-from .connection import Curve
+from .curve import Curve
 from .session import Session
 
 _TOKEN = "ZIGGURAT_SESSION_TOKEN"

@@ -7,7 +7,8 @@ import weakref
 from typing import Any, Dict, Iterable, Iterator, List, Optional, Union
 
 from . import protocol_pb2 as v1
-from .connection import Connection, Curve, Wait
+from .connection import Connection, Wait
+from .curve import Curve
 from .errors import ConnectionLost, Displaced, Malformed, ProtocolError, Refused, name_of, printable
 from .exchange import Exchange
 from .named import Named
@@ -46,7 +47,7 @@ class Session:
         try:
             self.welcome = self._connection.begin(hello, connect_timeout)
         except BaseException:
-            self._connection.close(linger_ms=0)
+            self._connection.close(linger=0)
             raise
         self._leaves: Dict[int, v1.ClientMessage] = {}  # of robots that left, by position
         self._answered: Optional[v1.ClientMessage] = None  # with this; the last one
@@ -210,7 +211,7 @@ class Session:
                 welcome = connection.begin(hello, max(0.1, end - time.monotonic()), is_patient=True)
                 return self._go_on(connection, welcome)
             except (ConnectionLost, Refused) as error:
-                connection.close(linger_ms=0)
+                connection.close(linger=0)
                 is_refused = isinstance(error, Refused)
                 if time.monotonic() < end and (not is_refused or error.retryable):
                     pause = _BETWEEN_HELLOS if is_refused else _BETWEEN_ATTEMPTS
@@ -220,12 +221,12 @@ class Session:
                     raise error from loss
                 raise ConnectionLost(f"{loss}; the session was not resumed within {patience:g} s") from error
             except BaseException:
-                connection.close(linger_ms=0)
+                connection.close(linger=0)
                 raise
 
     def _go_on(self, connection: Connection, welcome: v1.Welcome) -> None:
         """The session has the robots that it had, in their order."""
-        self._connection.close(linger_ms=0)
+        self._connection.close(linger=0)
         self._connection = connection
         if [robot.id for robot in welcome.robots] != [robot.id for robot in self.robots]:
             self._end()
@@ -343,7 +344,7 @@ class Session:
     def abandon(self) -> None:
         """Closes the connection without a Leave, as in a crash: ziggurat.resume resumes the session."""
         self._is_over = True
-        self._connection.close(linger_ms=0)
+        self._connection.close(linger=0)
 
     def __enter__(self) -> "Session":
         return self

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import Any, List, Optional, Sequence, Tuple, Union
 
 from . import protocol_pb2 as v1
-from .connection import Connection, Curve, Wait
+from .connection import Connection, Wait
+from .curve import Curve
 from .devices import Color, Quaternion, Vector
 from .devices.led import color_of
 from .errors import ConnectionLost, Malformed, ProtocolError, name_of, printable

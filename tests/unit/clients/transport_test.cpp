@@ -1,4 +1,4 @@
-// The way over ZeroMQ's sockets. The one without them: local_stream_test.cpp.
+// The way over ZeroMQ's sockets. The one without them: plain_stream_test.cpp.
 
 #include "transport.h"
 

@@ -110,18 +110,73 @@ class Lies(SessionCase):
         data = v1.ServerMessage(welcome=welcome(robot)).SerializeToString()
         self.assertRegex(self.left(data, client, welcomed=False), "^MALFORMED: .*range-and-bearing packets of 65537 bytes")
 
-    def test_a_message_of_2_gib_is_not_waited_for(self):
-        greeting = b"\xff" + bytes(8) + b"\x7f\x03\x01NULL" + bytes(48)
-        ready = b"\x05READY\x0bSocket-Type\x00\x00\x00\x06ROUTER"
+    def listener(self):
+        """A server whose bytes a test chooses."""
         listener = socket.create_server(("127.0.0.1", 0))
         self.addCleanup(listener.close)
+        return listener
+
+    def accepted(self, listener):
+        """A connection that is open."""
+        greeting = b"\xff" + bytes(8) + b"\x7f\x03\x01NULL" + bytes(48)
+        ready = b"\x05READY\x0bSocket-Type\x00\x00\x00\x06ROUTER"
+        connection = listener.accept()[0]
+        self.addCleanup(connection.close)
+        connection.sendall(greeting + bytes([4, len(ready)]) + ready)
+        connection.recv(1)
+        time.sleep(0.2)  # until the client has READY
+        return connection
+
+    def test_a_message_without_end_of_frames_is_not_kept(self):
+        listener = self.listener()
+        sent = []
 
         def part(_):
-            connection = listener.accept()[0]
-            self.addCleanup(connection.close)
-            connection.sendall(greeting + bytes([4, len(ready)]) + ready)
-            connection.recv(1)
-            time.sleep(0.2)  # until the client has READY
+            connection = self.accepted(listener)
+            connection.settimeout(5)
+            frames = b"\x01\x07a frame" * 100_000
+            try:
+                while sum(sent) < 1 << 29:
+                    sent.append(connection.send(frames))
+            except OSError:
+                pass  # the client has left
+
+        def client():
+            with self.assertRaisesRegex(ziggurat.ProtocolError, "no message of the protocol"):
+                ziggurat.connect(f"tcp://127.0.0.1:{listener.getsockname()[1]}", connect_timeout=5)
+
+        self.play(part, client)
+        self.assertLess(sum(sent), 1 << 29, "and the client reads it for a second until it ends")
+
+    def test_messages_that_are_not_taken_stay_with_the_server(self):
+        listener = self.listener()
+        sent = []
+
+        def part(_):
+            connection = self.accepted(listener)
+            data = v1.ServerMessage(welcome=welcome(equipped("one"))).SerializeToString()
+            connection.sendall(b"\x02" + len(data).to_bytes(8, "big") + data)
+            connection.settimeout(1)
+            try:
+                while sum(sent) < 1 << 28:
+                    sent.append(connection.send(b"\x02" + (1 << 20).to_bytes(8, "big") + bytes(1 << 20)))
+            except TimeoutError:
+                pass
+            connection.close()
+
+        def client():
+            session = ziggurat.connect(f"tcp://127.0.0.1:{listener.getsockname()[1]}", connect_timeout=5)
+            time.sleep(2)
+            session.abandon()
+
+        self.play(part, client)
+        self.assertLess(sum(sent), 1 << 26)  # the kernel keeps some
+
+    def test_a_message_of_2_gib_is_not_waited_for(self):
+        listener = self.listener()
+
+        def part(_):
+            connection = self.accepted(listener)
             connection.sendall(b"\x02" + (1 << 31).to_bytes(8, "big"))
 
         def client():

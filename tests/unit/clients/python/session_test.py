@@ -22,7 +22,7 @@ class Refused(unittest.TestCase):
             connection = Connection(f"tcp://127.0.0.1:{port}")
             self.addCleanup(connection.close)
             end = time.monotonic() + 20
-            # What is sent before the refusal is known goes into a queue that ZeroMQ then drops.
+            # What is sent before the refusal is known is queued.
             with self.assertRaisesRegex(ziggurat.ConnectionLost, "refused key.*this client has no keys"):
                 while time.monotonic() < end:
                     connection.send(v1.ClientMessage())
