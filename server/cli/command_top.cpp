@@ -13,6 +13,7 @@
 #include "processes/signals.h"
 #include "reports/console.h"
 #include "text/numbers.h"
+#include "ziggurat/error.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -72,14 +73,22 @@ int execute_top(const Arguments& arguments, processes::Signals& signals) {
   SupervisorOptions options = supervisor_options(endpoint, parsed.values, true, "ziggurat top");
   bool is_interrupted = false;
   options.is_interrupted = [&] { return is_interrupted |= signals.take().interruptions > 0; };
-  const auto server = connect(std::move(options), console);
   const bool redraws = !once && !json && isatty(STDOUT_FILENO) != 0;
-  do {
-    const ServerStatus status = server->status();
-    const std::string shown = json ? server->last_answer_json() : to_text(status);
-    redraws ? console.redraw(shown) : console.result(shown);
-    console.flush();
-  } while (!once && !sleep(signals, interval));
+  try {
+    const auto server = connect(std::move(options), console);
+    do {
+      const ServerStatus status = server->status();
+      const std::string shown = json ? server->last_answer_json() : to_text(status);
+      redraws ? console.redraw(shown) : console.result(shown);
+      console.flush();
+    } while (!once && !sleep(signals, interval));
+  } catch (const ConnectionError& error) {
+    if (!is_interrupted) throw;
+    const int exit_code = signals.exit_code_of_interruption();
+    signals.completed(exit_code);  // also if the sentence finds no reader
+    console.fault(error.what());
+    return exit_code;
+  }
   return reports::exit_code::finished;
 }
 

@@ -71,6 +71,7 @@ bool Signals::receive() {
     if (info.ssi_signo == SIGCHLD) {
       child_ = true;
     } else {
+      if (!was_interrupted_ && !is_interrupted) first_ = static_cast<int>(info.ssi_signo);
       ++interruptions_;
       is_interrupted = true;
     }

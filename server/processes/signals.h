@@ -40,6 +40,9 @@ class Signals {
   /// The signals since the last call; never waits.
   Arrived take();
 
+  /// 128 and the number of the first interruption's signal; 130 if there was none, or an input has ended.
+  int exit_code_of_interruption() const { return 128 + first_; }
+
   /// All that matters is done: an end by force is no news from now on, and has this exit code.
   void completed(int exit_code) {
     exit_code_ = exit_code;
@@ -66,6 +69,7 @@ class Signals {
   int signals_ = -1, news_ = -1, order_ = -1;
   sigset_t former_;
   std::atomic<int> interruptions_ = 0, exit_code_ = 0;
+  std::atomic<int> first_ = SIGINT;
   std::atomic<bool> was_interrupted_ = false;
   std::atomic<int> input_ = -1;
   std::atomic<bool> child_ = false, is_completed_ = false, is_ending_ = false;

@@ -6,6 +6,7 @@ import os
 import pathlib
 import resource
 import signal
+import socket
 import subprocess
 import time
 
@@ -113,7 +114,7 @@ class Signals(SceneTest):
         recording = self.folder / "r.mcap"
         self.run_scene("--ticks", 20000, "--record", recording, "--quiet")
         for number in (signal.SIGINT, signal.SIGTERM):
-            for words, code in ((("top", "tcp://127.0.0.1:1"), INTERRUPTED),
+            for words, code in ((("top", "tcp://127.0.0.1:1"), 128 + number),
                                 (("export", recording, "--jsonl", self.folder / "x.jsonl"), -number)):
                 with self.subTest(words[0], number=number):
                     pipe = self.unread()
@@ -122,6 +123,16 @@ class Signals(SceneTest):
                     self.started.append(process)
                     time.sleep(0.3)
                     self.assert_ends_soon(process, number, code)
+
+    def test_top_before_it_is_connected(self):
+        listener = socket.create_server(("127.0.0.1", 0))  # accepts, and says nothing
+        self.addCleanup(listener.close)
+        for endpoint in ("tcp://127.0.0.1:1", f"tcp://127.0.0.1:{listener.getsockname()[1]}"):
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                with self.subTest(endpoint, number=number):
+                    process = self.start("top", endpoint)
+                    self.read_until(process.stderr, "nothing answers")
+                    self.assert_ends_soon(process, number, 128 + number)
 
     def test_trace_to_a_pipe_without_reader(self):
         fifo = self.folder / "t.csv"

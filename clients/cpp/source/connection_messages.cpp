@@ -15,8 +15,8 @@ namespace {
 
 // A message is decoded up to these: a hostile one of a few bytes for each field would take all memory. Welcomes of
 // ten thousand robots with a hundred fields each are half of that. What is sent at each tick has the server's own bound.
-constexpr std::size_t longest_welcome = std::size_t{64} << 20;  // and of all else that is sent once [bytes]
-constexpr std::size_t most_fields = std::size_t{1} << 21;
+constexpr std::size_t longest_welcome = v1::longest_sent_once;  // and of all else that is sent once [bytes]
+constexpr std::size_t most_fields = v1::most_fields_sent_once;
 constexpr std::size_t cheap = std::size_t{1} << 20;  // so few bytes have few fields
 
 /// The content of a message that is a WorldLayout.

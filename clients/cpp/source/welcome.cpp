@@ -4,6 +4,7 @@
 
 #include "session_core.h"
 #include "ziggurat/v1/envelope.h"
+#include "ziggurat/v1/extent.h"
 
 namespace ziggurat {
 namespace {
@@ -79,10 +80,9 @@ void SessionCore::read(const v1::Welcome& welcome) {
 }
 
 void check_welcome(const v1::Welcome& welcome, const std::string& endpoint) {
-  constexpr int most_robots = 1 << 18;
-  if (welcome.robots_size() > most_robots) {
+  if (welcome.robots_size() > static_cast<int>(v1::most_robots)) {
     throw ConnectionError(endpoint + ": the server sent " + std::to_string(welcome.robots_size()) +
-                          " robots; this client takes " + std::to_string(most_robots) + " at most");
+                          " robots; this client takes " + std::to_string(v1::most_robots) + " at most");
   }
   const v1::Version& theirs = welcome.version();
   if (theirs.major() == version_major) return;

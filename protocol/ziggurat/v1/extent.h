@@ -23,6 +23,11 @@ inline constexpr std::size_t most_decoded = most_counted + (std::size_t{512} << 
 /// [bytes].
 inline constexpr std::size_t most_laid_out = std::size_t{1} << 30;
 
+/// Of all else that a server sends, and sends once, clients decode no more (H9): bytes, fields as count_fields() says it, and robots of a
+/// session.
+inline constexpr std::size_t longest_sent_once = std::size_t{64} << 20, most_fields_sent_once = std::size_t{1} << 21,
+                             most_robots = std::size_t{1} << 18;
+
 /// What each part counts, beside its content: no less than decoded_size() says of it [bytes].
 inline constexpr std::size_t counted_radio_message = 256, counted_packet = 256, counted_payload = 128, counted_color = 24,
                              counted_led = 96, counted_tag = 384;

@@ -7,6 +7,7 @@
 #include "network/keys.h"
 #include "network/selection.h"
 #include "wire/fault.h"
+#include "wire/welcome_size.h"
 
 namespace ziggurat::network {
 
@@ -221,6 +222,12 @@ std::variant<std::vector<std::size_t>, wire::Refusal> grant_robots(Barrier& barr
   if (auto refusal = check_power(barrier, hello, access, robots)) return std::move(*refusal);
   for (const std::size_t robot : robots) {
     if (auto refusal = check_robot(barrier, robot, hello.takeover)) return std::move(*refusal);
+  }
+  // At last: this takes as long as the Welcome itself.
+  if (!wire::are_decoded(*barrier.run, robots)) {
+    return make_refusal(ErrorCode::too_large, "robots",
+                        fmt::format("A Welcome with these {} robots would be longer than clients decode: ask for fewer in each session "
+                                    "(--lua-processes for scripts).", robots.size()));
   }
   return robots;
 }
