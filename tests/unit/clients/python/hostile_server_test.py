@@ -64,6 +64,7 @@ class Lies(SessionCase):
     def left(self, data, client, welcomed=True):
         """The Leave of a client that is told this, behind its Welcome or instead of it."""
         leaves = []
+        self.server.patience_ms = 60_000  # of a client that counts millions of fields
 
         def part(server):
             if welcomed:
