@@ -20,19 +20,6 @@ constexpr std::size_t max_ipc_path = sizeof(sockaddr_un::sun_path) - 1;
 /// Not abstract, and not `*`, for which the listener makes a folder.
 bool is_file(std::string_view path) { return path[0] != '@' && path != "*"; }
 
-/// Whether another server accepts connections there.
-bool is_listening(const std::string& path) {
-  const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (socket < 0) return false;
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
-  const int result = ::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address));
-  const bool listening = result == 0 || errno == EAGAIN;
-  ::close(socket);
-  return listening;
-}
-
 void check_ipc(const std::string& endpoint, const std::string& path) {
   if (path.empty() || path == "@") {
     throw EndpointError(
@@ -93,6 +80,18 @@ void check_tcp(const std::string& endpoint, std::string_view address, bool insec
 }
 
 }  // namespace
+
+bool is_listening(const std::string& path) {
+  const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (socket < 0) return false;
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
+  const int result = ::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address));
+  const bool listening = result == 0 || errno == EAGAIN;
+  ::close(socket);
+  return listening;
+}
 
 void check_endpoint(const std::string& endpoint, bool insecure) {
   if (endpoint.starts_with(ipc)) {

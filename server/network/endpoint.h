@@ -18,6 +18,9 @@ class EndpointError : public std::runtime_error {
 /// @throws EndpointError
 void check_endpoint(const std::string& endpoint, bool insecure);
 
+/// Whether a server accepts connections at this path.
+bool is_listening(const std::string& path);
+
 /// The path of the socket's file, which ZeroMQ leaves behind; empty if there is none.
 /// @param endpoint  as configured; ZeroMQ removes the file of `ipc://*`
 std::string file_of(const std::string& endpoint);

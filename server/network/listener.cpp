@@ -7,12 +7,15 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -61,6 +64,32 @@ void bind_and_listen(const std::string& endpoint, const Descriptor& socket, cons
 
 void set_option(int socket, int level, int option, int value) {
   ::setsockopt(socket, level, option, &value, sizeof value);
+}
+
+/// Of servers that begin at one path at the same time only one is between its look at that path and listening there.
+/// Held while it is open. Any user of this machine may hold it, too, so no server waits for long.
+Descriptor hold_path(const std::string& path) {
+  constexpr int most_tries = 50, between_us = 10'000;
+  const std::size_t slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  struct stat status {};
+  Descriptor held(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  if (!held.is_open() || ::stat(folder.c_str(), &status) != 0) return held;
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::size_t name = std::hash<std::string>{}(path.substr(slash + 1));  // npos + 1 is 0
+  fmt::format_to_n(address.sun_path + 1, sizeof address.sun_path - 1, "ziggurat-path-{}-{}-{:x}", status.st_dev, status.st_ino, name);
+  const auto* generic = reinterpret_cast<const sockaddr*>(&address);
+  for (int i = 0; ::bind(held.number(), generic, sizeof address) != 0 && i < most_tries; ++i) ::usleep(between_us);
+  return held;
+}
+
+/// Removes the socket of a server that is gone, and nothing else.
+void make_way(const std::string& endpoint, const std::string& path) {
+  struct stat status {};
+  if (::lstat(path.c_str(), &status) != 0) return;
+  if (!S_ISSOCK(status.st_mode) || is_listening(path)) fail(endpoint, EADDRINUSE);
+  ::unlink(path.c_str());
 }
 
 struct Address {
@@ -151,11 +180,13 @@ void Listener::listen_at_path(const std::string& endpoint, std::string path) {
   std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
   auto size = static_cast<socklen_t>(sizeof address);
   const bool is_abstract = path[0] == '@';
+  Descriptor held;
   if (is_abstract) {
     address.sun_path[0] = '\0';
     size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + path.size());
   } else {
-    ::unlink(path.c_str());  // of a server that is gone
+    held = hold_path(path);
+    make_way(endpoint, path);
   }
   Descriptor made = open_socket(endpoint, AF_UNIX);
   bind_and_listen(endpoint, made, reinterpret_cast<const sockaddr*>(&address), size);

@@ -1,10 +1,18 @@
 #include "network/endpoint.h"
 
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
 
+#include <atomic>
+#include <barrier>
 #include <filesystem>
 #include <fstream>
+#include <thread>
+#include <vector>
 
+#include "network/listener.h"
 #include "network/server.h"
 #include "network/small_run.h"
 #include "temporary_folder.h"
@@ -64,6 +72,43 @@ TEST_F(EndpointFiles, AFileInTheWayIsNotDeleted) {
   std::ofstream(folder / "thesis.tex") << "years of work";
   EXPECT_TRUE(says(complaint("ipc://" + (folder / "thesis.tex").string()), "in the way"));
   EXPECT_TRUE(std::filesystem::exists(folder / "thesis.tex"));
+}
+
+TEST_F(EndpointFiles, AFileThatIsMadeLaterIsNotDeletedEither) {
+  const std::string path = (folder / "thesis.tex").string();
+  std::ofstream(path) << "years of work";  // after check_endpoint()
+  EXPECT_THROW(Listener("ipc://" + path), EndpointError);
+  EXPECT_TRUE(std::filesystem::is_regular_file(path));
+}
+
+/// One listens, and the others say so: none removes the socket of another.
+TEST_F(EndpointFiles, OfServersThatBeginAtOnePathAtOnceOneListens) {
+  const std::string path = (folder / "arena").string();
+  for (int round = 0; round < 50; ++round) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, path.size());
+    const int dead = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    ASSERT_EQ(::bind(dead, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+    ::close(dead);
+    std::atomic<int> listening = 0;
+    std::barrier begin(4), done(4);
+    std::vector<std::thread> servers;
+    for (int i = 0; i < 4; ++i) {
+      servers.emplace_back([&] {
+        begin.arrive_and_wait();
+        try {
+          const Listener listener("ipc://" + path);
+          ++listening;
+          done.arrive_and_wait();
+        } catch (const EndpointError&) {
+          done.arrive_and_wait();
+        }
+      });
+    }
+    for (std::thread& server : servers) server.join();
+    ASSERT_EQ(listening, 1) << "in round " << round;
+  }
 }
 
 TEST_F(EndpointFiles, AFileWhoseNameBeginsWithAStarIsNotDeleted) {
