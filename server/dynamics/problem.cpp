@@ -53,6 +53,12 @@ bool turns(const Tree& tree, double length) {
   });
 }
 
+/// Whether a link turns so far in a substep that its speeds do not say where its points end.
+bool turns_far(const Motion& motion, double length) {
+  constexpr double most = 0.2;  // [rad]
+  return motion.angular.squaredNorm() * length * length > most * most;
+}
+
 }  // namespace
 
 void Problem::clear() {
@@ -173,10 +179,8 @@ void Problem::weigh(Block& block) const {
 /// By how much a link's velocity at a point of contact changes in a second while the speeds of all coordinates stay [m/s^2].
 /// @param tree  its place in the island
 Vector3 Problem::bend(int tree, int link, const Vector3& point, const Contact& contact) const {
-  constexpr double most = 0.2;  // of what turns farther in the substep this does not say where it ends [rad]
   const Motion& motion = trees[tree]->motion[link];
-  const bool turns_far = motion.angular.squaredNorm() * length * length > most * most;
-  if (first_bias[tree] < 0 || (turns_far && !contact.rolls)) return Vector3::Zero();
+  if (first_bias[tree] < 0 || (turns_far(motion, length) && !contact.rolls)) return Vector3::Zero();
   const Motion& spatial = bias[first_bias[tree] + link];
   const Vector3 arm = point - trees[tree]->origin;
   const Vector3 with_it = motion.linear + motion.angular.cross(arm);
@@ -215,10 +219,14 @@ void Problem::turn_together(Block& block, const Contact& contact) const {
     turning += motion.angular;
   }
   for (int r = 1; r < std::min(block.rows, 3); ++r) block.seek[r] = -length / 2 * block.frame.col(r).dot(faster);
+  const auto far = [&](int i) { return turns_far(trees[places[i]]->motion[sides[i].link], length); };
+  if (!contact.rolls && (far(0) || far(1))) return;
   const Vector3 normal = block.frame.col(0);
   const Vector3 normal_turns = contact.rolls ? contact.face_turning.cross(normal) : Vector3(turning.cross(normal));
   block.bend = normal.dot(faster) + normal_turns.dot(speed);
+  const double alone = std::max(0.0, block.seek[0]);
   block.seek[0] -= length / 2 * block.bend;
+  if (block.impulse[0] == 0 && !contact.rolls) block.seek[0] = std::min(block.seek[0], alone);  // whose face an impact is on is not known
 }
 
 void Problem::add(const Contact& contact, int a, int b, int source) {
