@@ -99,23 +99,23 @@ def _command(robot, tick, index, talks):
 
 def _misbehave(order, session, tick):
     """Returns False if the session must be resumed over a new connection."""
-    socket = session._connection.socket
+    stream = session._connection.transport
     draw = random.Random(tick)
     if order == GARBAGE:
         for frames in _garbage(draw, 20):
-            socket.send_multipart(frames)
-        return all(_error(socket) in ("MALFORMED", "TOO_LARGE") for _ in range(20))
+            _send_frames(stream, frames)
+        return all(_error(stream) in ("MALFORMED", "TOO_LARGE") for _ in range(20))
     if order == RUDE:
         for frames in _garbage(draw, 150):
-            socket.send_multipart(frames)
-        while _error(socket) != "TOO_MANY":
+            _send_frames(stream, frames)
+        while _error(stream) != "TOO_MANY":
             pass
         return False
     if order == FLOOD:
         beat = v1.ClientMessage(heartbeat=v1.Heartbeat(sequence=1)).SerializeToString()
         for _ in range(4000):
-            socket.send(beat)
-        while _error(socket) != "TOO_MANY":
+            stream.send(beat)
+        while _error(stream) != "TOO_MANY":
             pass
         return False
     session.abandon()
@@ -131,10 +131,23 @@ def _garbage(draw, count):
                [b"\xff" + draw.randbytes(100_000)], [b'{"command": {"tick": "1"}}'])[i % 5]
 
 
-def _error(socket):
+def _send_frames(stream, frames):
+    """A message of frames, which the client itself has no function for."""
+    for i, frame in enumerate(frames):
+        flags = 2 | (i + 1 < len(frames))  # the size has eight bytes; more frames follow
+        stream._output += bytes((flags,)) + len(frame).to_bytes(8, "big") + frame
+    stream._flush()
+
+
+def _error(stream):
     """The code of the next Error. Skips other messages."""
     while True:
-        message = v1.ServerMessage.FromString(socket.recv())
+        data = stream.receive(1.0)
+        if data is None:
+            if stream.why_closed is not None:
+                raise AssertionError(f"no Error before the end: {stream.why_closed}")
+            continue
+        message = v1.ServerMessage.FromString(data)
         if message.WhichOneof("message") == "error":
             return v1.Error.Code.Name(message.error.code)
 
