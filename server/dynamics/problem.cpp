@@ -220,7 +220,8 @@ void Problem::turn_together(Block& block, const Contact& contact) const {
   }
   for (int r = 1; r < std::min(block.rows, 3); ++r) block.seek[r] = -length / 2 * block.frame.col(r).dot(faster);
   const auto far = [&](int i) { return turns_far(trees[places[i]]->motion[sides[i].link], length); };
-  if (!contact.rolls && (far(0) || far(1))) return;
+  const bool rebounds = contact.restitution > 0;  // then impacts have an order of their own, and energy its bound
+  if (rebounds || (!contact.rolls && (far(0) || far(1)))) return;
   const Vector3 normal = block.frame.col(0);
   const Vector3 normal_turns = contact.rolls ? contact.face_turning.cross(normal) : Vector3(turning.cross(normal));
   block.bend = normal.dot(faster) + normal_turns.dot(speed);
