@@ -206,6 +206,7 @@ void Problem::press(Block& block) const {
 /// Lets what touches stay together where both sides turn: by half of what their points part faster by within the substep while all
 /// coordinates keep their speeds. The normal turns with the side whose face it is, or with both.
 void Problem::turn_together(Block& block, const Contact& contact) const {
+  if (first_bias[block.a] < 0 && first_bias[block.b] < 0) return;
   const LinkIndex sides[] = {contact.a, contact.b};
   const Vector3 points[] = {contact.point, contact.point + contact.until_met};
   const int places[] = {block.a, block.b};
