@@ -66,9 +66,15 @@ void check_tcp(const std::string& endpoint, std::string_view address, bool insec
   const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
   const bool is_number =
       error == std::errc{} && end == port.data() + port.size() && number <= 65535;
-  if (host.empty() || !(port == "*" || is_number)) {
+  if (host.empty() || colon == std::string_view::npos) {
     throw EndpointError(
         fmt::format("{}: not a host and a port; write for example tcp://127.0.0.1:7400", endpoint));
+  }
+  if (port != "*" && !is_number) {
+    throw EndpointError(
+        fmt::format("{}: the port is '{}'; it must be a number from 1 to 65535, or '*' or 0 for "
+                    "any that is free",
+                    endpoint, port));
   }
   if (!insecure && !is_loopback(host)) {
     throw EndpointError(

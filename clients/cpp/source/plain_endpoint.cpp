@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdint>
 #include <cstring>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <thread>
@@ -89,6 +90,19 @@ std::future<SocketAddress> known(SocketAddress address) {
 }
 
 }  // namespace
+
+void check_endpoint(const std::string& endpoint) {
+  const auto refuse = [&](const std::string& why) {
+    throw std::invalid_argument("'" + endpoint + "': " + why);
+  };
+  if (endpoint.starts_with(ipc)) return;
+  if (!endpoint.starts_with(tcp))
+    refuse("not an endpoint to connect to; write ipc:///path or tcp://host:port");
+  const std::size_t colon = endpoint.rfind(':');
+  if (colon <= tcp.size()) refuse("not a host and a port; write tcp://host:port");
+  const std::string port = endpoint.substr(colon + 1);
+  if (!is_port(port)) refuse("the port is '" + port + "'; it must be a number from 1 to 65535");
+}
 
 PlainEndpoint::PlainEndpoint(std::string text, std::string host, std::string port)
     : text_(std::move(text)), host_(std::move(host)), port_(std::move(port)) {}

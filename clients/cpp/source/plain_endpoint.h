@@ -16,6 +16,10 @@ struct SocketAddress {
   socklen_t size = 0;  // [bytes]; 0: there is none
 };
 
+/// That a server can listen at it: no port without a number and no other way than these is waited for.
+/// @throws std::invalid_argument that says what an endpoint is
+void check_endpoint(const std::string& endpoint);
+
 class PlainEndpoint {
  public:
   /// None for what only libzmq connects to: with keys, and what is neither ipc:///path nor tcp://host:port.

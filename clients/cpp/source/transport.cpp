@@ -205,6 +205,7 @@ void ZeroMq::take_event(std::uint16_t event, std::uint32_t value) {
 }  // namespace
 
 std::unique_ptr<Transport> make_transport(const SessionOptions& options) {
+  check_endpoint(options.endpoint);
   if (auto endpoint = PlainEndpoint::of(options)) return std::make_unique<PlainStream>(*std::move(endpoint));
   return std::make_unique<ZeroMq>(options);
 }

@@ -74,6 +74,17 @@ class Found:
         self.answer: Optional[List[Tuple[int, Any]]] = None
 
 
+def check_endpoint(endpoint: str) -> None:
+    """Raises ValueError for one that no server can listen at: it is not waited for."""
+    if endpoint.startswith("ipc://"):
+        return
+    parts = re.fullmatch(r"tcp://(.+):([^:]*)", endpoint, re.DOTALL)
+    if parts is None:
+        raise ValueError(f"endpoint {endpoint!r} is none; write ipc:///path or tcp://host:port")
+    if re.fullmatch(r"[0-9]+", parts[2]) is None or not 0 < int(parts[2][:20]) < 1 << 16:
+        raise ValueError(f"endpoint {endpoint!r}: the port is {parts[2]!r}; it must be a number from 1 to 65535")
+
+
 def address_of(endpoint: str) -> Optional[Address]:
     """None for what only libzmq connects to: what is neither ipc:///path nor tcp://host:port."""
     if endpoint.startswith("ipc://"):

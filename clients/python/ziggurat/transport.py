@@ -8,7 +8,7 @@ import zmq
 import zmq.utils.monitor
 
 from .curve import Curve
-from .plain_stream import KEYS_ARE_MISSING, LINGER, LONGEST_MESSAGE, SLICE, PlainStream, address_of
+from .plain_stream import KEYS_ARE_MISSING, LINGER, LONGEST_MESSAGE, SLICE, PlainStream, address_of, check_endpoint
 
 MONITORED = (zmq.EVENT_CONNECTED | zmq.EVENT_DISCONNECTED | zmq.EVENT_HANDSHAKE_SUCCEEDED
              | zmq.EVENT_HANDSHAKE_FAILED_NO_DETAIL | zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL
@@ -19,6 +19,7 @@ MOST_FAILED_HANDSHAKES = 3
 
 def make_transport(endpoint: str, curve: Optional[Curve]) -> Union["ZeroMq", PlainStream]:
     """Starts to connect. Raises ValueError for an unusable endpoint or keys."""
+    check_endpoint(endpoint)
     address = address_of(endpoint) if curve is None else None
     return ZeroMq(endpoint, curve) if address is None else PlainStream(address)
 

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <chrono>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <zmq.hpp>
@@ -42,6 +43,39 @@ TEST(Transport, AConnectionThatIsRefusedTellsTheSender) {
     }
   };
   EXPECT_THROW(send_for_long(), ConnectionError) << "without a queue ZeroMQ alone would wait without end";
+}
+
+TEST(Endpoints, ThatNoServerCanListenAtAreToldAtOnce) {
+  SessionOptions options;
+  const auto complaint = [&](const std::string& endpoint) -> std::string {
+    options.endpoint = endpoint;
+    try {
+      make_transport(options);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  for (const std::string& key :
+       {std::string(), std::string(40, '0')}) {  // what libzmq connects to, too
+    options.server_key = key;
+    for (const char* port :
+         {"99999", "65536", "0", "-1", "", "http", "*", "1x", " 1", "999999999999999999999"}) {
+      for (const char* host : {"localhost", "127.0.0.1", "[::1]", "127.0.0.1:0;127.0.0.1"}) {
+        EXPECT_NE(complaint("tcp://" + std::string(host) + ":" + port)
+                      .find("'" + std::string(port) + "'; it must be a number from 1 to 65535"),
+                  std::string::npos)
+            << host << ' ' << port;
+      }
+    }
+    for (const char* other :
+         {"tcp://", "tcp://:80", "tcp://host", "inproc://x", "ws://localhost:80", "nonsense", ""}) {
+      EXPECT_NE(complaint(other).find("write "), std::string::npos) << other;
+    }
+  }
+  options.server_key.clear();
+  EXPECT_EQ(complaint("tcp://localhost:65535"), "none");
+  EXPECT_EQ(complaint("ipc://@abstract"), "none");
 }
 
 /// A server that writes what it likes to one connection, which it has shaken hands with.

@@ -94,6 +94,17 @@ class Beginning(SessionCase):
         with self.assertRaises(ValueError):
             ziggurat.connect("nonsense")
 
+    def test_an_endpoint_that_no_server_can_listen_at(self):
+        keys = ziggurat.Curve(*(key.decode() for key in (*zmq.curve_keypair(), zmq.curve_keypair()[0])))
+        for curve in (None, keys):
+            for port in ("99999", "65536", "0", "-1", "", "http", "*", "1x", " 1", "9" * 5000):
+                for host in ("localhost", "127.0.0.1", "[::1]", "127.0.0.1:0;127.0.0.1"):
+                    with self.assertRaisesRegex(ValueError, "it must be a number from 1 to 65535"):
+                        ziggurat.connect(f"tcp://{host}:{port}", connect_timeout=0.05, curve=curve)
+            for other in ("tcp://", "tcp://:80", "tcp://host", "inproc://x", "ws://localhost:80"):
+                with self.assertRaisesRegex(ValueError, "write ipc:///path or tcp://host:port"):
+                    ziggurat.connect(other, connect_timeout=0.05, curve=curve)
+
 
 class Security(SessionCase):
     def setUp(self):
