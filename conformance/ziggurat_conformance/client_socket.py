@@ -11,11 +11,16 @@ import zmq
 import zmq.auth.thread
 import zmq.utils.monitor
 
+from .case import Failed
 from .client_relay import Relay
 from .server_process import free_port
 
 _REBINDING = 5.0  # [s] until a port is free again
-_MOST_WAITING = 100  # messages of each connection, in each direction
+_MOST_WAITING = 100  # messages of each connection that the kit has not read
+# Messages that wait to be sent over a connection, beside one that is being sent. Whatever they are, short ones are in
+# buffers of the system.
+_MOST_TO_SEND = 1
+LONGEST_SEND = 10.0  # [s] that one waits for the client to read
 _SETTLING = 2.0  # [s] until what the relay has passed on is a message, on a busy machine too
 _AROUND_ENCRYPTED = 33  # [bytes] of each frame of an encrypted connection
 _PEER_NAMES = ("Socket-Type", "User-Id")
@@ -61,7 +66,9 @@ class ServerSocket:
         self._socket = self._context.socket(zmq.ROUTER)
         self._socket.setsockopt(zmq.LINGER, 0)
         self._socket.setsockopt(zmq.RCVHWM, _MOST_WAITING)
-        self._socket.setsockopt(zmq.SNDHWM, _MOST_WAITING)
+        self._socket.setsockopt(zmq.SNDHWM, _MOST_TO_SEND)
+        self._socket.setsockopt(zmq.SNDTIMEO, int(1000 * LONGEST_SEND))
+        self._socket.setsockopt(zmq.ROUTER_MANDATORY, 1)  # waits for room, and tells if there is none
         self._socket.setsockopt(zmq.IPC_FILTER_PID, os.getpid())  # the relay alone may connect
         if self._secret_key is not None:
             self._socket.curve_secretkey = self._secret_key
@@ -132,7 +139,15 @@ class ServerSocket:
         return False
 
     def send(self, routing_id: bytes, data: bytes) -> None:
-        self._socket.send_multipart([routing_id, data])
+        """Has no effect if the connection has ended. Raises Failed if the client does not read what came before."""
+        try:
+            self._socket.send_multipart([routing_id, data])
+        except zmq.Again:
+            raise Failed(f"the client has read nothing for {LONGEST_SEND:g} s, and what it was sent before fills all buffers; "
+                         f"{len(data)} bytes are next") from None
+        except zmq.ZMQError as error:
+            if error.errno != zmq.EHOSTUNREACH:
+                raise
 
 
 @dataclass(frozen=True)

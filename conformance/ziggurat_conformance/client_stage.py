@@ -276,7 +276,7 @@ class ClientStage:
             if not self._refuses_token(message):
                 if not message.HasField("heartbeat") or is_new and self.session.state is State.NEW:
                     return message
-                self._tell(protocol.ServerMessage(heartbeat=message.heartbeat))
+                self._tell(protocol.ServerMessage(heartbeat={"sequence": message.heartbeat.sequence}))
             if time.monotonic() >= deadline:  # else they could come without end
                 return None
 

@@ -64,8 +64,9 @@ def of_another_kind():
     time.sleep(60)
 
 
-def dealer():
+def dealer(most_waiting=1000):
     client = zmq.Context.instance().socket(zmq.DEALER)
+    client.set_hwm(most_waiting)
     if "ZIGGURAT_SERVER_KEY" in os.environ:
         client.curve_serverkey = os.environ["ZIGGURAT_SERVER_KEY"].encode()
         with open(os.environ["ZIGGURAT_CURVE_SECRET"], encoding="ascii") as file:
@@ -78,6 +79,19 @@ def dealer():
 def many_frames():
     """One message, which ends: encrypted, the server alone sees where."""
     dealer().send_multipart([b""] * 300_000)
+    time.sleep(60)
+
+
+def long_heartbeats():
+    """Each has 4 MiB of fields that no version knows. What the server says is not read."""
+    client = dealer(most_waiting=1)
+    client.send(protocol.ClientMessage(hello={
+        "version": {"major": 1}, "role": protocol.ROLE_CONTROLLER, "robots": ["*"]}).SerializeToString())
+    client.recv()
+    unknown = b"\xfa\x7f" + b"\x80\x80\x80\x02" + bytes(1 << 22)
+    for sequence in range(1, 100):
+        content = protocol.Heartbeat.FromString(b"\x08" + bytes([sequence]) + unknown)
+        client.send(protocol.ClientMessage(heartbeat=content).SerializeToString())
     time.sleep(60)
 
 
@@ -104,6 +118,7 @@ HOWS = {
     "of-another-kind": of_another_kind,
     "many-frames": many_frames,
     "heartbeats": heartbeats,
+    "long-heartbeats": long_heartbeats,
 }
 
 if __name__ == "__main__":

@@ -5,10 +5,13 @@ import resource
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import zmq
+from ziggurat_conformance import client_socket
 from ziggurat_conformance.case import Failed
 from ziggurat_conformance.client_socket import ServerSocket
 from ziggurat_conformance.keys import Keys
@@ -61,14 +64,18 @@ class Hostile(unittest.TestCase):
     def test_heartbeats_do_not_extend_the_wait(self):
         self.assert_fails("heartbeats", r"the client said nothing; command is expected \(S3\)", "S1.first-tick")
 
+    def test_answers_do_not_repeat_what_is_unknown(self):
+        self.assert_fails("long-heartbeats", r"the client said nothing; command is expected \(S3\)", "S1.first-tick")
+
 
 class WholeMessages(unittest.TestCase):
     """They wait until the kit reads them, however many there are."""
 
-    def dealer(self, server, keys=None):
+    def dealer(self, server, keys=None, most_read=0):
         client = zmq.Context.instance().socket(zmq.DEALER)
         self.addCleanup(client.close, 0)
         client.setsockopt(zmq.SNDHWM, 0)
+        client.setsockopt(zmq.RCVHWM, most_read)
         if keys is not None:
             client.curve_serverkey, client.curve_publickey, client.curve_secretkey = keys.of("controller")
         client.connect(server.endpoint)
@@ -91,6 +98,32 @@ class WholeMessages(unittest.TestCase):
             self.assertEqual(1 << 20, len(client.recv()))
             self.assertLess(server._relay._bytes, 2000)  # of the handshake
             self.assertLess(server._relay._frames, 10)
+
+    def test_few_bytes_wait_for_a_client_that_reads_nothing(self):
+        keys = Keys()
+        for secret, of_client in ((None, None), (keys.server[1], keys)):
+            with unittest.mock.patch.object(client_socket, "LONGEST_SEND", 0.5):
+                server = ServerSocket(secret)
+                self.addCleanup(server.destroy)
+                client = self.dealer(server, of_client, most_read=1)
+                client.send(b"question")
+                routing_id = server.receive(20.0).routing_id
+                sent = 0
+                with self.assertRaisesRegex(Failed, "the client has read nothing for 0.5 s"):
+                    for _ in range(100):
+                        server.send(routing_id, bytes(8 << 20))
+                        sent += 1
+                self.assertLess(sent, 8)  # libzmq reads two in the client
+                for _ in range(sent):
+                    self.assertEqual(8 << 20, len(client.recv()))
+                for i in range(2000):  # short ones wait for nothing, and none is lost
+                    server.send(routing_id, b"%d" % i)
+                for i in range(2000):
+                    self.assertEqual(b"%d" % i, client.recv())
+                client.close(0)
+                while server.connections():
+                    time.sleep(0.01)
+                server.send(routing_id, b"to no client")
 
     def test_a_server_may_be_closed_and_opened_again(self):
         server = ServerSocket()
