@@ -14,6 +14,8 @@ import threading
 import time
 from typing import Any, List, Optional, Tuple
 
+from .output_queue import OutputQueue
+
 # Wall times [s].
 SLICE = 0.5  # of a wait
 LINGER = 1.0  # time to send the last messages when a session is closed
@@ -109,7 +111,7 @@ class PlainStream:
         self._handshake_end = 0.0
         self._has_greeted = self._was_open = False
         self._handshake = b""  # of our end, what is not sent yet
-        self._output = bytearray()  # messages; sent when the connection is open
+        self._output = OutputQueue()  # messages; sent when the connection is open
         self._input = bytearray()
         self._missing = 0  # of the first frame of the input [bytes]
         self.has_more = False  # the last message goes on in another frame
@@ -152,8 +154,7 @@ class PlainStream:
                     self._fill() if self._stage != _OPEN else self._drop()  # the server is gone
         size = len(data)
         header = bytes((0, size)) if size < 256 else b"\x02" + size.to_bytes(8, "big")
-        self._output += header
-        self._output += data
+        self._output.add(header + data)
         self._flush()
         return True
 
@@ -312,7 +313,7 @@ class PlainStream:
             self._flush()
         elif body.startswith(b"\x04PING") and len(body) >= 7 and len(self._output) < _MOST_READ:
             pong = b"\x04PONG" + body[7:]
-            self._output += bytes((_COMMAND, len(pong))) + pong if len(pong) < 256 else b""
+            self._output.add(bytes((_COMMAND, len(pong))) + pong if len(pong) < 256 else b"")
             self._flush()
 
     def _wait(self, seconds: float, events: int) -> bool:
@@ -344,7 +345,7 @@ class PlainStream:
             if self._handshake:
                 self._handshake = self._handshake[self._socket.send(self._handshake):]
             if self._stage == _OPEN and self._output and not self._handshake:
-                del self._output[:self._socket.send(self._output)]
+                self._output.send(self._socket.send)
         except OSError:
             pass  # it takes nothing now; or it is broken, and what the server sent before may still be read
 
