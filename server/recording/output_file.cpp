@@ -18,10 +18,33 @@ constexpr std::size_t full_buffer = std::size_t{256} << 10;  // [bytes]
   throw WriteError(fmt::format("{}: cannot be written: {}", path == "-" ? "stdout" : path, std::strerror(error)));
 }
 
+/// Opens what is there unless another user has planted it, also after that was looked at.
+int open_existing(const std::string& path, int flags) {
+  if (const auto planted = planted_at(path)) throw WriteError(fmt::format("{}: cannot be written: it is {}", path, *planted));
+  struct stat status {};
+  const bool is_link = ::lstat(path.c_str(), &status) == 0 && S_ISLNK(status.st_mode);
+  const int file = ::open(path.c_str(), flags | O_CREAT | (is_link ? 0 : O_NOFOLLOW), 0666);
+  if (file < 0) fail(path, errno);
+  return file;
+}
+
 }  // namespace
 
+std::optional<std::string> planted_at(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  struct stat there {}, around {};
+  if (::lstat(path.c_str(), &there) != 0 || ::stat(folder.c_str(), &around) != 0) return std::nullopt;
+  const bool is_trusted = there.st_uid == ::geteuid() || there.st_uid == around.st_uid;
+  if ((around.st_mode & S_IWOTH) == 0 || is_trusted) return std::nullopt;
+  const char* what = S_ISLNK(there.st_mode) ? "a link" : S_ISREG(there.st_mode) ? "a file" : "a pipe or device";
+  return fmt::format("{} of another user in a folder that all can write", what);
+}
+
 int open_alone(const std::string& path, int flags) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | flags, 0666);
+  flags |= O_WRONLY | O_APPEND | O_CLOEXEC;
+  int file = ::open(path.c_str(), flags | O_CREAT | O_EXCL, 0666);
+  if (file < 0 && errno == EEXIST) file = open_existing(path, flags);
   if (file < 0) fail(path, errno);
   struct stat status {};
   if (::fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) return file;

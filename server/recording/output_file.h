@@ -17,9 +17,13 @@ class WriteError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What another user has put at a place in a folder that all can write, as /tmp: a file, a pipe, or a link that could lead to
+/// a file of ours. None if it is ours, of the folder's owner, or not there.
+std::optional<std::string> planted_at(const std::string& path);
+
 /// Opens a file to write to it alone, and empties it. What is written goes to its end, also behind a program that shortens it.
-/// A pipe or a device may have several writers. @throws WriteError if it can't be created, or another program writes to it,
-/// which would mix both
+/// A pipe or a device may have several writers. @throws WriteError if it can't be created, another user has planted it, or
+/// another program writes to it, which would mix both
 int open_alone(const std::string& path, int flags = 0);
 
 /// Whether an open file has a name, by which it can be found when it is closed.

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <string_view>
 
+#include "recording/output_file.h"
 #include "text/numbers.h"
 
 namespace ziggurat::recording {
@@ -110,6 +111,10 @@ bool is_one_file(const std::string& a, const std::string& b) {
 
 void check_output(const OutputName& output, std::span<const TakenFile> taken) {
   check_ending(output);
+  if (const auto planted = output.path == "-" ? std::nullopt : planted_at(output.path)) {
+    throw text::UsageError(
+        fmt::format("{} is '{}', {}; name another file", output.option, output.path, *planted));
+  }
   for (const TakenFile& file : taken) {
     if (!is_one_file(output.path, file.path)) continue;
     throw text::UsageError(

@@ -2,9 +2,15 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "file_text.h"
+#include "recording/output_name.h"
+#include "text/numbers.h"
 
 namespace ziggurat::recording {
 namespace {
@@ -80,6 +86,55 @@ TEST(OutputFile, ReportsThatItWasShortened) {
     EXPECT_EQ(std::string(error.what()), path + ": was shortened by another program while it was written: 5 bytes of 20 are lost");
   }
   EXPECT_EQ(text_of(path), "a another line\n") << "without a hole";
+}
+
+/// A folder that all can write, as /tmp.
+class SharedFolder : public testing::Test {
+ protected:
+  static constexpr uid_t another = 12'345;
+
+  SharedFolder() {
+    ::mkdir(folder_.c_str(), 0700);
+    ::chmod(folder_.c_str(), 01777);
+    std::ofstream(kept_) << "kept";
+  }
+  ~SharedFolder() override { std::filesystem::remove_all(folder_); }
+
+  static std::string complaint(const std::string& path) {
+    try {
+      OutputFile file(path);
+      return "none";
+    } catch (const WriteError& error) {
+      return error.what();
+    }
+  }
+
+  const std::string folder_ = scratch("folder"), place_ = folder_ + "/out.csv", kept_ = folder_ + "/kept";
+};
+
+TEST_F(SharedFolder, WhatAnotherUserHasPlantedIsNotWrittenTo) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root makes files of others";
+  ASSERT_EQ(::chown(folder_.c_str(), 1, 1), 0) << "not of root, whose files would be trusted";
+  ASSERT_EQ(::symlink(kept_.c_str(), place_.c_str()), 0);
+  EXPECT_EQ(complaint(place_), "none") << "a link of ours";
+  std::ofstream(kept_) << "kept";
+  ASSERT_EQ(::lchown(place_.c_str(), another, another), 0);
+  EXPECT_EQ(complaint(place_), place_ + ": cannot be written: it is a link of another user in a folder that all can write");
+  EXPECT_EQ(text_of(kept_), "kept");
+  EXPECT_THROW(check_output({"--csv", place_, {".csv"}}), text::UsageError);
+  ::unlink(place_.c_str());
+  std::ofstream(place_) << "theirs";
+  EXPECT_EQ(complaint(place_), "none") << "a file of ours";
+  ASSERT_EQ(::chown(place_.c_str(), another, another), 0);
+  EXPECT_EQ(complaint(place_), place_ + ": cannot be written: it is a file of another user in a folder that all can write");
+  ASSERT_EQ(::chmod(folder_.c_str(), 0775), 0);
+  EXPECT_EQ(complaint(place_), "none") << "in a folder of few";
+}
+
+TEST_F(SharedFolder, LinksOfOursMayLeadToFilesThatAreNotThere) {
+  ASSERT_EQ(::symlink((folder_ + "/new").c_str(), place_.c_str()), 0);
+  EXPECT_EQ(complaint(place_), "none");
+  EXPECT_TRUE(std::filesystem::exists(folder_ + "/new"));
 }
 
 TEST(OutputFile, ReportsWhyItCannotBeCreated) {
