@@ -1,11 +1,14 @@
 #include "cli/whole_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <string_view>
@@ -51,6 +54,11 @@ WholeFile::WholeFile(std::string out) : out_(std::move(out)), part_(out_) {
   if (out_ == "-" || (fs::exists(out_, error) && !fs::is_regular_file(out_, error))) return;
   target_ = fs::is_symlink(out_, error) ? fs::weakly_canonical(out_, error).string() : out_;
   part_ = fmt::format("{}.{}.part", target_, ::getpid());  // another process may write the same
+  // What another user has put there, as a link to a file of ours, is not written to.
+  fs::remove(part_, error);
+  const int file = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (file < 0) throw std::runtime_error(fmt::format("{} can't be written: {}", out_, std::strerror(errno)));
+  ::close(file);
   unfinished = part_.c_str();
   handle_interruptions();
 }

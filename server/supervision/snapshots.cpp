@@ -1,6 +1,8 @@
 #include "supervision/snapshots.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <span>
@@ -39,6 +41,21 @@ std::vector<std::byte> read_file(const std::filesystem::path& path) {
   file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!file) throw simulation::SnapshotError("The file can't be read.");
   return bytes;
+}
+
+/// Writes a new file. What stood there, which may be a link of somebody who can write to the folder, is not followed.
+bool write_new(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  ::unlink(path.c_str());
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (file < 0) return false;
+  ssize_t written = 0;
+  for (; !bytes.empty() && written >= 0; bytes = bytes.subspan(static_cast<std::size_t>(written))) {
+    do {
+      written = ::write(file, bytes.data(), bytes.size());
+    } while (written < 0 && errno == EINTR);
+    if (written < 0) break;
+  }
+  return ::close(file) == 0 && bytes.empty();
 }
 
 }  // namespace
@@ -98,13 +115,10 @@ void Snapshots::write(const std::string& name, const Snapshot& snapshot, const W
                     longest_file >> 20));
   }
   const std::filesystem::path path = path_of(name), partial = path.string() + ".part";
-  std::ofstream file(partial, std::ios::binary | std::ios::trunc);
-  file.write(reinterpret_cast<const char*>(bytes.data()),
-             static_cast<std::streamsize>(bytes.size()));
-  file.close();
+  const bool is_written = write_new(partial, bytes);
   std::error_code error;
-  if (file) std::filesystem::rename(partial, path, error);
-  if (file && !error) return;
+  if (is_written) std::filesystem::rename(partial, path, error);
+  if (is_written && !error) return;
   std::filesystem::remove(partial, error);
   throw simulation::SnapshotError("The snapshot can't be written to the server's folder.");
 }

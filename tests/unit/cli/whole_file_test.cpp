@@ -40,6 +40,21 @@ TEST_F(WholeFileTest, AppearsWhenItIsKept) {
   EXPECT_EQ(only_file(), "out.csv: new\n");
 }
 
+TEST_F(WholeFileTest, IsNotWrittenThroughALinkThatWasThereBefore) {
+  const std::string part = WholeFile(out_).path();
+  {
+    TemporaryFolder other;
+    std::ofstream(other.path / "precious") << "kept";
+    fs::create_symlink(other.path / "precious", part);
+    WholeFile file(out_);
+    ASSERT_EQ(file.path(), part);
+    std::ofstream(file.path()) << "new";
+    file.keep();
+    EXPECT_EQ(fs::file_size(other.path / "precious"), 4U);
+  }
+  EXPECT_EQ(only_file(), "out.csv: new\n");
+}
+
 TEST_F(WholeFileTest, IsRemovedIfItIsNotKept) {
   {
     const WholeFile file(out_);
