@@ -9,7 +9,7 @@ namespace {
 
 epoll_event event_of(std::uint64_t id, bool wants_to_read, bool wants_to_write) {
   epoll_event event{};
-  event.events = (wants_to_read ? EPOLLIN : 0U) | (wants_to_write ? EPOLLOUT : 0U);
+  event.events = (wants_to_read ? EPOLLIN | EPOLLRDHUP : 0U) | (wants_to_write ? EPOLLOUT : 0U);
   event.data.u64 = id;
   return event;
 }
@@ -42,7 +42,9 @@ std::optional<ReadyList::Ready> ReadyList::next() {
   }
   if (!has_more()) return std::nullopt;
   const epoll_event& event = events_[static_cast<std::size_t>(next_++)];
-  return Ready{event.data.u64, (event.events & ~EPOLLOUT) != 0, (event.events & EPOLLOUT) != 0};
+  const std::uint32_t events = event.events;
+  return Ready{event.data.u64, (events & ~EPOLLOUT) != 0, (events & EPOLLOUT) != 0,
+               (events & (EPOLLRDHUP | EPOLLHUP | EPOLLERR)) != 0};
 }
 
 }  // namespace ziggurat::network

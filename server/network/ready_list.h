@@ -17,6 +17,7 @@ class ReadyList {
     std::uint64_t id = 0;
     bool can_read = false;  ///< or the connection is over
     bool can_write = false;
+    bool has_ended = false;  ///< the other end is closed; what it sent before can still be read
   };
 
   /// @throws std::system_error

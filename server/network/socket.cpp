@@ -168,13 +168,15 @@ void Socket::Group::give_turn(PeerSocket& peer) {
   peer.has_turn = true;
 }
 
-/// A connection that is ready gets a turn. What it sends waits in the system until it has had all
+/// A connection that is ready gets a turn, unless it ended within its handshake. What it sends waits in the system until it has had all
 /// messages that are here already.
 void Socket::read_from(const ReadyList::Ready& ready) {
   if (ready.id < PeerTable::first_id) return accept(entrances_[ready.id]);
   PeerSocket* peer = peers_.find(ready.id);
   if (peer == nullptr) return;
   peers_.act(*peer, [&](PeerSocket& from) {
+    // A step of a handshake that no answer can reach would cost the time of those who wait.
+    if (ready.has_ended && !from.is_open()) return from.give_up();
     if (ready.can_write) from.flush();
     if (ready.can_read && !from.is_over() && !from.has_turn) from.read();
   });

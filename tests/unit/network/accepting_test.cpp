@@ -6,9 +6,13 @@
 #include <chrono>
 #include <vector>
 
+#include "network/curve_client.h"
+#include "network/keys.h"
 #include "network/local_server.h"
 #include "network/raw_client.h"
 #include "network/socket.h"
+#include "network/time_share.h"
+#include "temporary_folder.h"
 
 namespace ziggurat::network {
 namespace {
@@ -57,6 +61,30 @@ TEST(Accepting, GoesOnByItselfAfterACrowd) {
   EXPECT_FALSE(serve(socket, milliseconds{50}));
   const Descriptor late = connect_and_send(endpoint, greeting_and(1, "late"));
   EXPECT_TRUE(serve(socket, patience.timeout));
+}
+
+/// What clients cost that connect, say something and are gone before it is read.
+ThreadClock::duration cost_of_gone(Socket& socket, const std::string& said) {
+  constexpr int clients = 100;
+  for (int i = 0; i < clients; ++i) connect_and_send(socket.endpoints().front(), said);
+  const auto begin = ThreadClock::now();
+  EXPECT_FALSE(serve(socket, milliseconds{200}));
+  return ThreadClock::now() - begin;
+}
+
+TEST(Accepting, WhoEndsWithinTheHandshakeIsNotListenedTo) {
+  using namespace std::string_literals;
+  TemporaryFolder folder;
+  write_key_pair(folder / "server");
+  Config config = local_config();
+  config.curve = {read_secret_key(folder / "server.secret"), {}};
+  Socket socket(config);
+  const std::string greeting = "\xFF\0\0\0\0\0\0\0\x01\x7F\x03\0CURVE"s + std::string(47, '\0');
+  const zmtp::CurveKeys keys(*config.curve);
+  const zmtp::CurveClient client(zmtp::CurveClient::make_pair(), keys.public_key());
+  cost_of_gone(socket, greeting);
+  const auto of_greetings = cost_of_gone(socket, greeting), of_hellos = cost_of_gone(socket, greeting + client.hello());
+  EXPECT_LT(of_hellos.count(), 1.6 * static_cast<double>(of_greetings.count())) << "or keys are multiplied for nothing";
 }
 
 }  // namespace
