@@ -135,7 +135,7 @@ def _send_frames(stream, frames):
     """A message of frames, which the client itself has no function for."""
     for i, frame in enumerate(frames):
         flags = 2 | (i + 1 < len(frames))  # the size has eight bytes; more frames follow
-        stream._output += bytes((flags,)) + len(frame).to_bytes(8, "big") + frame
+        stream._output.add(bytes((flags,)) + len(frame).to_bytes(8, "big") + frame)
     stream._flush()
 
 
