@@ -136,20 +136,47 @@ Station station(const Line& side, btScalar along, const Line& other, const btVec
   return {on_axis + normal * other.radius, (height < 0 ? height : length) - rim - other.radius};
 }
 
-/// The side of A along an edge or side of B: the two ends of what they share, each with its own distance.
-void add_line(const Body& a, const Body& b, const Nearest& near, btScalar reach, Contacts& out) {
+/// The side of A along an edge or side of B, and the part that they share, from the middle of A's [m].
+struct Shared {
   Line of_a, of_b;
-  if (!side(a, of_a) || btFabs(of_a.direction.dot(near.b_to_a)) > almost_across ||
-      !edge_along(b, near.b_to_a, near.on_b, of_a.direction, of_b)) {
-    return;
+  btScalar from = 0, to = 0;
+};
+
+/// @return  whether they lie so
+bool lie_along(const Body& a, const Body& b, const Nearest& near, Shared& out) {
+  if (!side(a, out.of_a) || btFabs(out.of_a.direction.dot(near.b_to_a)) > almost_across ||
+      !edge_along(b, near.b_to_a, near.on_b, out.of_a.direction, out.of_b)) {
+    return false;
   }
-  const btScalar offset = of_a.direction.dot(of_b.middle - of_a.middle);
-  const btScalar share = of_b.half_length * btFabs(of_a.direction.dot(of_b.direction));
-  const btScalar from = btMax(-of_a.half_length, offset - share);
-  const btScalar to = btMin(of_a.half_length, offset + share);
-  if (to - from < btScalar(0.1) * of_a.half_length) return;
-  for (const btScalar along : {from, to}) {
-    const Station end = station(of_a, along, of_b, near.b_to_a);
+  const btScalar offset = out.of_a.direction.dot(out.of_b.middle - out.of_a.middle);
+  const btScalar share = out.of_b.half_length * btFabs(out.of_a.direction.dot(out.of_b.direction));
+  out.from = btMax(-out.of_a.half_length, offset - share);
+  out.to = btMin(out.of_a.half_length, offset + share);
+  return out.to - out.from >= btScalar(0.1) * out.of_a.half_length;
+}
+
+/// Takes the direction from the edge to the axis, if it separates better: exact where they touch, where GJK finds none.
+void look_across(const Body& a, const Body& b, Nearest& near) {
+  Shared shared;
+  if (!lie_along(a, b, near, shared)) return;
+  const Line &of_a = shared.of_a, &of_b = shared.of_b;
+  const btVector3 here = of_a.middle + of_a.direction * ((shared.from + shared.to) / 2);
+  const btVector3 on_axis = of_b.middle + of_b.direction * of_b.direction.dot(here - of_b.middle);
+  btVector3 across = here - on_axis;
+  across -= of_a.direction * of_a.direction.dot(across);
+  const btScalar length = across.length();
+  if (!(length > SIMD_EPSILON)) return;
+  across /= length;
+  const btScalar distance = separation(a, b, across);
+  if (distance > near.distance) near = {across, on_axis + across * of_b.radius, distance, true};
+}
+
+/// The two ends of what a side and an edge share, each with its own distance.
+void add_line(const Body& a, const Body& b, const Nearest& near, btScalar reach, Contacts& out) {
+  Shared shared;
+  if (!lie_along(a, b, near, shared)) return;
+  for (const btScalar along : {shared.from, shared.to}) {
+    const Station end = station(shared.of_a, along, shared.of_b, near.b_to_a);
     if (end.distance <= reach) out.add(end.on_other, btMax(end.distance, near.distance));
   }
 }
@@ -210,6 +237,7 @@ void clipped_contacts(const Body& a, const Body& b, const Placement& at, Contact
   }
   if (near.distance == -BT_LARGE_FLOAT) return;
   if (near.apart && at.support != Support::lowest) sharpen(near, face, nearest(a, b, at, 0));
+  look_across(a, b, near);
   if (near.distance > at.reach) return;
   out.normal = near.b_to_a;
   add_line(a, b, near, at.reach, out);

@@ -115,6 +115,30 @@ TEST(Lines, ALyingCylinderTouchesAlongItsSide) {
   EXPECT_EQ(parallel.count, 2);
 }
 
+// GJK finds no direction where they touch, and one between the faces of the edge where their cores are shrunk.
+TEST(Lines, ALyingCylinderTouchesAnEdgeThatIsJustBesideItsLine) {
+  const btScalar radius = 0.05, quarter = std::numbers::pi / 2;
+  const Cylinder log{radius, 0.05};
+  const Box table{{0.15, 0.2, 0.05}};
+  for (const btScalar above : {-1e-7, -1e-9, 0.0, 1e-9}) {
+    for (const btScalar beyond : {0.0, 1e-10, 1e-9, 3e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4}) {
+      for (const btScalar turn : {0.0, 1e-8, 1e-4}) {
+        SCOPED_TRACE(::testing::Message() << "above " << above << ", beyond " << beyond << ", turn " << turn);
+        btTransform pose = at(0.15 + beyond, 0.03, 0.05 + radius + above, {0, 0, 1}, turn);
+        pose.setRotation(pose.getRotation() * btQuaternion(btVector3(1, 0, 0), quarter));
+        const Contacts contacts = find(log, pose, table, at(0, 0, 0), 1e-3, Support::face);
+        EXPECT_EQ(contacts.count, 2);
+        EXPECT_NEAR(contacts.normal.z(), 1, 1e-4);
+        const btScalar off = std::abs(beyond) + 0.05 * turn;  // of one end
+        for (int i = 0; i < contacts.count; ++i) {
+          EXPECT_GT(contacts.points[i].distance, above - 1e-9);
+          EXPECT_LT(contacts.points[i].distance, above + off * off / radius + 1e-9);
+        }
+      }
+    }
+  }
+}
+
 TEST(Edges, OfCrossedBoxesTouchAtOnePoint) {
   const btScalar eighth = std::numbers::pi / 4;
   const btScalar edge = 0.005 * std::numbers::sqrt2;
