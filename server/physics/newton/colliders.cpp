@@ -91,11 +91,11 @@ struct Colliders::Hits final : btBroadphaseAabbCallback {
   std::vector<std::size_t>& found;
 };
 
-double least_reach(double length) { return 1e-3 + 15 * length * length; }
-
 Colliders::Colliders() : filter_(std::make_unique<Filter>(groups)) {
   broadphase_.getOverlappingPairCache()->setOverlapFilterCallback(filter_.get());
 }
+
+double Colliders::least_reach(double length) const { return 1e-3 + std::max(15.0, 1.5 * gravity) * length * length; }
 
 /// Takes all pairs out first, at once: a box without pairs is gone in logarithmic time.
 Colliders::~Colliders() {

@@ -88,12 +88,16 @@ class Colliders {
     Collider collider;
   };
   std::vector<Thrown> thrown;
+  double gravity = 0;  ///< what pulls all that falls [m/s^2]
   /// Entities that move by more than half of what does not move yet may come, see least_reach(): two of them may strike each other so fast.
   std::vector<int> fast;
 
   bool rests(const Collider& collider) const {
     return !collider.present || groups[collider.group].rests;
   }
+
+  /// How far a surface may come within a substep without moving yet [m].
+  double least_reach(double length) const;
 
   void add_floor(const scene::Surface& surface);
   /// Those of a body whose tree is placed.
@@ -147,8 +151,5 @@ class Colliders {
   std::vector<Bounds> bounds_;  // of a group's colliders
   std::vector<std::size_t> followed_, hits_;
 };
-
-/// How far a surface may come within a substep without moving yet [m].
-double least_reach(double length);
 
 }  // namespace ziggurat::physics

@@ -131,10 +131,10 @@ struct Turning {
 };
 
 /// The points of two colliders that may touch within the substep.
+/// @param slack        what counts as close [m]
 /// @param most_points  of those that tumble
-contact::Contacts look(const Collider& a, const Collider& b, double length, int most_points, Turning& out) {
+contact::Contacts look(const Collider& a, const Collider& b, double length, double slack, int most_points, Turning& out) {
   constexpr double far = 0.2;  // a swing whose way bends [rad]
-  const double slack = least_reach(length);
   const double reach = a.reach + b.reach;
   contact::Contacts found =
       contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::face,
@@ -158,7 +158,8 @@ contact::Contacts look(const Collider& a, const Collider& b, double length, int 
 }
 
 /// The points where two colliders may touch as something throws them within the substep.
-contact::Contacts look_at_thrown(const Colliders& colliders, std::size_t a, std::size_t b, double length, int most_points, Turning& out) {
+contact::Contacts look_at_thrown(const Colliders& colliders, std::size_t a, std::size_t b, double length, double slack, int most_points,
+                                 Turning& out) {
   const auto ways_of = [&](std::size_t index) {
     std::vector<const Collider*> ways{&colliders.all[index]};
     for (const Colliders::Thrown& thrown : colliders.thrown) {
@@ -170,7 +171,7 @@ contact::Contacts look_at_thrown(const Colliders& colliders, std::size_t a, std:
   for (const Collider* way_a : of_a) {
     for (const Collider* way_b : of_b) {
       if (way_a == of_a[0] && way_b == of_b[0]) continue;
-      const contact::Contacts found = look(*way_a, *way_b, length, most_points, out);
+      const contact::Contacts found = look(*way_a, *way_b, length, slack, most_points, out);
       if (found.count > 0) return found;
     }
   }
@@ -290,9 +291,10 @@ void Contacts::meet(Pair& pair, double length) {
   resting_ += pair.rests;
   awake_ += !pair.rests;
   Turning turning;
-  contact::Contacts found = look(a, b, length, most_points, turning);
+  const double slack = colliders_.least_reach(length);
+  contact::Contacts found = look(a, b, length, slack, most_points, turning);
   if (found.count == 0 && !colliders_.thrown.empty()) {
-    found = look_at_thrown(colliders_, pair.a, pair.b, length, most_points, turning);
+    found = look_at_thrown(colliders_, pair.a, pair.b, length, slack, most_points, turning);
   }
   if (turning.swing > 0) swings.push_back({static_cast<int>((a.swings ? a : b).entity), turning.swing});
   add(found, pair, length);

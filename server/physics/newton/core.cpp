@@ -1,6 +1,7 @@
 #include "physics/newton/core.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "physics/build.h"
@@ -50,7 +51,7 @@ void share_mechanism(dynamics::Tree& tree, const std::vector<dynamics::Tree>& tr
 
 }  // namespace
 
-NewtonCore::NewtonCore(const scene::Physics& physics) : settings_(physics) {}
+NewtonCore::NewtonCore(const scene::Physics& physics) : settings_(physics) { colliders_.gravity = std::abs(physics.gravity.value_or(0)); }
 
 Body NewtonCore::add(const scene::Entity& entity, std::size_t number) {
   Body body = make_body(entity, settings_, number);
