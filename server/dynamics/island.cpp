@@ -316,8 +316,9 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   add(outcome, report_);
   const bool rebounding = rebounds(problem_);
   if (rebounding) bound_impacts(problem_, solver_, work_, rebound_);
-  write_impulses(problem_, contacts_, servos_, limits_);
   if (rebounding) free_.assign(free_.size(), free = 0);  // its energy is bounded as a whole
+  if (free > 0) take_back_pushes(problem_, free_);
+  write_impulses(problem_, contacts_, servos_, limits_);
   if (free > 0 && fly_free(first_tree, last_tree, first_item, last_item)) return settle(first_tree, last_tree, false);
   const double before = energy_if_passive(problem_);
   note_excesses(problem_, work_, excesses_);

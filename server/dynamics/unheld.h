@@ -22,4 +22,8 @@ struct FreeVelocities {
 std::size_t find_free(const Problem& problem, std::span<const Servo> servos, Workspace& work, FreeVelocities& memory,
                       std::vector<unsigned char>& out);
 
+/// Contacts of trees that fly gave nothing.
+/// @param free  see find_free()
+void take_back_pushes(Problem& problem, std::span<const unsigned char> free);
+
 }  // namespace ziggurat::dynamics

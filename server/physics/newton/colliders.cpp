@@ -95,7 +95,7 @@ Colliders::Colliders() : filter_(std::make_unique<Filter>(groups)) {
   broadphase_.getOverlappingPairCache()->setOverlapFilterCallback(filter_.get());
 }
 
-double Colliders::least_reach(double length) const { return 1e-3 + std::max(15.0, 1.5 * gravity) * length * length; }
+double least_reach(const Colliders& colliders, double length) { return 1e-3 + std::max(15.0, 1.5 * colliders.gravity) * length * length; }
 
 /// Takes all pairs out first, at once: a box without pairs is gone in logarithmic time.
 Colliders::~Colliders() {
@@ -238,7 +238,7 @@ void Colliders::keep_in_box(ColliderGroup& group, double step, bool shrinks) {
 void Colliders::follow(const dynamics::System& system, double length) {
   for (std::size_t i = settled_; i < groups.size(); ++i) follow(groups[i], system, length);  // with boxes that last
   settle();
-  const double least = least_reach(length);
+  const double least = least_reach(*this, length);
   woke = false;
   followed_.clear();
   thrown.clear();
@@ -291,7 +291,7 @@ double Colliders::follow(ColliderGroup& group, const dynamics::System& system, d
   if (group.moves) fetch_after(group, system);
   for (std::size_t i = group.first; i < group.first + group.count; ++i) {
     Collider& collider = all[i];
-    collider.reach = least_reach(length);
+    collider.reach = least_reach(*this, length);
     if (!group.moves) continue;
     place(collider, system.trees[group.entity]);
     const double speed = speed_of(collider);
@@ -299,7 +299,7 @@ double Colliders::follow(ColliderGroup& group, const dynamics::System& system, d
     fastest = std::max(fastest, speed);
   }
   enclose(group);
-  if (length * fastest > least_reach(length) / 2) fast.push_back(static_cast<int>(group.entity));
+  if (length * fastest > least_reach(*this, length) / 2) fast.push_back(static_cast<int>(group.entity));
   return length * fastest;
 }
 
@@ -308,7 +308,7 @@ bool Colliders::widen(std::span<const int> trees, const dynamics::System& system
   const auto is_known = [&](std::size_t index, const Collider& moved) {
     const auto moves_so = [&](const Collider& known) {
       const double turns = (moved.angular_velocity - known.angular_velocity).length() * moved.radius;
-      return length * ((moved.velocity - known.velocity).length() + turns) <= least_reach(length);
+      return length * ((moved.velocity - known.velocity).length() + turns) <= least_reach(*this, length);
     };
     return moves_so(all[index]) || std::ranges::any_of(thrown, [&](const Thrown& known) {
       return known.index == index && moves_so(known.collider);
@@ -322,7 +322,7 @@ bool Colliders::widen(std::span<const int> trees, const dynamics::System& system
         place(moved, system.trees[tree]);
         if (is_known(i, moved)) continue;
         const double speed = speed_of(moved);
-        all[i].reach = moved.reach = std::max(all[i].reach, btScalar(least_reach(length) + 1.3 * length * speed));
+        all[i].reach = moved.reach = std::max(all[i].reach, btScalar(least_reach(*this, length) + 1.3 * length * speed));
         thrown.push_back({i, std::move(moved)});
         fastest = std::max(fastest, speed);
       }

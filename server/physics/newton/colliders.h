@@ -96,9 +96,6 @@ class Colliders {
     return !collider.present || groups[collider.group].rests;
   }
 
-  /// How far a surface may come within a substep without moving yet [m].
-  double least_reach(double length) const;
-
   void add_floor(const scene::Surface& surface);
   /// Those of a body whose tree is placed.
   /// @throws std::bad_alloc; then nothing changes
@@ -151,5 +148,8 @@ class Colliders {
   std::vector<Bounds> bounds_;  // of a group's colliders
   std::vector<std::size_t> followed_, hits_;
 };
+
+/// How far a surface may come within a substep without moving yet [m].
+double least_reach(const Colliders& colliders, double length);
 
 }  // namespace ziggurat::physics

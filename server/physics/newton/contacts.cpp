@@ -291,7 +291,7 @@ void Contacts::meet(Pair& pair, double length) {
   resting_ += pair.rests;
   awake_ += !pair.rests;
   Turning turning;
-  const double slack = colliders_.least_reach(length);
+  const double slack = least_reach(colliders_, length);
   contact::Contacts found = look(a, b, length, slack, most_points, turning);
   if (found.count == 0 && !colliders_.thrown.empty()) {
     found = look_at_thrown(colliders_, pair.a, pair.b, length, slack, most_points, turning);

@@ -231,7 +231,7 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
 bool NewtonCore::foresee(const Share& share, std::span<dynamics::Contact>& contacts, bool& woke) {
   constexpr int most_blows = 8;
   bool any = false;
-  for (int i = 0; i < most_blows && system_.foresee(limits_, colliders_.least_reach(share.length), colliders_.fast, foresight_); ++i) {
+  for (int i = 0; i < most_blows && system_.foresee(limits_, least_reach(colliders_, share.length), colliders_.fast, foresight_); ++i) {
     const SpeedsComeBack at_the_end{system_, foresight_};
     swap_speeds(system_.trees, foresight_);
     if (!colliders_.widen(foresight_.trees, system_, share.length)) break;

@@ -201,6 +201,44 @@ TEST(NewtonCollision, NipsALightBallWithoutThrowingIt) {
   }
 }
 
+// A body that turns was let fly where its contact seemed to do no more than push out what is pressed in; the other one got the impulse: 0.1 N s.
+TEST(NewtonCollision, GivesOneWhatItTakesFromTheOther) {
+  constexpr double height = 0.08;
+  for (const double hz : {500, 1000, 2000}) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> share(0, 1);
+    for (int heap = 0; heap < 12; ++heap) {
+      World world(newton(false, 0), 1 / hz);
+      std::vector<double> masses;
+      std::vector<Vector3> momenta;
+      for (int i = 0; i < 8; ++i) {
+        const Vector3 place(0.2 * (i & 1), 0.1 * (i & 2), 0.05 * (i & 4));
+        const Vector3 centre = place - Vector3(0.1, 0.1, 0.1);
+        const double turn = 6 * share(random);
+        masses.push_back(std::pow(10, -1 + 2 * share(random)));
+        momenta.push_back(-10 * masses.back() * (centre + Vector3(0.02 * share(random), 0, 0)));
+        const math::Quaternion turned(Eigen::AngleAxisd(turn, Vector3(1, 2, 3).normalized()));
+        const scene::Geometry shape = i % 2 == 0 ? scene::Geometry(scene::Box{{0.1, 0.06, height}}) : scene::Cylinder{0.05, height};
+        world.add(loose({centre, turned}, shape, masses.back(), 0.6));
+      }
+      const auto momentum = [&] {
+        Vector3 sum = Vector3::Zero();
+        const world::State now = state_of(world);
+        for (std::size_t i = 0; i < masses.size(); ++i) {
+          const world::LinkState& link = now.links[i];
+          const Vector3 up = link.pose.orientation * Vector3(0, 0, height / 2);
+          sum += masses[i] * (link.velocity + link.angular_velocity.cross(up));
+        }
+        return sum;
+      };
+      push_off(world, hz, momenta);
+      const Vector3 before = momentum();
+      for (int i = 0; i < 0.4 * hz; ++i) world.step();
+      EXPECT_LT((momentum() - before).norm(), 1e-6) << hz << ' ' << heap;
+    }
+  }
+}
+
 // Ground friction of a body that slides in a plane: it stops after m v^2 / 2 F, whatever its heading.
 TEST(NewtonPlaneFriction, IsTheSameInAllDirections) {
   constexpr double mass = 2, force = 1.49, speed = 1;
