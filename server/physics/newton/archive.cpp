@@ -56,7 +56,8 @@ void Contacts::Pair::archive(math::Archive& archive) {
   archive("share", share);
   archive("count", count);
   archive.require(count >= 0 && count <= most_points, "is too large");
-  for (int i = 0; i < count; ++i) archive("point", points[static_cast<std::size_t>(i)]);
+  const int told = earlier.isZero(0) ? count : std::max(count, 1);  // see Contacts::tell()
+  for (int i = 0; i < told; ++i) archive("point", points[static_cast<std::size_t>(i)]);
 }
 
 void archive_fields(math::Archive& archive, Contacts& contacts) {

@@ -316,7 +316,7 @@ void Contacts::add(const contact::Contacts& found, Pair& pair, double length) {
   // A point of what rolls moves with neither surface, but with the body that rolls.
   const math::Vector3 with_a = length * from_bullet(a.velocity), with_b = length * from_bullet(b.velocity);
   pair.count = found.count;
-  pair.normal = from_bullet(found.normal);
+  if (found.count > 0) pair.normal = from_bullet(found.normal);
   for (int i = 0; i < found.count; ++i) {
     const contact::Point& point = found.points[i];
     const btVector3 on_a = point.on_b + found.normal * point.distance;
@@ -398,6 +398,8 @@ void Contacts::tell(std::vector<Contact>& out) const {
       sum += pair.share * point.impulse;
       ++count;
     }
+    const bool came_apart = pair.live && pair.count == 0 && pair.seen == substep_ && !pair.earlier.isZero(0);
+    if (came_apart) middle = pair.points[0].point, count = 1;
     if (count == 0) continue;
     out.push_back(in_order({side(colliders_.all[pair.a]), side(colliders_.all[pair.b]), pair.normal,
                             middle / count, sum}));
