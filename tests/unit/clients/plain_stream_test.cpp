@@ -316,6 +316,8 @@ TEST_P(PlainStreams, SendingWaitsWhileTooMuchIsQueued) {
   const std::string header = read(66);
   read(static_cast<unsigned char>(header.back()));
   EXPECT_TRUE(read(large.size() + 9) == frame(large));
+  const auto latest = std::chrono::steady_clock::now() + 10s;  // the other thread may not have run since
+  while (!is_sent && std::chrono::steady_clock::now() < latest) std::this_thread::sleep_for(1ms);
   EXPECT_TRUE(is_sent);
   EXPECT_TRUE(read(large.size() + 9) == frame(large));
   is_read = true;
