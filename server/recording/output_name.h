@@ -23,8 +23,9 @@ struct TakenFile {
 /// Whether both paths are one file, by links too. What several may write to at once, a device or a pipe, is not.
 bool is_one_file(const std::string& a, const std::string& b);
 
-/// That the name has the right ending, and the file is neither planted by another user (planted_at()), nor taken, nor one of another kind that ziggurat reads, which
-/// would be lost: a scene, a script, a recording, a database. Pipes, devices and `-` need no ending.
+/// That the name has the right ending, and the file is neither planted by another user (planted_at()), nor taken, nor one of
+/// another kind that ziggurat reads, which would be lost: a scene, a script, a recording, a database. Pipes, devices and `-` need no
+/// ending.
 /// @throws text::UsageError
 void check_output(const OutputName& output, std::span<const TakenFile> taken = {});
 

@@ -128,7 +128,6 @@ contact::Contacts first_meeting(const Collider& a, const Collider& b, double len
   int left = normal_turns(a, b) || rebound_turned(a, b) ? most_near : 0;
   contact::Contacts met;
   double now = time = 0;
-  bool at_end = false;
   for (int step = 0; step < most_steps; ++step) {
     const btTransform pose_a = pose_after(a, now), pose_b = pose_after(b, now);
     contact::Contacts found =
@@ -145,11 +144,10 @@ contact::Contacts first_meeting(const Collider& a, const Collider& b, double len
       if (distance <= touch || --left <= 0) break;
     }
     if (approach <= 0) break;
-    now += (distance - follow / 2) / approach;
-    if (now < length) continue;
-    if (met.count > 0 || at_end) break;
-    at_end = true;  // what falls may meet where its speed alone does not lead
-    now = length;
+    const double next = now + (distance - follow / 2) / approach;
+    const bool ends_near = distance - approach * (length - now) <= near;  // what falls may meet where its speed alone does not lead
+    if (next >= length && (met.count > 0 || !ends_near)) break;
+    now = std::min(next, length);
   }
   return met;
 }
