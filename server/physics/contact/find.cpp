@@ -146,50 +146,78 @@ btScalar reach_along(const Shape& shape, const btVector3& direction) {
   return std::visit([&](const auto& each) { return reach_of(each, direction); }, shape);
 }
 
-void reduce(Contacts& contacts, const btTransform& frame) {
-  auto& points = contacts.points;
-  const btVector3& normal = contacts.normal;
-  if (contacts.count > 4) {
-    // Ties go to the first: a later point must be better by more than rounding.
-    const btScalar better = 1 + btScalar(1e-6), tiny = btScalar(1e-12);
-    int deepest = 0, farthest = 0, left = 0, right = 0;
-    for (int i = 1; i < contacts.count; ++i) {
-      if (points[i].distance < points[deepest].distance - btScalar(1e-9)) deepest = i;
-    }
-    farthest = left = right = deepest;
-    btScalar most = 0;
-    for (int i = 0; i < contacts.count; ++i) {
-      const btScalar away = (points[i].on_b - points[deepest].on_b).length2();
-      if (away > most * better + tiny) most = away, farthest = i;
-    }
-    const btVector3 base = points[farthest].on_b - points[deepest].on_b;
-    btScalar most_left = 0, most_right = 0;
-    for (int i = 0; i < contacts.count; ++i) {
-      const btScalar area = base.cross(points[i].on_b - points[deepest].on_b).dot(normal);
-      if (area > most_left * better + tiny) most_left = area, left = i;
-      if (area < most_right * better - tiny) most_right = area, right = i;
-    }
-    int kept[4] = {deepest, farthest, left, right};
-    std::array<Point, 4> chosen;
-    int count = 0;
-    for (int i = 0; i < 4; ++i) {
-      if (std::find(kept, kept + i, kept[i]) == kept + i) chosen[count++] = points[kept[i]];
-    }
-    std::copy_n(chosen.begin(), count, points.begin());
-    contacts.count = count;
+namespace {
+
+/// Two directions in the plane of contact that turn with a frame.
+struct Across {
+  btVector3 first, second;
+
+  Across(const btVector3& normal, const btTransform& frame) {
+    const int up = (frame.getBasis().transpose() * normal).absolute().maxAxis();
+    first = frame.getBasis().getColumn((up + 1) % 3);
+    second = frame.getBasis().getColumn((up + 2) % 3);
   }
+};
+
+/// The deepest point. Of those as deep as overlaps may be, one at a place that turns with the bodies: which one is deeper
+/// by rounding, or is found first, changes from one substep to the next, and what rests on others would tremble.
+int steadily_deepest(const Contacts& contacts, const Across& across) {
+  constexpr btScalar same = btScalar(1e-6);  // depth [m]
+  const btVector3 towards = across.first + btScalar(0.6) * across.second;  // no symmetry of squares has points at the same place
+  const auto& points = contacts.points;
+  btScalar least = points[0].distance;
+  for (int i = 1; i < contacts.count; ++i) least = btMin(least, points[i].distance);
+  int best = -1;
+  for (int i = 0; i < contacts.count; ++i) {
+    if (points[i].distance > least + same) continue;
+    if (best < 0 || towards.dot(points[i].on_b - points[best].on_b) > 0) best = i;
+  }
+  return best;
+}
+
+/// Keeps the deepest point, the one farthest from it, and those farthest to both sides of the line between them.
+void keep_four(Contacts& contacts, int deepest) {
+  auto& points = contacts.points;
+  // Ties go to the first: a later point must be better by more than rounding.
+  const btScalar better = 1 + btScalar(1e-6), tiny = btScalar(1e-12);
+  int farthest = deepest, left = deepest, right = deepest;
+  btScalar most = 0;
+  for (int i = 0; i < contacts.count; ++i) {
+    const btScalar away = (points[i].on_b - points[deepest].on_b).length2();
+    if (away > most * better + tiny) most = away, farthest = i;
+  }
+  const btVector3 base = points[farthest].on_b - points[deepest].on_b;
+  btScalar most_left = 0, most_right = 0;
+  for (int i = 0; i < contacts.count; ++i) {
+    const btScalar area = base.cross(points[i].on_b - points[deepest].on_b).dot(contacts.normal);
+    if (area > most_left * better + tiny) most_left = area, left = i;
+    if (area < most_right * better - tiny) most_right = area, right = i;
+  }
+  const int kept[4] = {deepest, farthest, left, right};
+  std::array<Point, 4> chosen;
+  int count = 0;
+  for (int i = 0; i < 4; ++i) {
+    if (std::find(kept, kept + i, kept[i]) == kept + i) chosen[count++] = points[kept[i]];
+  }
+  std::copy_n(chosen.begin(), count, points.begin());
+  contacts.count = count;
+}
+
+}  // namespace
+
+void reduce(Contacts& contacts, const btTransform& frame) {
   if (contacts.count < 2) return;
+  auto& points = contacts.points;
+  const Across across(contacts.normal, frame);
+  if (contacts.count > 4) keep_four(contacts, steadily_deepest(contacts, across));
   // A stable order makes the solver sweep the same way each step: by angle about the middle.
   btVector3 middle(0, 0, 0);
   for (int i = 0; i < contacts.count; ++i) middle += points[i].on_b;
   middle /= btScalar(contacts.count);
-  const int up = (frame.getBasis().transpose() * normal).absolute().maxAxis();
-  const btVector3 first = frame.getBasis().getColumn((up + 1) % 3);
-  const btVector3 second = frame.getBasis().getColumn((up + 2) % 3);
   std::array<std::pair<btScalar, Point>, 4> ordered;
   for (int i = 0; i < contacts.count; ++i) {
     const btVector3 arm = points[i].on_b - middle;
-    ordered[i] = {turn(arm.dot(first), arm.dot(second)), points[i]};
+    ordered[i] = {turn(arm.dot(across.first), arm.dot(across.second)), points[i]};
   }
   sort_few(ordered.data(), ordered.data() + contacts.count,
            [](const auto& p, const auto& q) { return p.first < q.first; });

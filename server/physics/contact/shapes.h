@@ -100,9 +100,9 @@ const Polyhedron::Face& face_along(const Polyhedron& polyhedron, const btVector3
 /// BT_LARGE_FLOAT.
 btScalar reach_along(const Shape& shape, const btVector3& direction);
 
-/// Keeps at most four points that span the contact: the deepest, the farthest from it and the
+/// Keeps at most four points that span the contact: the deepest within 1 um, the farthest from it and the
 /// two that enclose the largest area; in a stable order: by angle in the given frame, that of a
-/// body of the pair.
+/// body of the pair. The choice does not depend on depths that differ by less, or on the order of the points.
 void reduce(Contacts& contacts, const btTransform& frame);
 
 }  // namespace ziggurat::physics::contact

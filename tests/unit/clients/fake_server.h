@@ -119,7 +119,7 @@ class FakeServer {
  private:
   void listen(const std::string& address) {
     constexpr int patience_ms = 60'000;  // also on a busy machine
-    constexpr int linger_ms = 500;
+    constexpr int linger_ms = 10'000;  // a busy machine may take seconds for what is large
     router_ = zmq_socket(context_, ZMQ_ROUTER);
     zmq_setsockopt(router_, ZMQ_RCVTIMEO, &patience_ms, sizeof(patience_ms));
     zmq_setsockopt(router_, ZMQ_LINGER, &linger_ms, sizeof(linger_ms));

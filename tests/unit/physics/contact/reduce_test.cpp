@@ -45,28 +45,29 @@ TEST(Reduce, KeepsTheDeepestAndAtMostFour) {
     EXPECT_EQ(contacts.count <= 4, true);
     btScalar kept = 1;
     for (int i = 0; i < contacts.count; ++i) kept = std::min(kept, contacts.points[i].distance);
-    EXPECT_NEAR(kept, deepest, 1e-9);
+    EXPECT_LE(kept, deepest + 1e-6);
   }
 }
 
 TEST(Reduce, IsStableUnderRounding) {
   math::RandomStream random(1, "perturb");
-  // Twelve points on a regular outline at the same depth: every choice is a tie.
-  const auto ring = [&](btScalar noise) {
+  // Twelve points on a regular outline at the same depth, from any of them on: every choice is a tie.
+  const auto ring = [&](btScalar noise, int first = 0) {
+    constexpr btScalar pressed_in = 1e-7;  // as far as loads press bodies in [m]
     Contacts contacts;
     contacts.normal = {0, 0, 1};
-    for (int i = 0; i < 12; ++i) {
+    for (int i = first; i < first + 12; ++i) {
       const double angle = i * std::numbers::pi / 6 + 0.05;
       contacts.add({0.01 * std::cos(angle) + noise * random.uniform(-1, 1),
                     0.01 * std::sin(angle) + noise * random.uniform(-1, 1), 0},
-                   noise * random.uniform(-1, 1));
+                   noise > 0 ? pressed_in * random.uniform(-1, 1) : 0);
     }
     reduce(contacts, at(0, 0, 0));
     return contacts;
   };
   const Contacts exact = ring(0);
   for (int round = 0; round < 100; ++round) {
-    const Contacts noisy = ring(1e-13);
+    const Contacts noisy = ring(1e-13, round % 12);
     ASSERT_EQ(noisy.count, exact.count);
     for (int i = 0; i < exact.count; ++i) {
       EXPECT_LT((noisy.points[i].on_b - exact.points[i].on_b).length(), 1e-9);
