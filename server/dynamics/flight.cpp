@@ -9,8 +9,9 @@
 namespace ziggurat::dynamics {
 namespace {
 
-constexpr double largest_turn = 0.1;  // of a Runge-Kutta step of a single body [rad]
-constexpr int most_steps = 4000;      // of one substep, of a single body
+constexpr double largest_turn = 0.05; // of a Runge-Kutta step of a single body [rad]
+constexpr int most_turns = 8000;      // of one substep, of a single body
+constexpr int most_steps = 4000;      // of one substep, of the longest tree
 constexpr double tolerance = 1e-7;    // of a Dormand-Prince step, relative
 constexpr double slow = 3e-3;         // relative change of speed that bias forces may make
 constexpr double slow_driven = 0.045; // its square, where servos hold a tree, over a second [1/s]
@@ -50,7 +51,7 @@ int turn(double* place, const Vector3& inertia, double length, Vector3& omega) {
   } else {
     const double fastest = momentum.norm() / inertia.minCoeff();
     steps = static_cast<int>(
-        std::clamp(std::ceil(fastest * length / largest_turn), 1.0, double(most_steps)));
+        std::clamp(std::ceil(fastest * length / largest_turn), 1.0, double(most_turns)));
     const double h = length / steps;
     for (int i = 0; i < steps; ++i) {
       const Quaternion4 k1 = rate(q, spin(q, inertia, momentum));

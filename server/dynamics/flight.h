@@ -9,7 +9,7 @@ namespace ziggurat::dynamics {
 /// same meanwhile. Leaves it placed and moved.
 ///
 /// A single body: its centre of mass exactly; its angular momentum exactly; its orientation by
-/// the classical Runge-Kutta method of fourth order in steps of at most 0.1 rad, exactly where it
+/// the classical Runge-Kutta method of fourth order in steps of at most 0.05 rad, exactly where it
 /// keeps its axis. Other trees: the method of Dormand and Prince of order 5 (J. Comput. Appl.
 /// Math. 6, 1980, table 2) with steps chosen by its estimate of the error.
 /// A tree that would need more than some ten thousand steps is behind at the substep's end: work.late becomes true.

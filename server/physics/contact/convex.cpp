@@ -195,11 +195,29 @@ void add_beside(const BestFace& face, const Body& a, const Body& b, const Neares
   }
 }
 
+constexpr btScalar touching = btScalar(1e-6);  // what is nearer to a surface is on it [m]
+
+/// The nearest direction and point of the shapes themselves. Where they touch GJK finds none, and what it finds may be
+/// anything: then as if they were a little apart.
+/// @param near  by cores
+Nearest nearest_sharp(const Body& a, const Body& b, const Placement& at, const Nearest& near) {
+  constexpr btScalar apart = btScalar(1e-4);  // [m]
+  const Nearest sharp = nearest(a, b, at, 0);
+  if (sharp.distance > -BT_LARGE_FLOAT && btFabs(near.distance) > touching) return sharp;
+  btTransform moved = at.a;
+  moved.setOrigin(moved.getOrigin() + apart * near.b_to_a);
+  Nearest beside = nearest(a, b, {moved, at.b, at.reach, at.support, at.useful}, 0);
+  if (!beside.apart) return sharp;
+  beside.distance = separation(a, b, beside.b_to_a);
+  return beside;
+}
+
 /// Takes what separates best. Between cores edges are round: where they touch or nearly do, the direction is
 /// one between the faces that meet there, and the point is not on the surface.
-/// @param sharp  of the shapes themselves; where they touch its direction may be anything
+/// @param sharp  of the shapes themselves
 void sharpen(Nearest& near, const BestFace& face, const Nearest& sharp) {
   if (sharp.distance == -BT_LARGE_FLOAT) return;
+  if (btFabs(near.distance) < touching) near.on_b = sharp.on_b;
   if (sharp.distance > near.distance) near = sharp;
   if (face.distance > near.distance) near = {face.b_to_a(), sharp.on_b, face.distance, true};
 }
@@ -236,7 +254,7 @@ void clipped_contacts(const Body& a, const Body& b, const Placement& at, Contact
     out.count = 0;
   }
   if (near.distance == -BT_LARGE_FLOAT) return;
-  if (near.apart && at.support != Support::lowest) sharpen(near, face, nearest(a, b, at, 0));
+  if (near.apart && at.support != Support::lowest) sharpen(near, face, nearest_sharp(a, b, at, near));
   look_across(a, b, near);
   if (near.distance > at.reach) return;
   out.normal = near.b_to_a;

@@ -73,11 +73,11 @@ INSTANTIATE_TEST_SUITE_P(Hertz, NewtonSpin, ::testing::Values(50, 100, 200, 500,
 
 // L. D. Landau, E. M. Lifshitz, Mechanics, section 37: the components of the angular velocity in
 // the body are Jacobi's elliptic functions, of period 4 K(k) / rate.
-TEST_P(NewtonSpin, OfAnAsymmetricBodyKeepsEnergyAndMomentumAndFlipsOnTime) {
+void expect_free_rotation(const Vector3& omega, double h) {
   Spinning bench(newton(false, 0), h, loose(at(0, 0, 0), scene::Box{{0.1, 0.2, 0.3}}, 1));
   const Vector3 inertia = bench.bodies[0].parts[0].inertia;  // x, y, z: falling
   const double i3 = inertia.x(), i2 = inertia.y(), i1 = inertia.z();
-  const Vector3 omega(0.01, 8, 0.02), momentum = inertia.cwiseProduct(omega);
+  const Vector3 momentum = inertia.cwiseProduct(omega);
   const double energy = momentum.dot(omega) / 2, l2 = momentum.squaredNorm();
   const bool about_third = l2 > 2 * energy * i2;
   const double a = (i3 - i2) * (l2 - 2 * energy * i1), b = (i2 - i1) * (2 * energy * i3 - l2);
@@ -106,6 +106,11 @@ TEST_P(NewtonSpin, OfAnAsymmetricBodyKeepsEnergyAndMomentumAndFlipsOnTime) {
   if (long_runs::is_slow) return;
   ASSERT_GT(flips, 4);
   EXPECT_NEAR((last - first) / (flips - 1), half_period, 0.01 * half_period);
+}
+
+TEST_P(NewtonSpin, OfAnAsymmetricBodyKeepsEnergyAndMomentumAndFlipsOnTime) {
+  expect_free_rotation({0.01, 8, 0.02}, h);
+  expect_free_rotation({0.001, 10, 0}, h);  // the energy of the axis that it leaves is 1e-8 away
 }
 
 TEST_P(NewtonSpin, OfManyTurnsPerSubstepIsExact) {
