@@ -7,6 +7,7 @@ import { levels, Quality, roundness } from "../source/drawing/quality";
 import { makeGeometry, partsOf } from "../source/drawing/shapes";
 import { makeWorld } from "../source/data/generated";
 import type { Camera, Description, Observation, World } from "../source/model/messages";
+import { isPictureOf } from "../source/model/pictures";
 import { compose, rotate } from "../source/model/pose";
 import { bytesText, fixed, observed } from "../source/model/readings";
 import { nameOf, numberAt, numbersIn, parseName } from "../source/model/series";
@@ -64,10 +65,52 @@ test("numbers by their paths", () => {
   assert.deepEqual(parseName(nameOf(name)), name);
 });
 
+test("numbers of a message with millions of parts are found without going through it", () => {
+  const segments = new Float32Array(16_000_000);
+  const contacts = Array.from({ length: 2_000_000 }, () => ({ name: "no number" }));
+  const begin = process.cpuUsage(); // other programs run beside
+  assert.equal(numbersIn({ segments }).length, 500);
+  assert.equal(numbersIn({ contacts, tick: 1 }).length, 0);
+  const used = process.cpuUsage(begin);
+  const took = (used.user + used.system) / 1000;
+  assert.ok(took < 300, `${took.toFixed(0)} ms`);
+});
+
+const robot = { id: "r", jointSensors: [{ id: "lift", mode: 2 }, { id: "wheel", mode: 3 }], jointActuators: [], radios: [{ id: "wifi" }],
+  leds: [], directionalLeds: [], tags: [], magnets: [], proximitySensors: [{ range: 0.1 }], positioning: false,
+  battery: true, cameras: [], imus: [], contactSensors: [], params: [] } as unknown as Description;
+
+test("of the readings of a device the first are made, and the others are counted", () => {
+  const packet = { range: 1, horizontalBearing: 0, verticalBearing: 0, data: new Uint8Array(1) };
+  const many = 1_000_000;
+  const seen = { jointReadings: [], proximity: [], batteries: [], rangeAndBearing: Array(many).fill(packet),
+    radioMessages: Array(many).fill({ radio: 0, payload: new Uint8Array(4) }), imus: new Float32Array(6 * many) } as unknown as Observation;
+  const begin = process.cpuUsage();
+  const groups = observed("/t", { ...robot, imus: Array(many).fill({ id: "i" }) } as Description, seen, () => undefined);
+  const used = process.cpuUsage(begin);
+  for (const device of ["Radio", "Range and bearing"]) {
+    const group = groups.find((one) => one.device === device);
+    assert.equal(group?.readings.length, 300);
+    assert.equal(group?.more, many - 300);
+  }
+  assert.ok(used.user + used.system < 300_000, `${used.user + used.system} us`);
+});
+
+test("a picture of another size than the camera's is not decoded", () => {
+  const head = (width: number, height: number): Uint8Array => {
+    const bytes = new DataView(new ArrayBuffer(33));
+    [0x89504e47, 0x0d0a1a0a, 13, 0x49484452, width, height].forEach((word, i) => bytes.setUint32(4 * i, word));
+    return new Uint8Array(bytes.buffer);
+  };
+  const camera = { width: 64, height: 48 };
+  assert.ok(isPictureOf(head(64, 48), camera));
+  assert.ok(!isPictureOf(head(48, 64), camera));
+  assert.ok(!isPictureOf(head(60_000, 60_000), camera));
+  assert.ok(!isPictureOf(head(64, 48).subarray(0, 20), camera));
+  assert.ok(!isPictureOf(new TextEncoder().encode("<svg xmlns='http://www.w3.org/2000/svg'/>"), camera));
+});
+
 test("readings by device have names, limits and places", () => {
-  const robot = { id: "r", jointSensors: [{ id: "lift", mode: 2 }, { id: "wheel", mode: 3 }], jointActuators: [], radios: [{ id: "wifi" }],
-    leds: [], directionalLeds: [], tags: [], magnets: [], proximitySensors: [{ range: 0.1 }], positioning: false,
-    battery: true, cameras: [], imus: [], contactSensors: [], params: [] } as unknown as Description;
   const seen = { jointReadings: [0.02, 1], proximity: [0.5], batteries: [0.9, Infinity], rangeAndBearing: [],
     radioMessages: [{ radio: 0, payload: new TextEncoder().encode("hi") }] } as unknown as Observation;
   const groups = observed("/t", robot, seen, () => [0, 0.1]);

@@ -12,7 +12,10 @@ export interface Reading {
   range?: [number, number]; // of a bar
   series?: { topic: string; path: string };
 }
-export interface Group { device: string; readings: Reading[] }
+export interface Group { device: string; readings: Reading[]; more: number } // so many more are not made
+
+/** Readings of a device that are made, and devices: a message of a stranger may have millions. */
+export const mostReadings = 300;
 
 /** Bytes as text where they are printable, and as hex. */
 export function bytesText(bytes: Uint8Array): string {
@@ -41,18 +44,24 @@ class Collector {
   groups: Group[] = [];
   constructor(private readonly topic: string) {}
 
-  group(device: string): Reading[] {
+  group(device: string): Group {
     let found = this.groups.find((group) => group.device === device);
-    if (!found) this.groups.push(found = { device, readings: [] });
-    return found.readings;
+    if (!found) this.groups.push(found = { device, readings: [], more: 0 });
+    return found;
+  }
+
+  /** The first ones of what a device has. */
+  first<T>(device: string, list: ArrayLike<T>): T[] {
+    if (list.length > mostReadings) this.group(device).more += list.length - mostReadings;
+    return Array.from({ length: Math.min(list.length, mostReadings) }, (_, i) => list[i]);
   }
 
   add(device: string, label: string, field: string, values: Floats, index: number, unit = "",
       range?: [number, number]): void {
     if (index >= values.length) return;
     const value = values[index];
-    this.group(device).push({ label, value, text: number(value, unit), range,
-                              series: { topic: this.topic, path: `${field}.${index}` } });
+    this.group(device).readings.push({ label, value, text: number(value, unit), range,
+                                       series: { topic: this.topic, path: `${field}.${index}` } });
   }
 }
 
@@ -64,11 +73,11 @@ export type Limits = (joint: string) => [number, number] | undefined;
 
 export function observed(topic: string, robot: Description, o: Observation, limits: Limits): Group[] {
   const out = new Collector(topic);
-  robot.jointSensors.forEach(({ id, mode }, i) => {
+  out.first("Joints", robot.jointSensors).forEach(({ id, mode }, i) => {
     out.add("Joints", `${id} ${modes[mode] ?? ""}`, "jointReadings", o.jointReadings, i,
             "", mode === 2 ? limits(id) : undefined);
   });
-  robot.proximitySensors.forEach((_, i) => out.add("Proximity", `${i}`, "proximity", o.proximity, i, "", [0, 1]));
+  out.first("Proximity", robot.proximitySensors).forEach((_, i) => out.add("Proximity", `${i}`, "proximity", o.proximity, i, "", [0, 1]));
   if (robot.positioning) {
     axes.forEach((axis, i) => out.add("Position", axis, "positioning", o.positioning, i, "m"));
     ["w", "x", "y", "z"].forEach((axis, i) => out.add("Position", `q${axis}`, "positioning", o.positioning, 3 + i));
@@ -82,20 +91,20 @@ export function observed(topic: string, robot: Description, o: Observation, limi
     ["left", "right"].forEach((side, i) => out.add("Wheels", `distance ${side}`, "wheels", o.wheels, 2 + i, "m"));
   }
   if (robot.turret?.measures) out.add("Turret", "rotation", "turretRotations", o.turretRotations, 0, "rad");
-  robot.imus.forEach(({ id }, k) => {
+  robot.imus.slice(0, mostReadings).forEach(({ id }, k) => {
     axes.forEach((axis, i) => out.add(`IMU ${id}`, `acceleration ${axis}`, "imus", o.imus, 6 * k + i, "m/s²"));
     axes.forEach((axis, i) => out.add(`IMU ${id}`, `turning ${axis}`, "imus", o.imus, 6 * k + 3 + i, "rad/s"));
   });
-  robot.contactSensors.forEach(({ id }, k) => {
+  robot.contactSensors.slice(0, mostReadings).forEach(({ id }, k) => {
     out.add(`Contact ${id}`, "touches", "contactSensors", o.contactSensors, 5 * k);
     axes.forEach((axis, i) => out.add(`Contact ${id}`, `force ${axis}`, "contactSensors", o.contactSensors, 5 * k + 1 + i, "N"));
     out.add(`Contact ${id}`, "strength", "contactSensors", o.contactSensors, 5 * k + 4, "N");
   });
   addCounts(out, robot, o);
-  for (const { radio, payload } of o.radioMessages) {
-    out.group("Radio").push({ label: `${robot.radios[radio]?.id ?? radio} got`, text: bytesText(payload) });
+  for (const { radio, payload } of out.first("Radio", o.radioMessages)) {
+    out.group("Radio").readings.push({ label: `${robot.radios[radio]?.id ?? radio} got`, text: bytesText(payload) });
   }
-  o.rangeAndBearing.forEach((packet, i) => out.group("Range and bearing").push({
+  out.first("Range and bearing", o.rangeAndBearing).forEach((packet, i) => out.group("Range and bearing").readings.push({
     label: `packet ${i}`,
     text: `${number(packet.range, "m")}  ${number(packet.horizontalBearing, "rad")}  ${bytesText(packet.data)}`,
   }));
@@ -105,7 +114,7 @@ export function observed(topic: string, robot: Description, o: Observation, limi
 /** How many LEDs and tags each camera sees. */
 function addCounts(out: Collector, robot: Description, o: Observation): void {
   let leds = 0, directional = 0, tags = 0;
-  for (const camera of robot.cameras) {
+  for (const camera of robot.cameras.slice(0, mostReadings)) {
     const device = `Camera ${camera.id}`;
     if (camera.detectsLeds) out.add(device, "LEDs seen", "ledCounts", o.ledCounts, leds++);
     if (camera.detectsDirectionalLeds) {
@@ -117,32 +126,32 @@ function addCounts(out: Collector, robot: Description, o: Observation): void {
 
 export function commanded(topic: string, robot: Description, c: Command, limits: Limits): Group[] {
   const out = new Collector(topic);
-  robot.jointActuators.forEach(({ id, mode }, i) => {
+  out.first("Joints", robot.jointActuators).forEach(({ id, mode }, i) => {
     out.add("Joints", `${id} ${modes[mode] ?? ""}`, "jointTargets", c.jointTargets, i, "",
             mode === 2 ? limits(id) : undefined);
   });
-  robot.magnets.forEach(({ id }, i) => out.add("Magnets", id || `${i}`, "magnetCurrents", c.magnetCurrents, i));
+  out.first("Magnets", robot.magnets).forEach(({ id }, i) => out.add("Magnets", id || `${i}`, "magnetCurrents", c.magnetCurrents, i));
   const color = (values: Floats, i: number): string => `#${(values[i] ?? 0).toString(16).padStart(6, "0")}`;
-  robot.leds.slice(0, c.ledColors.length).forEach(({ id }, i) =>
-    out.group("LEDs").push({ label: id || `${i}`, text: color(c.ledColors, i) }));
-  robot.directionalLeds.slice(0, c.directionalLedColors.length).forEach(({ id }, i) =>
-    out.group("Directional LEDs").push({ label: id || `${i}`, text: color(c.directionalLedColors, i) }));
+  out.first("LEDs", robot.leds.slice(0, c.ledColors.length)).forEach(({ id }, i) =>
+    out.group("LEDs").readings.push({ label: id || `${i}`, text: color(c.ledColors, i) }));
+  out.first("Directional LEDs", robot.directionalLeds.slice(0, c.directionalLedColors.length)).forEach(({ id }, i) =>
+    out.group("Directional LEDs").readings.push({ label: id || `${i}`, text: color(c.directionalLedColors, i) }));
   const payloads = c.tagPayloads ?? [];
-  robot.tags.slice(0, payloads.length).forEach(({ id }, i) =>
-    out.group("Tags").push({ label: id || `${i}`, text: bytesText(payloads[i]) }));
+  out.first("Tags", robot.tags.slice(0, payloads.length)).forEach(({ id }, i) =>
+    out.group("Tags").readings.push({ label: id || `${i}`, text: bytesText(payloads[i]) }));
   if (robot.wheels?.drives) {
     ["left", "right"].forEach((side, i) => out.add("Wheels", side, "wheelVelocities", c.wheelVelocities, i, "m/s"));
   }
   if (robot.turret?.drives && c.turretModes.length > 0) {
-    out.group("Turret").push({ label: "mode", text: turretModes[c.turretModes[0]] ?? "?" });
+    out.group("Turret").readings.push({ label: "mode", text: turretModes[c.turretModes[0]] ?? "?" });
     out.add("Turret", "rotation", "turretRotations", c.turretRotations, 0, "rad");
     out.add("Turret", "speed", "turretSpeeds", c.turretSpeeds, 0, "rad/s");
   }
   if (c.rangeAndBearingData.length > 0) {
-    out.group("Range and bearing").push({ label: "data", text: bytesText(c.rangeAndBearingData) });
+    out.group("Range and bearing").readings.push({ label: "data", text: bytesText(c.rangeAndBearingData) });
   }
-  for (const { radio, payload } of c.radioMessages) {
-    out.group("Radio").push({ label: `${robot.radios[radio]?.id ?? radio} sends`, text: bytesText(payload) });
+  for (const { radio, payload } of out.first("Radio", c.radioMessages)) {
+    out.group("Radio").readings.push({ label: `${robot.radios[radio]?.id ?? radio} sends`, text: bytesText(payload) });
   }
   return out.groups;
 }

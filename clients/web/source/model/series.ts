@@ -17,19 +17,37 @@ export function numberAt(value: unknown, path: string): number | null {
   return typeof found === "number" ? found : null;
 }
 
-/** Paths of all numbers in a message, at most so many, in its order. */
+const mostVisited = 20_000; // parts of a message, in which numbers are looked for
+
+/** Paths of all numbers in a message, at most so many, in its order. A message may have millions of parts: the rest is not looked at. */
 export function numbersIn(value: unknown, limit = 500, prefix = ""): { path: string; value: number }[] {
   const found: { path: string; value: number }[] = [];
+  let visited = 0;
+  const isOver = (): boolean => found.length >= limit || visited > mostVisited;
   const visit = (inner: unknown, path: string): void => {
-    if (found.length >= limit || inner === null || inner instanceof Uint8Array) return;
+    ++visited;
+    if (isOver() || inner === null || inner instanceof Uint8Array) return;
     if (typeof inner === "number" || typeof inner === "bigint" || typeof inner === "boolean") {
       found.push({ path, value: Number(inner) });
     } else if (typeof inner === "object") {
-      for (const [key, child] of Object.entries(inner as Value)) visit(child, path ? `${path}.${key}` : key);
+      for (const key of keysOf(inner)) {
+        if (isOver()) return;
+        visit((inner as Value)[key], path ? `${path}.${key}` : String(key));
+      }
     }
   };
   visit(value, prefix);
   return found;
+}
+
+/** One after the other: a list of all would take more memory than the message. */
+function *keysOf(value: object): Generator<string | number> {
+  const { length } = value as { length?: unknown };
+  if (Array.isArray(value) || ArrayBuffer.isView(value)) {
+    for (let i = 0; i < (length as number); ++i) yield i;
+  } else {
+    yield* Object.keys(value);
+  }
 }
 
 /** A series is "topic:path" in the address. */

@@ -4,21 +4,32 @@ import * as three from "three";
 import type { App } from "../page/app";
 import type { Camera, Detections, SeenByCamera } from "../model/messages";
 import { compose, poseAt } from "../model/pose";
+import { isPictureOf } from "../model/pictures";
 import { bytesText } from "../model/readings";
 import { visible } from "../model/texts";
-import { make, setLines, setText } from "./element";
+import { make, restOf, setLines, setText } from "./element";
 import type { Panel } from "./panel";
 
 const toScreen = Uint8ClampedArray.from({ length: 256 }, (_, i) => {
   const light = i / 255; // linear light to sRGB
   return 255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055);
 });
+const mostCameras = 12; // of a robot
+const mostPixels = 2 ** 19; // that are drawn of a camera; a larger one is drawn smaller
 const mostLines = 30; // of detections
+const mostMarks = 2000; // of each kind, in the picture
 const mostOfTag = 60; // bytes of its payload, in the picture
 const hex = (color: number): string => `#${color.toString(16).padStart(6, "0")}`;
 
-interface Shown { index: number; camera: Camera; canvas: HTMLCanvasElement; caption: HTMLElement; list: HTMLElement;
+interface Shown { index: number; camera: Camera; scale: number; canvas: HTMLCanvasElement; caption: HTMLElement; list: HTMLElement;
                  image: ImageBitmap | null; of: unknown; drawn: unknown }
+
+function makeShown(camera: Camera, index: number): Shown {
+  const scale = Math.min(1, Math.sqrt(mostPixels / (camera.width * camera.height)));
+  const size = (length: number): number => Math.max(1, Math.floor(length * scale));
+  const canvas = make("canvas", { width: size(camera.width), height: size(camera.height) }) as HTMLCanvasElement;
+  return { camera, index, scale, canvas, image: null, of: null, drawn: null, caption: make("div.muted"), list: make("div.detections.number") };
+}
 
 export class CameraPanel implements Panel {
   readonly element = make("section.camera");
@@ -37,12 +48,11 @@ export class CameraPanel implements Panel {
     if (key !== this.key) {
       this.key = key;
       const place = robot && world ? world.robots.indexOf(robot) : -1;
-      this.shown = (world?.cameras ?? []).map((camera, index) => ({ camera, index }))
-        .filter(({ camera }) => camera.robot === place)
-        .map(({ camera, index }) => ({ camera, index, image: null, of: null, drawn: null, caption: make("div.muted"), list: make("div.detections.number"),
-          canvas: make("canvas", { width: camera.width, height: camera.height }) as HTMLCanvasElement }));
+      const all = (world?.cameras ?? []).map((camera, index) => ({ camera, index })).filter(({ camera }) => camera.robot === place);
+      this.shown = all.slice(0, mostCameras).map(({ camera, index }) => makeShown(camera, index));
       this.element.replaceChildren(...this.shown.flatMap(({ camera, canvas, caption, list }) => [
         make("h3", {}, camera.id, make("span.muted", {}, ` ${camera.width} × ${camera.height}`)), canvas, caption, list]));
+      this.element.append(restOf(all.length, mostCameras) ?? "");
     }
     if (this.shown.length === 0) {
       this.element.replaceChildren(make("p.empty", {}, robot ? "This robot has no camera." : "Select a robot with a camera."));
@@ -62,19 +72,28 @@ export class CameraPanel implements Panel {
     if (picture && picture !== shown.of) {
       shown.of = picture;
       const { data } = picture.read<{ data: Uint8Array }>();
-      void createImageBitmap(new Blob([data.slice()], { type: "image/png" })).then((image) => { shown.image = image; });
+      if (isPictureOf(data, shown.camera)) void this.decode(shown, data);
     }
     if (shown.image && shown.camera.image) draw.drawImage(shown.image, 0, 0);
     else this.render(shown, draw);
     const seen = frame?.messages.get("/detections")?.read<Detections>().cameras.find(({ camera }) => camera === shown.index);
-    this.drawDetections(draw, seen);
+    draw.setTransform(shown.scale, 0, 0, shown.scale, 0, 0);
+    this.drawDetections(draw, shown.camera, seen);
+    draw.resetTransform();
     const count = seen ? seen.leds.length + seen.directionalLeds.length + seen.tags.length : 0;
     this.listDetections(shown.list, seen);
     setText(shown.caption, `${shown.image && shown.camera.image ? "as the camera took it" : "drawn by the page"} · ${count} detected`);
   }
 
+  private async decode(shown: Shown, data: Uint8Array): Promise<void> {
+    const { width, height } = shown.canvas;
+    try {
+      shown.image = await createImageBitmap(new Blob([data.slice()], { type: "image/png" }), { resizeWidth: width, resizeHeight: height });
+    } catch { /* it is damaged: the one before stays */ }
+  }
+
   /** The scene from the camera's place. */
-  private render({ camera, canvas }: Shown, draw: CanvasRenderingContext2D): void {
+  private render({ camera, canvas, scale }: Shown, draw: CanvasRenderingContext2D): void {
     const { view } = this.app;
     if (!view.poses) return;
     const { width, height } = canvas;
@@ -84,8 +103,8 @@ export class CameraPanel implements Panel {
     // From +z forward, +y down to three's -z forward, +y up.
     this.eye.quaternion.set(x, y, z, w).multiply(new three.Quaternion(1, 0, 0, 0));
     this.eye.updateMatrixWorld();
-    const near = 0.003, [fx, fy] = [camera.focalLength[0], camera.focalLength[1]];
-    const [cx, cy] = [camera.principalPoint[0], camera.principalPoint[1]];
+    const near = 0.003, [fx, fy] = [camera.focalLength[0] * scale, camera.focalLength[1] * scale];
+    const [cx, cy] = [camera.principalPoint[0] * scale, camera.principalPoint[1] * scale];
     this.eye.projectionMatrix.makePerspective(-cx / fx * near, (width - cx) / fx * near, cy / fy * near,
                                               -(height - cy) / fy * near, near, 50);
     this.eye.projectionMatrixInverse.copy(this.eye.projectionMatrix).invert();
@@ -114,12 +133,12 @@ export class CameraPanel implements Panel {
     setLines(list, [...lines, ...more]);
   }
 
-  private drawDetections(draw: CanvasRenderingContext2D, seen: SeenByCamera | undefined): void {
+  private drawDetections(draw: CanvasRenderingContext2D, camera: Camera, seen: SeenByCamera | undefined): void {
     if (!seen) return;
-    const size = draw.canvas.width / 320;
+    const size = camera.width / 320;
     draw.lineWidth = 1.5 * size;
     draw.font = `${11 * size}px system-ui`;
-    for (const light of [...seen.leds, ...seen.directionalLeds]) {
+    for (const light of [...seen.leds.slice(0, mostMarks), ...seen.directionalLeds.slice(0, mostMarks)]) {
       draw.strokeStyle = "#fff";
       draw.fillStyle = hex(light.color);
       draw.beginPath();
@@ -128,7 +147,7 @@ export class CameraPanel implements Panel {
       draw.stroke();
     }
     draw.strokeStyle = draw.fillStyle = "#ff9d2e";
-    for (const tag of seen.tags) {
+    for (const tag of seen.tags.slice(0, mostMarks)) {
       draw.beginPath();
       for (let i = 0; i < 4; ++i) draw.lineTo(tag.corners[2 * i], tag.corners[2 * i + 1]);
       draw.closePath();

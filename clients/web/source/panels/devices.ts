@@ -1,7 +1,7 @@
 // Readings and commands of the selected robot, device by device; of any other entity its pose.
 import type { App } from "../page/app";
 import { kindName, type Command, type Observation, type Poses, type World } from "../model/messages";
-import { commanded, fixed, number, observed, type Group, type Limits, type Reading } from "../model/readings";
+import { commanded, fixed, mostReadings, number, observed, type Group, type Limits, type Reading } from "../model/readings";
 import { nameOf } from "../model/series";
 import type { Frame } from "../model/timeline";
 import { icon, longText, make, restOf, setText } from "./element";
@@ -9,10 +9,8 @@ import type { Panel } from "./panel";
 
 interface Row { text: HTMLElement; bar: HTMLElement | null; plot: HTMLElement | null; reading: Reading }
 
-interface Listed extends Group { count: number } // of all its readings
-
 const mostBesideFan = 12;
-const mostRows = 300; // of a device, and of parameters
+const mostRows = mostReadings; // of a device, and of parameters
 
 export class Devices implements Panel {
   readonly element = make("section.devices");
@@ -46,7 +44,7 @@ export class Devices implements Panel {
     this.drawFan();
   }
 
-  private groups(): [string, Listed[]][] {
+  private groups(): [string, Group[]][] {
     const robot = this.app.selectedRobot?.description;
     const { frame, selected } = this.app;
     if (!robot || !frame || !selected || !this.app.world) return [];
@@ -59,25 +57,26 @@ export class Devices implements Panel {
       const command = { tagPayloads: this.payloads(this.app.world, frame), ...told.read<Command>() };
       found.push(["Commands", commanded(told.topic, robot, command, limits)]);
     }
-    return found.map(([title, list]) => [title, list.map(
-      ({ device, readings }) => ({ device, readings: readings.slice(0, mostRows), count: readings.length }))]);
+    return found.map(([title, list]) => [title, list.slice(0, mostRows).map(({ device, readings, more }) =>
+      ({ device, readings: readings.slice(0, mostRows), more: more + Math.max(readings.length - mostRows, 0) }))]);
   }
 
   /** What the robot's tags show: servers leave it out of commands, which other viewers could not read with it. */
   private payloads(world: World, frame: Frame): Uint8Array[] {
-    const changed = frame.messages.get("/poses")?.read<Poses>().tagPayloads ?? [];
-    return world.tags.flatMap(({ entity, payload }, i) =>
-      (entity === this.app.selected?.index ? [changed.find(({ tag }) => tag === i)?.payload ?? payload] : []));
+    const selected = this.app.selected?.index;
+    const changed = new Map((frame.messages.get("/poses")?.read<Poses>().tagPayloads ?? []).map(({ tag, payload }) => [tag, payload]));
+    return world.tags.flatMap(({ entity, payload }, i) => (entity === selected ? [changed.get(i) ?? payload] : []));
   }
 
   private limits(world: World): Limits {
+    const selected = this.app.selected?.index;
     return (id) => {
-      const joint = world.joints.find((other) => other.id === id && other.entity === this.app.selected?.index);
+      const joint = world.joints.find((other) => other.id === id && other.entity === selected);
       return joint?.lower !== undefined && joint.upper !== undefined ? [joint.lower, joint.upper] : undefined;
     };
   }
 
-  private rebuild(shape: string, groups: [string, Listed[]][]): void {
+  private rebuild(shape: string, groups: [string, Group[]][]): void {
     const { app } = this;
     const { entity } = app.selected!;
     this.shape = shape;
@@ -104,7 +103,8 @@ export class Devices implements Panel {
     }
   }
 
-  private addGroup(title: string, { device, readings, count }: Listed): void {
+  private addGroup(title: string, { device, readings, more }: Group): void {
+    const count = readings.length + more;
     const rows = readings.map((reading) => this.makeRow(title, device, reading));
     const hasFan = device === "Proximity" && title === "Senses" && this.levelSensors().length > 2;
     // What the fan shows is not listed at once: other devices would be far below.
@@ -112,7 +112,7 @@ export class Devices implements Panel {
       ? [make("details.values", {}, make("summary.muted", {}, "Numbers"), ...rows)] : rows;
     this.element.append(make("details.device", { open: true }, make("summary", {}, device,
       make("span.muted", {}, count > 3 ? ` ${count}` : "")), hasFan ? this.fan : null, ...list,
-      restOf(count, mostRows)));
+      restOf(count, readings.length)));
   }
 
   private makeRow(title: string, device: string, reading: Reading): HTMLElement {
