@@ -1,6 +1,7 @@
 #include "recording/decoding.h"
 
 #include <fmt/format.h>
+#include <google/protobuf/stubs/logging.h>
 
 #include <memory>
 
@@ -38,6 +39,7 @@ std::optional<std::string> decode(std::string_view bytes, google::protobuf::Mess
     return fmt::format("has parts that take more than {} MiB of memory, which none of a run does", most.memory / mebibyte);
   }
   forget(to);
+  google::protobuf::SetLogHandler(nullptr);  // it would print a line for text that is no UTF-8
   if (to.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return std::nullopt;
   return "is damaged";
 }

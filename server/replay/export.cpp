@@ -154,6 +154,7 @@ std::uint64_t export_csv(const RecordingFile& file, const std::string& out) {
     ++written;
   }
   trace.close();
+  if (written == 0) throw RecordingError(file.path() + ": no state of it is intact, so a table would be empty");
   return written;
 }
 

@@ -120,7 +120,10 @@ void read_models(Draft& draft, Element& list) {
 std::string apply_model(Draft& draft, Element& element, const std::string& name, Entity& entity,
                         std::optional<ControllerChoice>& controller) {
   const auto index = name.empty() ? std::nullopt : find_model(draft, element, name);
-  if (!index) return "its model is unknown";
+  if (!index) {
+    for (const char* part : {"links", "devices"}) draft.report.left_out(part);
+    return "its model is unknown";
+  }
   Model& model = draft.models[*index];
   const std::string elsewhere =
       fmt::format("the model has it, at {}; with a model write only id, model, movable, <body>{}",

@@ -102,13 +102,19 @@ std::string advice(std::string_view name, std::span<const std::string_view> cand
 }
 
 std::string list_known(std::span<const std::string_view> candidates) {
-  constexpr std::size_t listed = 12;
+  constexpr std::size_t most_listed = 12;
   if (candidates.empty()) return "none is known here";
-  std::string list;
-  for (const std::string_view candidate : candidates.first(std::min(listed, candidates.size()))) {
-    list += (list.empty() ? "" : ", ") + std::string(candidate.substr(0, longest_compared));
+  std::vector<std::string_view> listed;
+  for (const std::string_view candidate : candidates) {
+    if (std::ranges::find(listed, candidate) != listed.end()) continue;
+    listed.push_back(candidate);
+    if (listed.size() > most_listed) break;
   }
-  return fmt::format("known here: {}{}", list, candidates.size() > listed ? ", …" : "");
+  std::string list;
+  for (const std::string_view each : std::span(listed).first(std::min(most_listed, listed.size()))) {
+    list += (list.empty() ? "" : ", ") + std::string(each.substr(0, longest_compared));
+  }
+  return fmt::format("known here: {}{}", list, listed.size() > most_listed ? ", …" : "");
 }
 
 std::string advice(std::string_view name, const std::vector<std::string>& candidates) {

@@ -34,6 +34,13 @@ std::string no_xml(const std::string& name) {
   return "this is no XML; a scene is an XML file that begins with <argos-configuration>";
 }
 
+constexpr std::string_view usual_root = "argos-configuration";
+
+bool is_nearly_usual(std::string_view name) {
+  const bool is_cut = name.starts_with("argos") && name.size() > "argos"sv.size();
+  return is_cut || nearest(name, {&usual_root, 1});
+}
+
 /// Reports a root that is no scene's; false then.
 bool check_root(const Element& root, const pugi::xml_node& node) {
   for (const auto& [name, format] : foreign_roots) {
@@ -45,19 +52,24 @@ bool check_root(const Element& root, const pugi::xml_node& node) {
   }
   const bool has_models = node.child("models") || root.name() == "models";
   const bool has_scene = node.child("arena") || node.child("framework") || node.child("physics_engines");
-  if (!has_models || has_scene) return true;
-  root.fault("has models for scenes, but is no scene itself; run a scene with "
-             "<include file=\"…\"/> of this file");
+  if (has_scene) return true;
+  if (has_models) {
+    root.fault("has models for scenes, but is no scene itself; run a scene with "
+               "<include file=\"…\"/> of this file");
+    return false;
+  }
+  const bool may_be_one = root.name() == "argos" || is_nearly_usual(root.name());
+  if (may_be_one || node.child("controllers") || node.child("media")) return true;
+  root.fault("is no scene: it has neither <framework> nor <arena>; a scene begins with <argos-configuration>, "
+             "which has both");
   return false;
 }
 
 /// A root may have any name; one that is nearly the usual one was meant to be it.
 void doubt_root(Draft& draft, const Element& root) {
-  constexpr std::array<std::string_view, 1> usual{"argos-configuration"};
-  const bool is_cut = root.name().starts_with("argos") && root.name().size() > "argos"sv.size();
-  if (root.name() == usual[0] || !(is_cut || nearest(root.name(), usual))) return;
+  if (root.name() == usual_root || !is_nearly_usual(root.name())) return;
   draft.report.warn(root.where(), "root",
-                    fmt::format("the root element is <{}>; did you mean <{}>? It is read as one", root.name(), usual[0]));
+                    fmt::format("the root element is <{}>; did you mean <{}>? It is read as one", root.name(), usual_root));
 }
 
 /// Reports the settings that set nothing, and those that set more than one attribute.

@@ -91,6 +91,8 @@ struct Inbox::Message {
   }
 };
 
+constexpr const char* neither = "it is neither protobuf nor JSON, which begins with '{'";
+
 Inbox::Inbox() : message_(std::make_unique<Message>()) {
   // protobuf would print a line for text that is no UTF-8: a peer's to send, and ours to answer.
   google::protobuf::SetLogHandler(nullptr);
@@ -123,11 +125,12 @@ Inbox::Kind Inbox::decode(std::string_view bytes) {
   Message& in = *message_;
   if (const auto content = v1::sole_field(bytes, v1::ClientMessage::kCommandFieldNumber)) {
     v1::Command& command = in.long_lived.made();
-    if (command.ParseFromArray(content->data(), static_cast<int>(content->size()))) {
-      in.command = &command;
-      in.kind = Kind::command;
+    if (!command.ParseFromArray(content->data(), static_cast<int>(content->size()))) {
+      in.complaint = neither;
+      return in.kind;
     }
-    return in.kind;
+    in.command = &command;
+    return in.kind = Kind::command;
   }
   in.other.drop();
   v1::ClientMessage& message = in.other.made();
@@ -135,6 +138,7 @@ Inbox::Kind Inbox::decode(std::string_view bytes) {
     in.complaint = read_json(bytes, message);
     if (!in.complaint.empty()) return in.kind;
   } else if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
+    in.complaint = neither;
     return in.kind;
   }
   switch (message.message_case()) {
@@ -158,6 +162,7 @@ Inbox::Kind Inbox::decode(std::string_view bytes) {
       in.kind = Kind::direction;
       break;
     case v1::ClientMessage::MESSAGE_NOT_SET:
+      in.complaint = "it has none of the messages that clients send";
       break;
   }
   return in.kind;

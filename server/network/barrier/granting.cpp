@@ -111,6 +111,12 @@ wire::Refusal make_refusal(ErrorCode code, std::string field, std::string messag
 
 std::optional<wire::Refusal> check_hello(const Barrier& barrier, const wire::Hello& hello,
                                          const Roles& roles) {
+  if (hello.version.major == 0) {
+    return make_refusal(ErrorCode::version_mismatch, "version",
+                        fmt::format("The Hello has no major version of the protocol; write the one of the client, "
+                                    "as {}.{}, the server's.",
+                                    wire::version.major, wire::version.minor));
+  }
   if (hello.version.major != wire::version.major) {
     return make_refusal(
         ErrorCode::version_mismatch, "version",

@@ -66,6 +66,15 @@ std::string repeated(const std::string& piece, std::size_t bytes) {
   return all;
 }
 
+/// Standard error is for our own messages, as objects of JSON where that is asked for.
+TEST(Decoding, PrintsNothingAboutTextThatIsNoUtf8) {
+  v1::RunStart start;
+  testing::internal::CaptureStderr();
+  const auto fault = decode("\x0a\x02\xff\xfe", start);  // a scene of two bytes
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(fault, "is damaged");
+}
+
 TEST(Decoding, TheMemoryThatIsFoundOutIsEnough) {
   for (const Bomb& bomb : bombs()) {
     const std::string bytes = repeated(bomb.piece, 600'000);

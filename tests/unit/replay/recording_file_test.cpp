@@ -219,6 +219,16 @@ TEST_F(Disk, LinksOfAnotherEntityAreNoRowsOfATable) {
   EXPECT_NE(fault_of([&] { export_csv(file, path("out.csv")); }).find("not its own"), std::string::npos);
 }
 
+TEST_F(Disk, ATableWithoutAnyStateIsAFault) {
+  v1::World message;
+  message.add_entities()->set_link_count(1);
+  message.add_links();
+  const std::string world = message.SerializeAsString();
+  const std::string bytes = recording_of({{"/world", "ziggurat.v1.World", world}, {"/state", "ziggurat.v1.ExactState", {}}});
+  const RecordingFile file("cut.mcap", mcap::bytes_of(bytes));
+  EXPECT_EQ(fault_of([&] { export_csv(file, path("out.csv")); }), "cut.mcap: no state of it is intact, so a table would be empty");
+}
+
 TEST_F(Disk, AMessageOfManySmallPartsIsToldAndNotDecoded) {
   const std::string world = repeated({"\x62\0", 2}, 40'000'000);  // entities
   const std::string bytes = recording_of({{"/world", "ziggurat.v1.World", world},

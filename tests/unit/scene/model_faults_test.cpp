@@ -50,6 +50,8 @@ constexpr Row rows[] = {
      "test.argos:5:20: model=\"crate\" of <box> names no model; define it in <models>"},
     {"Misspelt", "<prototype id=\"a\" model=\"blok\"><body/></prototype>", include_block,
      "test.argos:5:26: model=\"blok\" of <prototype> names no model; did you mean \"block\"?"},
+    {"MisspeltForAController", "<prototype id=\"a\" model=\"blok\"><body/><controller config=\"blink\"/></prototype>", include_block,
+     "test.argos:5:26: model=\"blok\" of <prototype> names no model; did you mean \"block\"?"},
     {"OtherElement", "<box id=\"a\" model=\"block\"><body/></box>", include_block,
      "test.argos:5:20: model=\"block\" of <box> is a <prototype>, defined at "
      "parts/block.argos:6:1; write <prototype model=\"block\" …>"},

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scene/report.h"
@@ -32,6 +33,16 @@ TEST(Names, OnlyTheFirstMistakesGetASuggestion) {
   Report report(files);
   for (int i = 0; i < 50; ++i) EXPECT_EQ(report.advice("rigth", known), "did you mean \"right\"?");
   EXPECT_EQ(report.advice("rigth", known), "known here: left, right");
+}
+
+TEST(Names, AreListedOnceEach) {
+  std::vector<std::string_view> known{"id", "orientation", "position", "orientation"};
+  EXPECT_EQ(list_known(known), "known here: id, orientation, position");
+  for (int i = 0; i < 20; ++i) known.push_back("position");
+  EXPECT_EQ(list_known(known), "known here: id, orientation, position");
+  const std::vector<std::string> others{"a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m"};
+  known.assign(others.begin(), others.end());
+  EXPECT_EQ(list_known(known), "known here: a, b, c, d, e, f, g, h, i, j, k, l, …");
 }
 
 }  // namespace

@@ -166,6 +166,19 @@ TEST(OtherFiles, AreNamed) {
             "m:1:1: <x> has models for scenes, but is no scene itsel");
 }
 
+TEST(OtherFiles, AreToldByTheirRootAndNotByWhatItLacks) {
+  for (const char* text : {"<html><body>scene</body></html>", "<include file=\"x.argos\"/>"}) {
+    const auto found = faults(read_text(text, "a"));
+    ASSERT_EQ(found.size(), 1u) << text;
+    EXPECT_NE(found[0].find("> is no scene: it has neither <framework> nor <arena>; a scene begins with <argos-configuration>"),
+              std::string::npos)
+        << found[0];
+  }
+  const auto lacks = faults(read_text("<argos-config/>", "a"));
+  ASSERT_FALSE(lacks.empty());
+  EXPECT_NE(lacks[0].find("lacks the element <framework>"), std::string::npos) << lacks[0];
+}
+
 TEST(Radians, AreDoubtedOnceWithTheirNumber) {
   const auto warnings = [](const std::string& orientation) {
     std::string text = slider;

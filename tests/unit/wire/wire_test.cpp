@@ -144,7 +144,20 @@ TEST(Inbox, JsonIsTheSameMessage) {
   EXPECT_EQ(inbox.parse(R"({"command":{"tick":"7","jointTargets":[1]})"), Inbox::Kind::malformed);
   EXPECT_NE(inbox.complaint(), "");
   EXPECT_EQ(inbox.parse(" {}"), Inbox::Kind::malformed);
-  EXPECT_EQ(inbox.complaint(), "") << "that was not JSON to begin with";
+  EXPECT_EQ(inbox.complaint(), "it is neither protobuf nor JSON, which begins with '{'");
+  EXPECT_EQ(inbox.parse(R"({"helo":{}})"), Inbox::Kind::malformed);
+  EXPECT_EQ(inbox.complaint(), "it has none of the messages that clients send");
+}
+
+TEST(Inbox, WhatIsNoMessageIsToldAsSuch) {
+  using namespace std::string_literals;
+  Inbox inbox;
+  for (const std::string& bytes : {"\xff\xff"s, "[]"s, "\x12\x02\x0a\xff"s}) {
+    EXPECT_EQ(inbox.parse(bytes), Inbox::Kind::malformed);
+    EXPECT_EQ(inbox.complaint(), "it is neither protobuf nor JSON, which begins with '{'") << bytes;
+  }
+  EXPECT_EQ(inbox.parse(""), Inbox::Kind::malformed);
+  EXPECT_EQ(inbox.complaint(), "it has none of the messages that clients send");
 }
 
 TEST(Inbox, InvalidUtf8IsMalformedAndNothingIsPrinted) {
