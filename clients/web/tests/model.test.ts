@@ -1,5 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import type { InstancedMesh } from "three";
+import { Lights } from "../source/drawing/lights";
 import { patternOf } from "../source/drawing/tags";
 import { cornersAt } from "../source/drawing/overlays";
 import { mergedGeometry, roomFor } from "../source/drawing/merged";
@@ -121,6 +123,17 @@ test("readings by device have names, limits and places", () => {
   assert.equal(groups[2].readings[1].text, "∞");
   assert.equal(groups[3].readings[0].text, "“hi”  68 69");
   assert.equal(bytesText(new Uint8Array([0, 255])), "00 ff");
+});
+
+test("many LEDs are drawn with fewer triangles each", () => {
+  const mount = { link: 0, position: [0, 0, 0], orientation: [1, 0, 0, 0] };
+  const trianglesOf = (count: number): number => {
+    const lights = new Lights();
+    lights.setWorld({ leds: Array(count).fill({ mount }), directionalLeds: [] } as unknown as World);
+    return (lights.group.children[0] as InstancedMesh).geometry.index!.count / 3;
+  };
+  assert.equal(trianglesOf(100), 168);
+  assert.equal(trianglesOf(100_000), 20);
 });
 
 test("tags: only integers below the number of patterns", () => {

@@ -7,6 +7,7 @@ import { writeMatrix } from "./matrix";
 const radius = 0.004; // [m]
 const longestCone = 0.02; // [m]
 const widestCone = 0.9; // half-angle [rad]: wider ones would hide what they shine on
+const mostRound = 2000; // LEDs that are round, with 168 triangles each; of more, each has 20
 
 function glowTexture(): three.DataTexture {
   const size = 64;
@@ -39,7 +40,8 @@ export class Lights {
     this.bulbs = this.cones = this.glow = null;
     if (count === 0) return;
     this.mounts = packed([...world.leds, ...world.directionalLeds].map(({ mount }) => mount));
-    this.bulbs = new three.InstancedMesh(new three.SphereGeometry(radius, 12, 8), new three.MeshBasicMaterial(), count);
+    const [around, up] = count <= mostRound ? [12, 8] : [5, 3];
+    this.bulbs = new three.InstancedMesh(new three.SphereGeometry(radius, around, up), new three.MeshBasicMaterial(), count);
     this.glow = new three.Points(new three.BufferGeometry(), new three.PointsMaterial({
       size: 12 * radius, map: this.texture, vertexColors: true, transparent: true, depthWrite: false,
       blending: three.AdditiveBlending }));
