@@ -162,17 +162,21 @@ nlohmann::ordered_json to_json(const Examined& file) {
           {"faults", faults}};
 }
 
+std::string counted(std::uint64_t number, const char* what) {
+  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+}
+
 /// One sentence on what is wrong, and one on what can be saved.
 std::string complaint(const Examined& file) {
   const auto& faults = file.scan.faults;
   std::uint64_t messages = 0;
   for (const auto& topic : file.overview.topics) messages += topic.messages;
   return fmt::format(
-      "{}: byte {}: {}{}; {} messages and {} attachments are intact, up to {:.6g} s; to save them, "
+      "{}: byte {}: {}{}; {} and {} are intact, up to {:.6g} s; to save them, "
       "write: ziggurat info {} --repair OUT.mcap",
       shown(file.path), faults[0].offset, shown(faults[0].text),
-      faults.size() > 1 ? fmt::format(" (and {} faults more)", faults.size() - 1) : "", messages,
-      file.attachments.size(), file.overview.length, shown(file.path));
+      faults.size() > 1 ? fmt::format(" (and {} more)", counted(faults.size() - 1, "fault")) : "",
+      counted(messages, "message"), counted(file.attachments.size(), "attachment"), file.overview.length, shown(file.path));
 }
 
 Examined examine(const std::string& path, const mcap::Source& source, const mcap::Reader& reader) {
@@ -194,8 +198,8 @@ void write_repaired(const std::string& path, const mcap::Reader& reader, const s
     console.warning(fmt::format("{}: byte {}: {}; it is left out", shown(path), fault.offset,
                                 shown(fault.text)));
   }
-  console.report(fmt::format("{}: {} messages in {} chunks, {} attachments", shown(out),
-                             repaired.messages, repaired.chunks, repaired.attachments));
+  console.report(fmt::format("{}: {} in {}, {}", shown(out), counted(repaired.messages, "message"),
+                             counted(repaired.chunks, "chunk"), counted(repaired.attachments, "attachment")));
 }
 
 }  // namespace

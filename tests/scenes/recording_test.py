@@ -268,6 +268,18 @@ class RecordingTest(SceneTest):
                     self.assertIn(code, (FINISHED, FAULT, 5, 6), err)
                     self.assertNotRegex(err, r"terminate called|Assertion|std::|Sanitizer")
 
+    def test_what_is_intact_is_counted_in_words(self):
+        self.outcome("run", "arms.argos", "--ticks", 3, "--record", "a.mcap", "--record-compression", "none", "--quiet")
+        whole = (self.folder / "a.mcap").read_bytes()
+        end = [end for op, _, end in self.records(whole) if op == 0x06][0]  # of the first chunk, which has /run alone
+        (self.folder / "x.mcap").write_bytes(whole[:end + 5])
+        code, _, err = self.outcome("info", "x.mcap")
+        self.assertEqual(code, FAULT)
+        self.assertRegex(err, r"; 1 message and \d+ attachments are intact, ")
+        code, _, err = self.outcome("export", "x.mcap", "--csv", "x.csv")
+        self.assertEqual(code, FAULT)
+        self.assertFalse((self.folder / "x.csv").exists())
+
     def test_secrets_are_not_recorded(self):
         keys = [self.folder / "server", self.folder / "client"]
         for key in keys:
