@@ -87,6 +87,27 @@ void cross_edges(const OrientedBox& a, const OrientedBox& b, const Separation& e
   out.add(on_b + w * along, edge.distance);
 }
 
+/// A face of one of two boxes touches.
+void touch_face(const OrientedBox& a, const OrientedBox& b, const Separation& face, btScalar reach, Contacts& out) {
+  if (face.axis_a >= 0) return clip_faces(a, face.axis_a, face.a_to_b, b, true, reach, out);
+  clip_faces(b, face.axis_b, -face.a_to_b, a, false, reach, out);
+}
+
+/// What else the best face would meet, above the point where edges cross: it may be there within the substep. A plank that lies
+/// on another one's edge rocks on both of its own edges.
+void add_beside(const OrientedBox& a, const OrientedBox& b, const Separation& face, const Separation& edge, btScalar reach,
+                btScalar prefer, Contacts& out) {
+  constexpr btScalar along = btScalar(0.98);  // cosine of the angle between their normals
+  const btScalar cosine = face.a_to_b.dot(edge.a_to_b);
+  if (cosine < along) return;
+  Contacts beside;
+  touch_face(a, b, face, reach * cosine, beside);
+  for (int i = 0; i < beside.count; ++i) {
+    const btScalar distance = beside.points[i].distance / cosine;
+    if (distance > edge.distance + prefer) out.add(beside.points[i].on_b, distance);
+  }
+}
+
 /// An edge of a box.
 struct Edge {
   btVector3 middle, direction;  ///< [m]; unit
@@ -190,7 +211,8 @@ void contact_points(const Box& box_a, const Box& box_b, const Placement& at, Con
 
   if (edge.distance > face.distance + prefer_faces_to_edges) {
     out.normal = -edge.a_to_b;
-    return cross_edges(a, b, edge, out);
+    cross_edges(a, b, edge, out);
+    return add_beside(a, b, face, edge, reach, prefer_face, out);
   }
   int axis_a = 0, axis_b = 0;
   if (support != Support::lowest && find_parallel(a, b, axis_a, axis_b)) {
@@ -199,13 +221,8 @@ void contact_points(const Box& box_a, const Box& box_b, const Placement& at, Con
     if (meet_along_edges(one, other, prefer_face, reach, out)) return;
     face = faces[faces[1].distance > faces[0].distance];
   }
-  if (face.axis_a >= 0) {
-    out.normal = -face.a_to_b;
-    clip_faces(a, face.axis_a, face.a_to_b, b, true, reach, out);
-  } else {
-    out.normal = -face.a_to_b;
-    clip_faces(b, face.axis_b, -face.a_to_b, a, false, reach, out);
-  }
+  out.normal = -face.a_to_b;
+  touch_face(a, b, face, reach, out);
 }
 
 }  // namespace ziggurat::physics::contact

@@ -231,5 +231,28 @@ TEST_P(AllPairs, FindTheSamePointsWhereOneIsUseful) {
 INSTANTIATE_TEST_SUITE_P(Contact, AllPairs, ::testing::ValuesIn(pairs),
                          [](const auto& pair) { return pair.param.name; });
 
+// Where its face is not parallel to the edge that carries it, its own edges cross that, one lower than the other: with the point of
+// the lower one alone it went deeper on both sides in turns.
+TEST(BoxBox, APlankOnAnEdgeTouchesItWithBothOfItsOwn) {
+  const Box plank{{0.15, 0.04, 0.01}};
+  const btVector3 edge(0, 0.04, 0.01);  // its middle, on the lower plank
+  for (const btScalar lean : {0.05, 0.1, 0.15}) {
+    for (const btScalar roll : {-0.02, -0.01, 0.01, 0.02}) {
+      const btMatrix3x3 turned = btMatrix3x3(btQuaternion({1, 0, 0}, -lean)) * btMatrix3x3(btQuaternion({0, 1, 0}, roll)) *
+                                 btMatrix3x3(btQuaternion({0, 0, 1}, std::numbers::pi / 2));
+      const btTransform upper(turned, edge + turned.getColumn(2) * plank.half.z());
+      const Contacts found = find(plank, upper, plank, btTransform::getIdentity(), 0.005, Support::face, 0.005);
+      btScalar left = 1, right = 1;
+      for (int i = 0; i < found.count; ++i) {
+        btScalar& side = found.points[i].on_b.x() < 0 ? left : right;
+        side = btMin(side, found.points[i].distance);
+      }
+      const btScalar lower = -plank.half.y() * btSin(btFabs(roll));
+      EXPECT_NEAR(btMin(left, right), lower, 5e-5) << lean << " " << roll;
+      EXPECT_NEAR(btMax(left, right), -lower, 1e-4) << lean << " " << roll;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ziggurat::physics::contact
