@@ -285,6 +285,7 @@ void Contacts::meet(Pair& pair, double length) {
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
   pair.met = part_;
+  pair.covers = false;
   met_.push_back(static_cast<int>(&pair - pairs_.data()));
   resting_ -= pair.rests;
   pair.rests = colliders_.rests(a) && colliders_.rests(b);

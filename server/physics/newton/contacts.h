@@ -22,11 +22,6 @@ inline std::uint64_t key_of(std::size_t a, std::size_t b) { return std::uint64_t
 dynamics::Contact law_of(const Collider& a, const Collider& b, const math::Vector3& normal,
                          int count);
 
-/// A pair whose contacts were dropped because another one goes on where they are.
-struct DroppedPair {
-  int pair = 0, because_of = 0;
-};
-
 class Contacts {
  public:
   explicit Contacts(Colliders& colliders) : colliders_(colliders) {}
@@ -79,6 +74,7 @@ class Contacts {
     static constexpr std::size_t beginning = 384;  // with two points [bytes]
     std::uint32_t a = 0, b = 0;  // colliders
     bool live = false;
+    bool covers = false;      // contacts of others were dropped because of it
     bool rests = false;       // both sides did in the substep in which it was seen last
     unsigned seen = 0;        // the substep in which it was near last
     unsigned met = 0;         // likewise, counting parts as substeps
@@ -95,9 +91,9 @@ class Contacts {
   void meet(Pair& pair, double length);
   void add(const contact::Contacts& found, Pair& pair, double length);
   void emit(const Pair& pair);
-  bool is_inside_base(const Collider& cover, int hidden, std::size_t mover, const btVector3& up, btScalar height,
+  bool is_inside_base(const Collider& cover, const Pair& hidden, std::size_t mover, const btVector3& up, btScalar height,
                       const btVector3& point);
-  bool drops(const Pair& seen, Pair& hidden, std::size_t mover);
+  bool drops(Pair& seen, Pair& hidden, std::size_t mover);
   void note_bases(const Pair& pair);
   void drop_hidden();
   template <class IsKept>
@@ -123,7 +119,7 @@ class Contacts {
   PairLists lists_;               // of all colliders but the floor
   std::vector<int> forgotten_;    // pairs, in forget()
   std::vector<int> neighbours_;   // of a collider, in is_inside_base()
-  std::vector<DroppedPair> dropped_;  // of a mover on a base, in drop_hidden()
+  std::vector<Pair*> carriers_;   // of the contacts that drops() looks at
   std::vector<dynamics::Contact> contacts_;
   /// Where a contact is remembered.
   struct Owner {

@@ -17,41 +17,37 @@ btScalar top_of(const Collider& collider, const btVector3& up) {
   return up.dot(collider.pose.getOrigin()) + contact::reach_along(collider.shape, in_it);
 }
 
-/// Whether a pair was dropped because another one goes on where it touches.
-bool depends(std::span<const DroppedPair> dropped, int pair, int on) {
-  return std::ranges::any_of(dropped, [&](const DroppedPair& each) {
-    return each.pair == pair && (each.because_of == on || depends(dropped, each.because_of, on));
-  });
-}
-
 }  // namespace
 
 /// Whether a point on the base of `cover` is inside of another collider of the base than that of `hidden`, which ends flush with it:
-/// of those near the mover. Notes which. Where four tiles meet two must not hide each other.
+/// of those near the mover. Notes the pair with it, rather one without contacts.
 /// @param height  of the surface of `cover` along `up` [m]
-bool Contacts::is_inside_base(const Collider& cover, int hidden, std::size_t mover, const btVector3& up, btScalar height,
+bool Contacts::is_inside_base(const Collider& cover, const Pair& hidden, std::size_t mover, const btVector3& up, btScalar height,
                               const btVector3& point) {
   neighbours_.clear();
   lists_.collect(mover, neighbours_);
+  Pair* carrier = nullptr;
   for (const int number : neighbours_) {
-    const Collider& other = colliders_.all[pairs_[number].a == mover ? pairs_[number].b : pairs_[number].a];
+    Pair& pair = pairs_[number];
+    const Collider& other = colliders_.all[pair.a == mover ? pair.b : pair.a];
     const bool same_base = cover.moves ? other.entity == cover.entity && other.part == cover.part : !other.moves;
-    if (!same_base || !other.present || number == hidden || btFabs(top_of(other, up) - height) > flush ||
-        !contact::holds(other.shape, other.pose.invXform(point), slack) || depends(dropped_, number, hidden)) {
+    if (!same_base || !other.present || &pair == &hidden || btFabs(top_of(other, up) - height) > flush ||
+        !contact::holds(other.shape, other.pose.invXform(point), slack)) {
       continue;
     }
-    dropped_.push_back({hidden, number});
-    return true;
+    if (pair.count == 0) return true;
+    carrier = &pair;
   }
-  return false;
+  if (carrier != nullptr) carriers_.push_back(carrier);
+  return carrier != nullptr;
 }
 
 /// Whether contacts of a collider with `hidden` lie in a seam that its contacts with `seen` cover:
 /// `hidden` is nowhere above the surface of `seen`, which goes on where they touch, in its neighbours too. Both are of one
-/// body, or stand. Then it drops them.
-bool Contacts::drops(const Pair& seen, Pair& hidden, std::size_t mover) {
-  const int number = static_cast<int>(&hidden - pairs_.data());
-  const std::size_t before = dropped_.size();
+/// body, or stand. Then it drops them, and what covers them is not dropped any more: where four tiles meet two would hide each other.
+bool Contacts::drops(Pair& seen, Pair& hidden, std::size_t mover) {
+  if (hidden.covers) return false;
+  carriers_.assign(1, &seen);
   const bool seen_first = seen.b == mover, hidden_first = hidden.b == mover;
   const Collider& cover = colliders_.all[seen_first ? seen.a : seen.b];
   const Collider& other = colliders_.all[hidden_first ? hidden.a : hidden.b];
@@ -63,12 +59,9 @@ bool Contacts::drops(const Pair& seen, Pair& hidden, std::size_t mover) {
     const Remembered& point = hidden.points[i];
     const btVector3 at = other.pose * to_bullet(hidden_first ? point.on_a : point.on_b);
     if (contact::holds(cover.shape, cover.pose.invXform(at), slack)) continue;
-    if (!is_inside_base(cover, number, mover, up, height, at)) {
-      dropped_.resize(before);
-      return false;
-    }
+    if (!is_inside_base(cover, hidden, mover, up, height, at)) return false;
   }
-  dropped_.push_back({number, static_cast<int>(&seen - pairs_.data())});
+  for (Pair* carrier : carriers_) carrier->covers = true;
   hidden.count = 0;
   return true;
 }
@@ -98,7 +91,6 @@ void Contacts::drop_hidden() {
   bool dropped = false;
   for (std::size_t i = 0; i < on_bases_.size(); ++i) {
     const OnBase& one = on_bases_[i];
-    if (i == 0 || !same_base(on_bases_[i - 1], one)) dropped_.clear();
     Pair& pair = pairs_[one.pair];
     for (std::size_t j = i; j-- > 0 && same_base(on_bases_[j], one) && pair.count > 0;) {
       Pair& other = pairs_[on_bases_[j].pair];

@@ -190,6 +190,15 @@ TEST_P(NewtonAt, WhatRollsOrSlidesOverFourTilesKeepsItsSpeed) {
   }
 }
 
+// Which tile goes on where another one ends was followed along all ways through the tiles: without end.
+TEST(NewtonTiles, CarryAPlateThatCoversFourHundred) {
+  World world(newton(), 0.01);
+  for (int i = 0; i < 400; ++i) world.add(standing(at(0.05 * (i / 20) - 0.475, 0.05 * (i % 20) - 0.475, -0.05), scene::Box{{0.05, 0.05, 0.05}}));
+  world.add(loose({{0.003, 0.002, 0}, about({0, 0, 1}, 0.12)}, scene::Box{{1, 1, 0.02}}, 1));
+  run(world, 0.1, 0.01);
+  EXPECT_LT((origin(world, 400).position - Vector3(0.003, 0.002, 0)).norm(), 1e-6);
+}
+
 /// Four flush tiles of 0.5 x 1 x 0.1 m in one body, in a row along x.
 scene::Entity platform(const Pose& pose, double friction) {
   std::vector<scene::Link> tiles;
