@@ -12,7 +12,6 @@ namespace {
 
 constexpr unsigned most_ring_sensors = 1000;
 constexpr std::size_t most_proximity_sensors = 10'000;  // of a robot
-constexpr unsigned most_data_bytes = 65'536;            // of a range-and-bearing packet
 
 /// The id of a device: as written, or `<stem>_<N>`.
 std::string read_device_id(Element& device, std::string_view stem, Ids& ids) {

@@ -100,6 +100,8 @@ struct ProximitySensor {
   Location where;
 };
 
+constexpr unsigned most_data_bytes = 65'536;  ///< of a range-and-bearing packet
+
 /// Sends its position and some bytes to others in line of sight, and receives theirs.
 struct RangeAndBearing {
   Anchor anchor;

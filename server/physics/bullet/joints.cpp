@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/braking.h"
+
 namespace ziggurat::physics {
 namespace {
 
@@ -17,13 +19,6 @@ double mobility(MovingJoint& joint) {
   impulse[dof] = 1;
   multi.calcAccelerationDeltasMultiDof(&impulse[0], &response[0], scalars, vectors);
   return std::isfinite(response[dof]) ? response[dof] : 0;
-}
-
-/// The fastest approach from which a motor of this strength can still stop at the target:
-/// with deceleration a in steps of h, the sum of the velocities left to go is the distance.
-double stoppable_velocity(double distance, double deceleration, double length) {
-  const double step = deceleration * length;  // [m/s] lost per substep
-  return step * (std::sqrt(0.25 + 2 * distance / (step * length)) - 0.5);
 }
 
 }  // namespace

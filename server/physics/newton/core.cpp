@@ -21,7 +21,7 @@ void forget_usual_damping(Body& body, const scene::Physics& physics) {
   }
 }
 
-std::vector<CoordinateJoint> make_joints(const scene::Entity& entity, const Body& body) {
+std::vector<CoordinateJoint> coordinate_joints_of(const scene::Entity& entity, const Body& body) {
   std::vector<CoordinateJoint> made;
   for (std::size_t i = 0; i < entity.joints.size(); ++i) {
     const scene::Joint& joint = entity.joints[i];
@@ -57,7 +57,7 @@ Body NewtonCore::add(const scene::Entity& entity, std::size_t number) {
   Body body = make_body(entity, settings_, number);
   forget_usual_damping(body, settings_);
   dynamics::Tree tree = make_tree(body, entity, settings_);
-  const std::vector<CoordinateJoint> joints = make_joints(entity, body);
+  const std::vector<CoordinateJoint> joints = coordinate_joints_of(entity, body);
   share_mechanism(tree, system_.trees);
   make_room(system_.trees, 1);
   make_room(joints_, joints.size());

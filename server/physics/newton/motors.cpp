@@ -4,18 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "physics/braking.h"
 #include "physics/convert.h"
 #include "physics/newton/tree.h"
 
 namespace ziggurat::physics {
 namespace {
-
-/// The fastest approach from which a motor of this strength can still stop at the target:
-/// with deceleration a in steps of h, the sum of the velocities left to go is the distance.
-double stoppable_velocity(double distance, double deceleration, double length) {
-  const double step = deceleration * length;  // [m/s] lost per substep
-  return step * (std::sqrt(0.25 + 2 * distance / (step * length)) - 0.5);
-}
 
 /// The velocity of a motor that seeks a position.
 double approach(double error, const dynamics::Tree& tree, dynamics::Workspace& work, int dof,

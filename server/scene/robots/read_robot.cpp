@@ -6,8 +6,6 @@
 namespace ziggurat::scene {
 namespace {
 
-constexpr unsigned most_data_bytes = 65'536;  // of a range-and-bearing packet
-
 void read_steering_limits(Element engine, Traction& traction) {
   if (auto steering = engine.child("differential_steering")) {
     traction.max_force = steering->optional("max_force", positive, traction.max_force);

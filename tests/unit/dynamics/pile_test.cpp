@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "../long_runs.h"
+
 namespace ziggurat::dynamics {
 namespace {
 
@@ -14,7 +16,7 @@ double energy(const testing::Touching& world) {
 }
 
 TEST(Pile, CubesInABinComeToRestWithinTheContactLaw) {
-  testing::Touching world = testing::pile(20);
+  testing::Touching world = testing::pile(long_runs::is_slow ? 5 : 20);
   double before = energy(world);
   for (int i = 0; i < 150; ++i) {
     const Report report = world.step(0.01);
@@ -27,8 +29,8 @@ TEST(Pile, CubesInABinComeToRestWithinTheContactLaw) {
   for (const Tree& tree : world.system.trees) EXPECT_LT(tree.velocity(0).norm(), 1e-6);
 }
 
-TEST(Pile, FiftyCubesThatStrikeMissTheContactLawByLessThanAMillimetrePerSecond) {
-  testing::Touching world = testing::pile(50);
+TEST(Pile, CubesThatStrikeMissTheContactLawByLessThanAMillimetrePerSecond) {
+  testing::Touching world = testing::pile(long_runs::is_slow ? 15 : 50);
   for (int i = 0; i < 60; ++i) EXPECT_LT(world.step(0.01).miss, 1e-3) << i;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <random>
 
+#include "../long_runs.h"
 #include "touching.h"
 
 namespace ziggurat::dynamics {
@@ -67,7 +68,7 @@ Vector3 drift_of(const Tree& tree) {
 
 // A smooth floor pushes upwards only.
 TEST(Tumbling, OnASmoothFloorKeepsItsDrift) {
-  for (const double hz : {50., 100., 200., 500., 1000., 2000.}) {
+  for (const double hz : long_runs::some_of({50, 100, 200, 500, 1000, 2000})) {
     for (unsigned seed = 0; seed < 4; ++seed) {
       Random random{std::mt19937(seed)};
       Touching world;
@@ -84,7 +85,7 @@ TEST(Tumbling, OnASmoothFloorKeepsItsDrift) {
 }
 
 TEST(Tumbling, GivesMechanismsNoEnergy) {
-  for (const double hz : {100., 500.}) {
+  for (const double hz : long_runs::some_of({100, 500})) {
     for (unsigned seed = 0; seed < 30; ++seed) {
       tumble(hz, JointType::revolute, 1 + seed % 3, seed);
       tumble(hz, JointType::spherical, 1 + seed % 3, seed);
@@ -116,7 +117,7 @@ void rebound(double hz, double restitution, unsigned seed) {
 }
 
 TEST(Tumbling, ReboundsGiveBoxesNoEnergy) {
-  for (const double hz : {100., 500.}) {
+  for (const double hz : long_runs::some_of({100, 500})) {
     for (unsigned seed = 0; seed < 20; ++seed) {
       rebound(hz, 0.7, seed);
       rebound(hz, 1, seed);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "../../long_runs.h"
 #include "magnetism/dipole.h"
 #include "newton_scene.h"
 
@@ -126,7 +127,7 @@ scene::Entity repelling(double x) {
 // It comes into the reach of what divides a substep, and leaves it, at each swing: speeds of whole substeps are those of half a
 // substep before, and without a change from one to the other each swing had more energy, at all rates.
 TEST(MagnetOnARail, SwingsBetweenTwoOthersWithoutGain) {
-  for (const double hz : {1000.0, 2000.0}) {
+  for (const double hz : long_runs::some_of({1000, 2000})) {
     World world(floating(), 1 / hz);
     scene::Entity rail = prototype("rail", at(0, 0, 0), false,
                                    {link("base", scene::Box{{0.001, 0.001, 0.001}}, 1), link("slider", scene::Box{{0.01, 0.01, 0.01}}, 0.1)});
@@ -196,7 +197,7 @@ TEST(TumblingMagnets, HeapsThatRollGainNoEnergy) {
   // What is pushed out of an overlap gains energy from the magnets: a micrometre is 3e-4 of a bond.
   const double h = 1e-3;
   World world(floating(), h);
-  scatter(world, 30, 2);
+  scatter(world, long_runs::is_slow ? 10 : 30, 2);
   EXPECT_LT(growth(world, 0.1, h), 1e-3);
 }
 
