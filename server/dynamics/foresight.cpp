@@ -9,8 +9,8 @@
 namespace ziggurat::dynamics {
 namespace {
 
-/// Of an island that is looked at: a heap has no room to be thrown far.
-constexpr int most_bodies = 8;
+/// Of an island that is looked at: a larger heap has no room to be thrown far.
+constexpr int most_bodies = 64;
 /// How far from a joint something may be that it turns [m].
 constexpr double lever = 0.5;
 

@@ -124,9 +124,29 @@ void note_rolling(const Collider& a, const Collider& b, double length, dynamics:
   contact.velocity = from_bullet(is_ball ? round.velocity + tilt : round.velocity + tilt + turning * normal.cross(arm));
 }
 
+/// Whether a body that seems to pass what stands may yet come there, because the ways of what turns are bent, and its axis turns, too: each changes
+/// a way by up to r (w h)^2 / 2.
+/// @param slack  what counts as close [m]
+bool may_turn_into(const Collider& a, const Collider& b, double length, double slack) {
+  constexpr double far = 0.05;  // [rad]
+  if (a.moves && b.moves) return false;
+  const Collider& moving = a.moves ? a : b;
+  const double turn = length * moving.angular_velocity.length();
+  if (turn < far) return false;
+  const double bend = moving.radius * turn * turn;
+  const contact::Contacts all = contact::find(a.shape, a.pose, b.shape, b.pose, a.reach + b.reach, contact::Support::all);
+  for (int i = 0; i < all.count; ++i) {
+    const contact::Point& point = all.points[i];
+    const double speed = all.normal.dot(velocity_at(b, point.on_b) - velocity_at(a, point.on_b));
+    if (point.distance - length * speed <= slack + bend) return true;
+  }
+  return false;
+}
+
 /// How two colliders turn in a substep.
 struct Turning {
   bool tumbles = false;  ///< one so far that other points may touch
+  bool may_land = false;  ///< nothing touches, but points may come to overlap as one turns
   double swing = 0;      ///< one that swings, until they meet [rad]
 };
 
@@ -140,6 +160,7 @@ contact::Contacts look(const Collider& a, const Collider& b, double length, doub
       contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::face,
                     farthest_that_may_touch(a, b, length, slack));
   const Approach approach = approach_of(found, a, b, length, slack);
+  const bool in_reach = found.count > 0;
   out.tumbles = approach.may_touch && tumbles(a, b, approach, length);
   const bool swings = found.count > 0 && std::max(swing_of(a, length), swing_of(b, length)) > far;
   double time = 0;
@@ -153,6 +174,7 @@ contact::Contacts look(const Collider& a, const Collider& b, double length, doub
   } else if (out.tumbles) {
     found = contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::all);
   }
+  out.may_land = found.count == 0 && in_reach && may_turn_into(a, b, length, slack);
   if (!out.tumbles || found.count > most_points) contact::reduce(found, (a.moves ? a : b).pose);
   return found;
 }
@@ -277,7 +299,7 @@ void Contacts::choose(const TreeSet& chosen) {
 
 std::span<dynamics::Contact> Contacts::keep(const TreeSet& chosen) {
   keep_if([&](const Pair& pair) { return is_among(pair.a, pair.b, colliders_, chosen); });
-  std::erase_if(turned_, [&](std::size_t pair) { return !is_among(pairs_[pair].a, pairs_[pair].b, colliders_, chosen); });
+  std::erase_if(turned_, [&](const Turned& turned) { return !is_among(pairs_[turned.pair].a, pairs_[turned.pair].b, colliders_, chosen); });
   return contacts_;
 }
 
@@ -300,7 +322,7 @@ void Contacts::meet(Pair& pair, double length) {
   if (turning.swing > 0) swings.push_back({static_cast<int>((a.swings ? a : b).entity), turning.swing});
   add(found, pair, length);
   if (found.count > 0) note_bases(pair);
-  if (turning.tumbles && !(a.moves && b.moves)) turned_.push_back(&pair - pairs_.data());
+  if (turning.may_land || (turning.tumbles && !(a.moves && b.moves))) turned_.push_back({static_cast<std::size_t>(&pair - pairs_.data()), turning.may_land});
 }
 
 /// Appends the pair's contacts, each with the impulse of the point of the last substep that is

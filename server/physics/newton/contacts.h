@@ -127,7 +127,12 @@ class Contacts {
   };
   std::vector<Owner> owners_;                   // of each contact
   std::array<Remembered, most_points> before_;  // of the pair under way, a substep ago
-  std::vector<std::size_t> turned_;             // pairs of the substep, one side of which stands
+  /// A pair one side of which stands and the other one turns far in the substep.
+  struct Turned {
+    std::size_t pair = 0;
+    bool flies = false;  // no contact was found
+  };
+  std::vector<Turned> turned_;
   std::vector<dynamics::Contact> overlaps_;     // of these
   /// A pair of a collider that moves and one of a body that has, or may have, others beside it.
   struct OnBase {

@@ -21,9 +21,9 @@ bool is_deep(const contact::Contacts& found) {
 
 std::span<dynamics::Contact> Contacts::find_turned(const dynamics::System& system) {
   overlaps_.clear();
-  for (const std::size_t number : turned_) {
-    const Pair& pair = pairs_[number];
-    if (pair.count == 0) continue;
+  for (const Turned& turned : turned_) {
+    const Pair& pair = pairs_[turned.pair];
+    if (pair.count == 0 && !turned.flies) continue;  // hidden
     const Collider& a = colliders_.all[pair.a];
     const Collider& b = colliders_.all[pair.b];
     const auto pose = [&](const Collider& collider) {
@@ -32,7 +32,7 @@ std::span<dynamics::Contact> Contacts::find_turned(const dynamics::System& syste
     const contact::Contacts found =
         contact::find(a.shape, pose(a), b.shape, pose(b), close, contact::Support::all);
     if (!is_deep(found)) continue;
-    const dynamics::Contact law = law_of(a, b, pair.normal, pair.count);
+    const dynamics::Contact law = law_of(a, b, turned.flies ? from_bullet(found.normal) : pair.normal, std::max(pair.count, 1));
     for (int i = 0; i < found.count; ++i) {
       dynamics::Contact& contact = overlaps_.emplace_back(law);
       contact.normal = from_bullet(found.normal);

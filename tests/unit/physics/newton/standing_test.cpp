@@ -192,37 +192,6 @@ TEST(NewtonPlate, LoadsTwentyFiveCubesLinearly) {
   }
 }
 
-TEST(NewtonPlanks, LieOnTheFloorWhereTheyFell) {
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> unit(0, 1);
-  World world(newton(true), 0.01);
-  std::vector<Vector3> halves;
-  for (int i = 0; i < 200; ++i) {
-    const Vector3 size(0.02 + 0.2 * unit(random), 0.01 + 0.05 * unit(random),
-                       0.004 + 0.02 * unit(random));
-    const math::Quaternion turn =
-        math::Quaternion(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5,
-                         unit(random) - 0.5)
-            .normalized();
-    const Pose pose{{0.5 * (i % 15), 0.5 * (i / 15), 0.2 + 0.2 * unit(random)}, turn};
-    world.add(loose(pose, scene::Box{size}, 1000 * size.prod()));
-    halves.push_back(size / 2);
-  }
-  std::vector<double> sunk(halves.size(), 0);
-  for (int n = 0; n < 300; ++n) {
-    world.step();
-    const world::State state = state_of(world);
-    for (std::size_t i = 0; i < halves.size(); ++i) {
-      const Pose& pose = state.origins[i];
-      const Eigen::Matrix3d m = pose.orientation.toRotationMatrix();
-      const double centre = (pose * Vector3(0, 0, halves[i].z())).z();
-      const double lowest = centre - m.row(2).cwiseAbs().dot(halves[i]);
-      sunk[i] = std::max(sunk[i], -lowest);
-    }
-  }
-  EXPECT_LT(std::ranges::max(sunk), 5e-4);
-}
-
 TEST(NewtonCards, AHouseOfThreeStoreysStands) {
   const double length = 0.08, thick = 0.001, width = 0.06, lean = 0.3;
   const scene::Box card{{width, thick, length}};
