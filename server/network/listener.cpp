@@ -70,15 +70,12 @@ void set_option(int socket, int level, int option, int value) {
 /// Held while it is open. Any user of this machine may hold it, too, so no server waits for long.
 Descriptor hold_path(const std::string& path) {
   constexpr int most_tries = 50, between_us = 10'000;
-  const std::size_t slash = path.rfind('/');
-  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
-  struct stat status {};
+  const std::string lock = lock_of(path);
   Descriptor held(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  if (!held.is_open() || ::stat(folder.c_str(), &status) != 0) return held;
+  if (!held.is_open() || lock.empty()) return held;
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  const std::size_t name = std::hash<std::string>{}(path.substr(slash + 1));  // npos + 1 is 0
-  fmt::format_to_n(address.sun_path + 1, sizeof address.sun_path - 1, "ziggurat-path-{}-{}-{:x}", status.st_dev, status.st_ino, name);
+  lock.copy(address.sun_path + 1, sizeof address.sun_path - 1);
   const auto* generic = reinterpret_cast<const sockaddr*>(&address);
   for (int i = 0; ::bind(held.number(), generic, sizeof address) != 0 && i < most_tries; ++i) ::usleep(between_us);
   return held;
@@ -153,6 +150,15 @@ std::string name_of(const Descriptor& socket) {
 }
 
 }  // namespace
+
+std::string lock_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  struct stat status {};
+  if (::stat(folder.c_str(), &status) != 0) return {};
+  const std::size_t name = std::hash<std::string>{}(path.substr(slash + 1));  // npos + 1 is 0
+  return fmt::format("ziggurat-path-{}-{}-{:x}", status.st_dev, status.st_ino, name);
+}
 
 Listener::Listener(const std::string& endpoint) {
   if (endpoint.starts_with(path_scheme)) {

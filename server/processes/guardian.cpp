@@ -32,7 +32,6 @@ constexpr std::chrono::milliseconds longest_removal{2000};
 enum class Kind : std::int32_t {
   end_group,
   forget_group,
-  remove_file,
   remove_dead_socket,
   remove_folder,
   forget_folder,
@@ -45,9 +44,8 @@ enum class Kind : std::int32_t {
 struct Order {
   Kind kind = Kind::done;
   pid_t group = 0;
-  dev_t device = 0;  ///< of a file, with `inode`: another file of that name stays
-  ino_t inode = 0;
   char path[512] = {};
+  char lock[sizeof sockaddr_un::sun_path] = {};  ///< of a socket's path
 };
 
 void send(int pipe, const Order& order) noexcept {
@@ -55,17 +53,18 @@ void send(int pipe, const Order& order) noexcept {
   }
 }
 
-/// False if the path is too long to be sent.
-bool set_path(Order& order, const std::string& path) noexcept {
-  if (path.size() >= sizeof order.path) return false;
-  std::memcpy(order.path, path.c_str(), path.size() + 1);
+/// False if the text is too long to be sent.
+template <std::size_t size>
+bool copy(const std::string& text, char (&to)[size]) noexcept {
+  if (text.size() >= size) return false;
+  std::memcpy(to, text.c_str(), text.size() + 1);
   return true;
 }
 
-void send_path(int pipe, Kind kind, const std::string& path) noexcept {
+void send_path(int pipe, Kind kind, const std::string& path, const std::string& lock = {}) noexcept {
   Order order;
   order.kind = kind;
-  if (set_path(order, path)) send(pipe, order);
+  if (copy(path, order.path) && copy(lock, order.lock)) send(pipe, order);
 }
 
 void sleep_ms(int ms) noexcept {
@@ -79,8 +78,8 @@ void sleep_ms(int ms) noexcept {
 /// What is left behind if the watched process ends now.
 struct Left {
   std::vector<pid_t> groups;
-  std::vector<Order> files;
-  std::vector<std::string> sockets, folders, empty_folders;
+  std::vector<Order> sockets;
+  std::vector<std::string> folders, empty_folders;
 };
 
 void take(const Order& order, Left& left) {
@@ -91,11 +90,8 @@ void take(const Order& order, Left& left) {
     case Kind::forget_group:
       std::erase(left.groups, order.group);
       break;
-    case Kind::remove_file:
-      left.files.push_back(order);
-      break;
     case Kind::remove_dead_socket:
-      left.sockets.emplace_back(order.path);
+      left.sockets.push_back(order);
       break;
     case Kind::remove_folder:
       left.folders.emplace_back(order.path);
@@ -131,19 +127,36 @@ Socket state_of_socket(const std::string& path) {
   return is_dead ? Socket::dead : Socket::live;
 }
 
+/// While it is open, no server is between its look at the path of this lock and listening there. -1: one is.
+int hold(const char* lock) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::memcpy(address.sun_path + 1, lock, std::min(std::strlen(lock), sizeof address.sun_path - 1));
+  const int held = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (held < 0 || ::bind(held, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return held;
+  ::close(held);
+  return -1;
+}
+
+/// Whether nothing is left to do: it is removed, another's, or not there.
+bool remove_dead(const Order& socket) {
+  const int held = hold(socket.lock);
+  if (held < 0) return false;
+  const Socket state = state_of_socket(socket.path);
+  if (state == Socket::dead) ::unlink(socket.path);
+  ::close(held);
+  return state != Socket::live;
+}
+
 /// A process that is killed closes its files one after the other: its socket may live a little longer than the pipe that tells its end.
-void remove_dead_sockets(std::vector<std::string> sockets) {
-  const auto is_done = [](const std::string& socket) {
-    const Socket state = state_of_socket(socket);
-    if (state == Socket::dead) ::unlink(socket.c_str());
-    return state != Socket::live;
-  };
+/// Meanwhile another server may listen at the same path, with a new file that may have the same inode.
+void remove_dead_sockets(std::vector<Order> sockets) {
   for (int wait = 1; wait < 256; wait *= 2) {  // 0.3 s in all, if it is another's
-    std::erase_if(sockets, is_done);
+    std::erase_if(sockets, remove_dead);
     if (sockets.empty()) return;
     sleep_ms(wait);
   }
-  std::erase_if(sockets, is_done);
+  std::erase_if(sockets, remove_dead);
 }
 
 void clean_up(const Left& left) {
@@ -151,12 +164,6 @@ void clean_up(const Left& left) {
   // A process that is being killed may still write into the folder.
   const auto is_there = [](pid_t group) { return ::kill(-group, 0) == 0; };
   for (int i = 0; i < 1000 && std::ranges::any_of(left.groups, is_there); ++i) sleep_ms(1);
-  for (const Order& file : left.files) {
-    struct stat now {};
-    const bool is_same =
-        ::lstat(file.path, &now) == 0 && now.st_dev == file.device && now.st_ino == file.inode;
-    if (is_same) ::unlink(file.path);
-  }
   remove_dead_sockets(left.sockets);
   for (const std::string& folder : left.folders) remove_locked_folder(folder, longest_removal);
   for (const std::string& folder : left.empty_folders) ::rmdir(folder.c_str());
@@ -330,18 +337,8 @@ void Guardian::forget_group(pid_t group) const noexcept {
   send(orders_, order);
 }
 
-void Guardian::remove_file(const std::string& path) const noexcept {
-  Order order;
-  order.kind = Kind::remove_file;
-  struct stat now {};
-  if (!set_path(order, path) || ::lstat(order.path, &now) != 0) return;
-  order.device = now.st_dev;
-  order.inode = now.st_ino;
-  send(orders_, order);
-}
-
-void Guardian::remove_dead_socket(const std::string& path) const noexcept {
-  send_path(orders_, Kind::remove_dead_socket, path);
+void Guardian::remove_dead_socket(const std::string& path, const std::string& lock) const noexcept {
+  send_path(orders_, Kind::remove_dead_socket, path, lock);
 }
 
 void Guardian::remove_folder(const std::string& path) const noexcept {

@@ -29,10 +29,9 @@ class Guardian {
   void end_group(pid_t group) const noexcept;
   /// Call it before waitpid(): afterwards the system may use the id again.
   void forget_group(pid_t group) const noexcept;
-  /// Removes this file, if it is still the one that stands there now.
-  void remove_file(const std::string& path) const noexcept;
   /// Removes what stands there then, if it is a socket at which no process listens. Call it before the socket is made.
-  void remove_dead_socket(const std::string& path) const noexcept;
+  /// @param lock  name of an abstract socket that a server holds while it begins to listen there
+  void remove_dead_socket(const std::string& path, const std::string& lock) const noexcept;
   /// Removes this folder with everything in it. Call it before the folder is made, so that no moment is left in which
   /// nothing knows it.
   void remove_folder(const std::string& path) const noexcept;

@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "network/listener.h"
 #include "processes/scripts.h"
 #include "processes/spawned_scripts.h"
 #include "run/askers.h"
@@ -125,19 +126,14 @@ supervision::World Run::read_world(const Tell& tell_clients) {
   return {path_, std::move(opened), seed, tell_placed};
 }
 
-/// A killed program cannot remove the files of its sockets: the guardian has their names before they are made, and
-/// knows the files afterwards.
+/// A killed program cannot remove the files of its sockets: the guardian has their names before they are made.
 std::unique_ptr<network::Server> Run::listen() const {
   const processes::Guardian* const guardian = signals_.guardian();
-  const auto each_file = [&](const std::vector<std::string>& endpoints, auto act) {
-    for (const std::string& endpoint : endpoints) {
-      if (const auto file = network::file_of(endpoint); guardian && !file.empty()) act(file);
-    }
-  };
-  each_file(config_.endpoints, [&](const std::string& file) { guardian->remove_dead_socket(file); });
-  auto server = std::make_unique<network::Server>(config_);
-  each_file(server->endpoints(), [&](const std::string& file) { guardian->remove_file(file); });
-  return server;
+  for (const std::string& endpoint : config_.endpoints) {
+    const std::string file = network::file_of(endpoint);
+    if (guardian != nullptr && !file.empty()) guardian->remove_dead_socket(file, network::lock_of(file));
+  }
+  return std::make_unique<network::Server>(config_);
 }
 
 /// Answers clients while another thread loads the world, which alone uses the console meanwhile.

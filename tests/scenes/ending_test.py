@@ -258,6 +258,24 @@ class Killed(SceneTest):
         process.wait()
         self.wait_for(socket.exists, lambda there: not there, "removal of the socket")
 
+    def test_a_server_that_begins_at_the_path_of_a_killed_one_stays(self):
+        """Its socket may have the inode of the one before."""
+        path = self.folder / "s"
+        begin = lambda: self.start("run", self.scene, *ENDLESS, "--real-time", 1, "--endpoint", f"ipc://{path}")
+        server = begin()
+        self.read_until(server.stdout, r"^\[1 r2\]")
+        for _ in range(3):
+            guardians = guardians_of(server)
+            server.kill()
+            server.wait()
+            server = begin()
+            self.wait_for(lambda: all(map(has_ended, guardians)), bool, "end of the guardians")
+            self.read_until(server.stdout, r"^\[1 r2\]")
+            with socket.socket(socket.AF_UNIX) as client:
+                client.connect(str(path))
+        server.terminate()
+        self.finish(server)
+
     def test_what_dead_programs_left_is_removed_at_the_next_start(self):
         left = self.runtime / "ziggurat-AbCdEf"
         left.mkdir()

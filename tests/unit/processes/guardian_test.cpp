@@ -47,14 +47,8 @@ TEST(Guardian, EndsGroupsAndRemovesFilesOfAKilledProcess) {
   const std::string in = folder.path();
   in_another_process([&] {
     const Guardian guardian;
-    std::ofstream(in + "/socket") << "x";
-    std::ofstream(in + "/replaced") << "x";
     fs::create_directory(in + "/private");
     std::ofstream(in + "/private/file") << "x";
-    guardian.remove_file(in + "/socket");
-    guardian.remove_file(in + "/replaced");
-    fs::rename(in + "/replaced", in + "/kept");
-    std::ofstream(in + "/replaced") << "of another program";
     guardian.remove_folder(in + "/private");
     // The child of a child, which a signal at the parent's death does not reach.
     const ChildProcess child(
@@ -74,27 +68,25 @@ TEST(Guardian, EndsGroupsAndRemovesFilesOfAKilledProcess) {
     return !status || state == "Z";
   }));
   EXPECT_TRUE(eventually([&] { return !fs::exists(in + "/private"); }));
-  EXPECT_FALSE(fs::exists(in + "/socket"));
-  EXPECT_TRUE(fs::exists(in + "/replaced")) << "another file of that name";
 }
 
 TEST(Guardian, DoesNothingAfterAnOrderlyEnd) {
   const PrivateFolder folder;
-  std::ofstream(folder.path() + "/file") << "x";
+  fs::create_directory(folder.path() + "/private");
   {
     const Guardian guardian;
-    guardian.remove_file(folder.path() + "/file");
+    guardian.remove_folder(folder.path() + "/private");
   }
-  EXPECT_TRUE(fs::exists(folder.path() + "/file"));
+  EXPECT_TRUE(fs::exists(folder.path() + "/private"));
 }
 
 TEST(Guardian, WorksAtOnceIfAsked) {
   const PrivateFolder folder;
-  std::ofstream(folder.path() + "/file") << "x";
+  fs::create_directory(folder.path() + "/private");
   Guardian guardian;
-  guardian.remove_file(folder.path() + "/file");
+  guardian.remove_folder(folder.path() + "/private");
   guardian.end_now();
-  EXPECT_TRUE(eventually([&] { return !fs::exists(folder.path() + "/file"); }));
+  EXPECT_TRUE(eventually([&] { return !fs::exists(folder.path() + "/private"); }));
 }
 
 TEST(Guardian, RemovesWhatIsMadeBetweenItsWorkAndTheEnd) {
@@ -122,10 +114,10 @@ TEST(Guardian, RemovesWhatIsMadeBetweenItsWorkAndTheEnd) {
 
 TEST(Guardian, OneThatIsSlowIsNotCutShort) {
   const PrivateFolder folder;
-  std::ofstream(folder.path() + "/file") << "x";
+  fs::create_directory(folder.path() + "/private");
   in_another_process([&] {
     Guardian guardian;
-    guardian.remove_file(folder.path() + "/file");
+    guardian.remove_folder(folder.path() + "/private");
     const std::string me = std::to_string(::getpid());
     pid_t process = 0;
     std::ifstream("/proc/" + me + "/task/" + me + "/children") >> process;
@@ -133,13 +125,13 @@ TEST(Guardian, OneThatIsSlowIsNotCutShort) {
     guardian.end_now();
     ::kill(::getpid(), SIGKILL);
   });
-  EXPECT_TRUE(eventually([&] { return !fs::exists(folder.path() + "/file"); }));
+  EXPECT_TRUE(eventually([&] { return !fs::exists(folder.path() + "/private"); }));
 }
 
 TEST(Guardian, OneThatIsKilledHasASecondThatTakesItsPlace) {
   const PrivateFolder folder;
   const std::string in = folder.path();
-  for (const char* name : {"before", "between", "after"}) std::ofstream(in + "/" + name) << "x";
+  for (const char* name : {"before", "between", "after"}) fs::create_directory(in + "/" + name);
   in_another_process([&] {
     const Guardian guardian;
     const auto child_of = [](pid_t parent) {
@@ -149,14 +141,14 @@ TEST(Guardian, OneThatIsKilledHasASecondThatTakesItsPlace) {
       children >> child;
       return child;
     };
-    guardian.remove_file(in + "/before");
+    guardian.remove_folder(in + "/before");
     const pid_t first = child_of(::getpid());
     eventually([&] { return child_of(first) != 0; });
     const pid_t second = child_of(first);
     ::kill(first, SIGKILL);
-    guardian.remove_file(in + "/between");
+    guardian.remove_folder(in + "/between");
     eventually([&] { return child_of(second) != 0; });
-    guardian.remove_file(in + "/after");
+    guardian.remove_folder(in + "/after");
     ::kill(::getpid(), SIGKILL);
   });
   for (const char* name : {"before", "between", "after"}) {
@@ -164,29 +156,48 @@ TEST(Guardian, OneThatIsKilledHasASecondThatTakesItsPlace) {
   }
 }
 
+/// A socket that listens at this path, or, if it begins with NUL, under this name.
+int listen(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  path.copy(address.sun_path, sizeof address.sun_path - 1);
+  const int made = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  EXPECT_EQ(::bind(made, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  EXPECT_EQ(::listen(made, 1), 0);
+  return made;
+}
+
 TEST(Guardian, RemovesADeadSocketAndNoOther) {
   const PrivateFolder folder;
-  const auto listen = [&](const char* name) {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    (folder.path() + name).copy(address.sun_path, sizeof address.sun_path - 1);
-    const int made = ::socket(AF_UNIX, SOCK_STREAM, 0);
-    EXPECT_EQ(::bind(made, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-    EXPECT_EQ(::listen(made, 1), 0);
-    return made;
-  };
-  const int live = listen("/live");
+  const int live = listen(folder.path() + "/live");
   std::ofstream(folder.path() + "/file") << "of the user";
   in_another_process([&] {
     const Guardian guardian;
-    for (const char* name : {"/missing", "/live", "/file", "/dead"}) guardian.remove_dead_socket(folder.path() + name);
-    listen("/dead");
+    for (const char* name : {"/missing", "/live", "/file", "/dead"}) guardian.remove_dead_socket(folder.path() + name, "a lock");
+    listen(folder.path() + "/dead");
     ::kill(::getpid(), SIGKILL);
   });
   EXPECT_TRUE(eventually([&] { return !fs::exists(folder.path() + "/dead"); }));
   EXPECT_TRUE(fs::exists(folder.path() + "/live"));
   EXPECT_TRUE(fs::exists(folder.path() + "/file"));
   ::close(live);
+}
+
+TEST(Guardian, RemovesNoSocketWhileAServerBeginsAtItsPath) {
+  const PrivateFolder folder;
+  const std::string dead = folder.path() + "/dead", lock = folder.path() + "/lock", over = folder.path() + "/over";
+  const int begins = listen('\0' + lock);
+  in_another_process([&] {
+    const Guardian guardian;
+    guardian.remove_dead_socket(dead, lock);
+    guardian.remove_folder(over);
+    fs::create_directory(over);
+    listen(dead);
+    ::kill(::getpid(), SIGKILL);
+  });
+  EXPECT_TRUE(eventually([&] { return !fs::exists(over); }));  // which is the last that it does
+  EXPECT_TRUE(fs::exists(dead));
+  ::close(begins);
 }
 
 }  // namespace
