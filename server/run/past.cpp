@@ -108,7 +108,7 @@ void Past::set_commands(scene::Scene& scene) const {
   for (const auto& [id, command] : options_.controllers) set_command(scene, id, command);
 }
 
-supervision::World Past::build(const simulation::TellPlaced& tell) const {
+supervision::World Past::build(const simulation::TellStep& tell) const {
   const v1::RunStart& run = file_.run();
   scene::OpenScene opened = replay::read_scene(run, files_, options_.scene_file.variation);
   set_commands(opened.scene);

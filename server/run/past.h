@@ -28,7 +28,7 @@ class Past {
 
   /// The world of the fork at tick 0: the recorded scene with other values.
   /// @throws scene::SceneError, replay::RecordingError
-  supervision::World build(const simulation::TellPlaced& tell) const;
+  supervision::World build(const simulation::TellStep& tell) const;
   /// Puts it where the recording begins, and checks that it can go on from recorded states.
   /// @throws replay::RecordingError
   void prepare(supervision::World& world);

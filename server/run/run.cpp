@@ -29,7 +29,7 @@ using supervision::Phase;
 
 namespace {
 
-constexpr double before_placing = 0.1;  // how far the world is loaded then
+constexpr double before_placing = 0.1, before_building = 0.4;  // how far the world is loaded then
 
 void keep(const std::vector<world::Metric>& metrics, reports::Summary& summary) {
   for (const world::Metric& metric : metrics) {
@@ -110,20 +110,20 @@ supervision::World Run::read_world(const Tell& tell_clients) {
     console_.progress(fmt::format("{:.0f} %: {}", 100 * share, message));
     tell_clients(share, message);
   };
-  const auto tell_placed = [&](std::size_t placed, std::size_t all) {
-    const double share = static_cast<double>(placed) / static_cast<double>(all);
-    tell(before_placing + (1 - before_placing) * share,
-         placed == all ? "The world is being built."
-                       : fmt::format("{} of {} entities are placed.", placed, all));
+  const auto tell_step = [&](simulation::Step step, std::size_t done, std::size_t all) {
+    const bool is_placing = step == simulation::Step::placing;
+    const double from = is_placing ? before_placing : before_building, to = is_placing ? before_building : 1;
+    tell(from + (to - from) * static_cast<double>(done) / static_cast<double>(all),
+         fmt::format("{} of {} entities are {}.", done, all, is_placing ? "placed" : "built"));
   };
   tell(0, "The scene is being read.");
-  if (past_) return past_->build(tell_placed);
+  if (past_) return past_->build(tell_step);
   Options options = options_;
   if (!options.record.empty()) options.scene_file.open = files_.keep(options.scene_file.open);
   scene::OpenScene opened = load_scene(path_, options, console_);
   tell(before_placing, "The world is being built.");
   const std::uint64_t seed = choose_seed(options_, opened.scene);
-  return {path_, std::move(opened), seed, tell_placed};
+  return {path_, std::move(opened), seed, tell_step};
 }
 
 /// A killed program cannot remove the files of its sockets: the guardian has their names before they are made.

@@ -60,7 +60,7 @@ class Draw {
 /// Places found, and attempts to find more.
 class Search {
  public:
-  Search(const scene::Scene& scene, const Patience& patience, const TellPlaced& tell)
+  Search(const scene::Scene& scene, const Patience& patience, const TellStep& tell)
       : scene(scene), patience(patience), tell_(tell) {
     for (const scene::Distribution& group : scene.distributions) all_ += group.quantity;
   }
@@ -84,10 +84,10 @@ class Search {
 
  private:
   void tell_now() const {
-    if (tell_) tell_(placed_, all_);
+    if (tell_) tell_(Step::placing, placed_, all_);
   }
 
-  const TellPlaced& tell_;
+  const TellStep& tell_;
   std::size_t all_ = 0, attempts_ = 0, placed_ = 0;
   std::size_t effort_ = 0;  ///< of attempts that failed
 };
@@ -165,7 +165,7 @@ void distribute(Search& search, const scene::Distribution& group, math::RandomSt
 
 }  // namespace
 
-std::vector<scene::Entity> place(const scene::Scene& scene, std::uint64_t seed, const TellPlaced& tell,
+std::vector<scene::Entity> place(const scene::Scene& scene, std::uint64_t seed, const TellStep& tell,
                                  Patience patience) {
   std::vector<scene::Entity> entities = scene.entities;
   physics::Placement placement;

@@ -11,8 +11,10 @@
 
 namespace ziggurat::simulation {
 
-/// How many of all entities that are to be distributed have their places.
-using TellPlaced = std::function<void(std::size_t placed, std::size_t all)>;
+/// A world is made in these steps, entity by entity: those of `<distribute>` get places, then all get bodies.
+enum class Step { placing, building };
+/// With how many entities a step is done, of all that it has.
+using TellStep = std::function<void(Step step, std::size_t done, std::size_t all)>;
 
 /// When the search for free places ends, whatever 'max_trials' says, of all entities together.
 struct Patience {
@@ -25,7 +27,7 @@ struct Patience {
 /// distributed ones group by group.
 /// @param tell  told now and then how many entities are distributed already
 /// @throws scene::SceneError if a distributed entity finds no free place
-std::vector<scene::Entity> place(const scene::Scene& scene, std::uint64_t seed, const TellPlaced& tell = {},
+std::vector<scene::Entity> place(const scene::Scene& scene, std::uint64_t seed, const TellStep& tell = {},
                                  Patience patience = {});
 
 }  // namespace ziggurat::simulation

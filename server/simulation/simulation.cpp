@@ -81,9 +81,11 @@ Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, worl
       layout(made) {
   entities = place(scene, options.seed, options.tell);
   made = make_layout(scene, entities, substep);
-  for (const scene::Entity& entity : entities) {
-    physics.add(entity);
-    rays.add(entity);
+  constexpr std::size_t between_messages = 100;
+  for (std::size_t i = 0; i < entities.size(); ++i) {
+    physics.add(entities[i]);
+    rays.add(entities[i]);
+    if (options.tell && i % between_messages == 0) options.tell(Step::building, i, entities.size());
   }
   in_physics = in_rays = entities.size();
   index.emplace(layout);

@@ -23,7 +23,7 @@ namespace ziggurat::simulation {
 
 struct Options {
   std::uint64_t seed = 1;  ///< of every random stream; not 0
-  TellPlaced tell = {};    ///< while entities are distributed; may be empty
+  TellStep tell = {};      ///< may be empty
 };
 
 class Simulation {

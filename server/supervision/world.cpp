@@ -9,7 +9,7 @@
 namespace ziggurat::supervision {
 
 World::World(std::string path_given, scene::OpenScene opened, std::uint64_t seed_given,
-             const simulation::TellPlaced& tell, const std::string& hash)
+             const simulation::TellStep& tell, const std::string& hash)
     : path(std::move(path_given)),
       scene(std::move(opened.scene)),
       additions(std::move(opened.additions)),
@@ -18,8 +18,8 @@ World::World(std::string path_given, scene::OpenScene opened, std::uint64_t seed
       simulation(scene, {seed, tell}) {}
 
 void World::reset(std::uint64_t new_seed, const std::function<void()>& tell) {
-  const auto tell_placed = [&](std::size_t, std::size_t) { tell(); };
-  simulation.reset(scene, {new_seed, tell ? simulation::TellPlaced(tell_placed) : nullptr});
+  const auto tell_step = [&](simulation::Step, std::size_t, std::size_t) { tell(); };
+  simulation.reset(scene, {new_seed, tell ? simulation::TellStep(tell_step) : nullptr});
   seed = new_seed;
 }
 

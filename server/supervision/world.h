@@ -17,7 +17,7 @@ struct World {
   /// @param hash  of the scene's files; empty: they are read for it
   /// @throws scene::SceneError if an entity cannot be placed or built
   World(std::string path, scene::OpenScene opened, std::uint64_t seed,
-        const simulation::TellPlaced& tell = {}, const std::string& hash = {});
+        const simulation::TellStep& tell = {}, const std::string& hash = {});
 
   /// Builds the world again, with this seed. @throws scene::SceneError; then nothing changes
   /// @param tell  called now and then

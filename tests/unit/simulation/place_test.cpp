@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -69,9 +70,25 @@ TEST(Place, GivesUpWhenSucceedingTakesTooMuch) {
 
 TEST(Place, TellsHowFarItIsWhileItTries) {
   std::vector<std::pair<std::size_t, std::size_t>> told;
-  const auto tell = [&](std::size_t placed, std::size_t all) { told.emplace_back(placed, all); };
+  const auto tell = [&](Step, std::size_t placed, std::size_t all) { told.emplace_back(placed, all); };
   EXPECT_THROW(place(full("4294967295"), 1, tell, {25'000}), scene::SceneError);
   EXPECT_EQ(told, (std::vector<std::pair<std::size_t, std::size_t>>{{0, 2}, {0, 2}}));
+}
+
+TEST(Place, TellsHowManyEntitiesHaveBodies) {
+  SmallScene text;
+  for (int i = 0; i < 250; ++i) {
+    text.arena += "<box id=\"b" + std::to_string(i) + R"(" size=".1,.1,.1" movable="false"><body position=")" + std::to_string(i) +
+                  R"(,0,0" orientation="0,0,0"/></box>)";
+  }
+  std::vector<std::size_t> built;
+  const auto tell = [&](Step step, std::size_t done, std::size_t all) {
+    EXPECT_EQ(step, Step::building);
+    EXPECT_EQ(all, 250u);
+    built.push_back(done);
+  };
+  const Simulation simulation(text.read(), {1, tell});
+  EXPECT_EQ(built, (std::vector<std::size_t>{0, 100, 200}));
 }
 
 }  // namespace
