@@ -31,7 +31,6 @@ Recorders::Recorders(const Options& options, const supervision::World& world) {
   if (writes_each_tick) flushing_.emplace(flush_interval, [this] { flush(); });
 }
 
-/// On the other thread.
 void Recorders::flush() {
   const std::lock_guard lock(mutex_);
   try {

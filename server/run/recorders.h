@@ -39,6 +39,9 @@ class Recorders {
   void exchange(const world::State& state, const world::Observations& observations,
                 const world::Commands& commands, const std::vector<world::Metric>& metrics);
 
+  /// Writes what is not on the disk yet. An error is reported with the next tick. Any thread may call it.
+  void flush();
+
   /// Completes every file except the summary and the report card, also if one of them fails.
   /// @throws recording::WriteError, render::RenderError
   void close();
@@ -56,7 +59,6 @@ class Recorders {
   void write_report_card(const reports::ReportCard& card);
 
  private:
-  void flush();
   void report_failed_flush();
 
   std::mutex mutex_;                 ///< of all files: a tick is written whole

@@ -232,9 +232,9 @@ processes::LaunchSettings Run::launch_settings(std::vector<scene::Director> dire
   return settings;
 }
 
-supervision::Supervision::Settings Run::supervision_settings() const {
+supervision::Supervision::Settings Run::supervision_settings() {
   return {plan_.ticks.value_or(0), options_.hil, options_.snapshot_folder,
-          fmt::format("{}, {}", version, __VERSION__)};
+          fmt::format("{}, {}", version, __VERSION__), [this] { recorders_.flush(); }};
 }
 
 void Run::print_notices() {

@@ -69,7 +69,7 @@ class Run {
   std::vector<std::size_t> robots_without_controller() const;
   processes::Controllers start_controllers();
   processes::LaunchSettings launch_settings(std::vector<scene::Director> directors) const;
-  supervision::Supervision::Settings supervision_settings() const;
+  supervision::Supervision::Settings supervision_settings();
   void print_notices();
 
   // Running.

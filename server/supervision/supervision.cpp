@@ -20,6 +20,10 @@ using wire::ErrorCode;
 
 namespace {
 
+void write_outputs(const Supervision::Settings& settings) {
+  if (settings.write_outputs) settings.write_outputs();
+}
+
 /// The entities that a read request asks for, in scene order, or the pattern that names none.
 struct Selection {
   std::vector<std::size_t> entities;
@@ -136,7 +140,9 @@ Reply Supervision::pause(const network::Call& call) {
   if (!was_asked) callers_.tell(Paused{});  // it may be handled again until the world stands
   paused_.update(is_standing());
   // Before tick 0 nothing moves: the world will stand there.
-  return is_standing() || !is_gathered_ ? done(call) : Reply::later;
+  if (!is_standing() && is_gathered_) return Reply::later;
+  write_outputs(settings_);
+  return done(call);
 }
 
 /// A step that still runs ends here: its supervisor is told that the world is not paused.
@@ -164,6 +170,7 @@ Reply Supervision::step(const network::Call& call) {
     const bool is_over = steps_left_ == 0 && is_standing();
     if (!is_over) return Reply::later;
     stepping_.reset();
+    write_outputs(settings_);
     return done(call);
   }
   if (call.request.ticks == 0) {
@@ -256,9 +263,11 @@ wire::Status Supervision::status() const {
   wire::Status status;
   status.tick = state.tick;
   status.time_ns = state.time_ns;
-  status.phase = !is_gathered_   ? wire::Status::Phase::gathering
-                 : is_standing() ? wire::Status::Phase::paused
-                                 : wire::Status::Phase::running;
+  // Before tick 0 a world that was paused stands, though robots may be without controller.
+  const bool is_paused = is_gathered_ ? is_standing() : server_.pause() != network::Pause::none;
+  status.phase = is_paused      ? wire::Status::Phase::paused
+                 : is_gathered_ ? wire::Status::Phase::running
+                                : wire::Status::Phase::gathering;
   status.is_hardware_in_the_loop = settings_.is_hardware_in_the_loop;
   status.seed = world_.seed;
   status.scene = world_.path;

@@ -39,6 +39,7 @@ class Supervision {
     bool is_hardware_in_the_loop = false;
     std::string snapshot_folder;  ///< where snapshots are written to and read from; empty: nowhere
     std::string build;            ///< of this program
+    std::function<void()> write_outputs = {};  ///< all of them, before somebody is told that the world stands; may be empty
   };
 
   /// Everything but the settings must outlive this.

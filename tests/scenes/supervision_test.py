@@ -121,8 +121,12 @@ class Ctl(unittest.TestCase):
 
     def test_a_pause_before_controllers_come_is_answered_at_once(self):
         with Server(VEHICLE, "--duration", "0") as server:
+            self.assertIn("gathering", server.ask("ctl", "status").stdout)
             server.ask("ctl", "pause")
             self.assertEqual(server.tick(), 0)
+            status = server.ask("ctl", "status").stdout
+            self.assertIn("paused, tick 0", status)
+            self.assertIn("waiting for a client to connect for", status)
             lua = subprocess.Popen([BIN / "ziggurat-lua", "--connect", server.url, "--quiet"],
                                    stdout=subprocess.DEVNULL)
             try:
@@ -132,6 +136,18 @@ class Ctl(unittest.TestCase):
                 server.ask("ctl", "resume")
                 lua.kill()
                 lua.wait()
+
+    def test_outputs_have_all_ticks_when_a_pause_or_a_step_is_answered(self):
+        with tempfile.TemporaryDirectory() as folder:
+            trace, hashes = pathlib.Path(folder, "trace.csv"), pathlib.Path(folder, "hashes")
+            with Server(DROP, "--duration", "0", "--trace", trace, "--hash-file", hashes) as server:
+                for _ in range(5):
+                    server.ask("ctl", "resume")
+                    server.ask("ctl", "pause")
+                    server.ask("ctl", "step", "2")
+                    tick = server.tick()
+                    self.assertEqual(hashes.read_text().splitlines()[-1].split()[1], str(tick))
+                    self.assertEqual(trace.read_text().splitlines()[-1].split(",")[0], str(tick))
 
     def test_can_be_paused_from_the_start(self):
         with Server(DROP, "--duration", "0", "--real-time", "--paused") as server:
