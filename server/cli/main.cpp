@@ -20,8 +20,10 @@
 #include "run/version.h"
 #include "scene/reader.h"
 #include "text/numbers.h"
+#include "text/printable.h"
 #include "text/shortened.h"
 #include "text/standard_streams.h"
+#include "ziggurat/error.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -95,6 +97,8 @@ int main(int count, char** texts) {
     const bool is_crowded = error.code() == std::errc::resource_unavailable_try_again;  // fork() and threads
     console.fault(text::shortened_message(error.what()) +
                   (is_crowded ? "; the system allows this user no more processes and threads (ulimit -u)" : ""));
+  } catch (const ProtocolError& error) {
+    console.fault(text::indented(text::shortened_message(error.what())));
   } catch (const std::exception& error) {
     console.fault(text::shortened_message(error.what()));
   }

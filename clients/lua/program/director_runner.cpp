@@ -68,7 +68,7 @@ class DirectorRunner {
   Failure start() {
     const FoundScript script = options_.script
                                    ? FoundScript{*options_.script, {}}
-                                   : find_script(director_.script(), director_.params(), folders_);
+                                   : find_script(director_.script(), director_.params(), {folders_, options_.names_any_ending});
     if (script.path.empty()) return script.fault;
     try {
       script_ = std::make_unique<DirectorScript>(

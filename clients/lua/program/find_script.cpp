@@ -17,31 +17,23 @@ bool is_readable(const fs::path& path) {
 
 FoundScript find_script(const std::string& resolved,
                         const std::vector<std::pair<std::string, std::string>>& params,
-                        const Folders& folders) {
+                        const Nameable& nameable) {
   std::string written;
   for (const auto& [name, value] : params) {
     if (name == "script") written = value;
   }
-  std::string outside;
   for (const std::string& script : {resolved, written}) {
-    if (script.empty() || !is_readable(script)) continue;
-    if (folders.contain(script)) return {script, {}};
-    if (outside.empty()) outside = script;
+    const bool is_named_well = nameable.any_ending || script.ends_with(".lua");
+    if (is_named_well && nameable.folders.contain(script) && is_readable(script)) return {script, {}};
   }
   if (resolved.empty() && written.empty()) {
     return {{}, "the scene has no Lua script for it; set one with --script FILE"};
   }
-  if (!outside.empty()) {
-    return {{},
-            outside + ": the server names this script, and it is not below " + folders.names() +
-                "; allow its folder with --script-folder DIR, or set another with --script FILE"};
-  }
-  std::error_code error;
-  std::string fault = resolved.empty() ? written : resolved;
-  fault += ": the script can't be read on this machine";
-  if (!written.empty())
-    fault += ", nor is '" + written + "' in " + fs::current_path(error).string();
-  return {{}, fault + "; set another with --script FILE"};
+  const std::string other = resolved.empty() || written.empty() || written == resolved ? "" : ", or '" + written + "'";
+  return {{},
+          (resolved.empty() ? written : resolved) + ": the server names this script" + other +
+              ", and there is no such file" + (nameable.any_ending ? "" : " with the ending .lua") + " below " +
+              nameable.folders.names() + "; allow its folder with --script-folder DIR, or set another with --script FILE"};
 }
 
 }  // namespace ziggurat::lua

@@ -15,13 +15,19 @@ struct FoundScript {
   std::string fault;           ///< then: why, and which paths were tried
 };
 
+/// Which files a server may name as scripts.
+struct Nameable {
+  const Folders& folders;    ///< that have them
+  bool any_ending = false;   ///< otherwise only those that end with .lua: errors quote parts of a file
+};
+
 /// The server's path if it can be read here, otherwise the scene's, relative to the working
-/// directory: the server may run on another machine. A server is not trusted: it can't choose a
-/// script outside the folders.
+/// directory: the server may run on another machine. A server is not trusted: it can't choose
+/// another file, and learns of none whether it exists.
 /// @param resolved  the server's path
 /// @param params    of the robot; `script` is the scene's path
 FoundScript find_script(const std::string& resolved,
                         const std::vector<std::pair<std::string, std::string>>& params,
-                        const Folders& folders);
+                        const Nameable& nameable);
 
 }  // namespace ziggurat::lua

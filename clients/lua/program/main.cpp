@@ -50,7 +50,7 @@ int exit_code(const std::optional<Ending>& ending, bool has_failed, const lua::P
   if (const int number = lua::arrived_signal()) return exit_signal + number;
   if (ending && ending->reason == Ending::Reason::failed && !options.quiet) {
     std::fprintf(stderr, "ziggurat-lua: the server ended the run: %s\n",
-                 text::printable(ending->message).c_str());
+                 text::indented(text::printable(ending->message)).c_str());
   }
   return has_failed ? exit_failed_script : exit_finished;
 }
@@ -107,7 +107,7 @@ int run(const lua::ProgramOptions& options) {
 }
 
 void report(const std::exception& error) {
-  std::fprintf(stderr, "ziggurat-lua: %s\n", text::printable_part(error.what()).c_str());
+  std::fprintf(stderr, "ziggurat-lua: %s\n", text::indented(text::printable_part(error.what())).c_str());
 }
 
 /// The same for one of several robots.

@@ -58,7 +58,8 @@ po::options_description description() {
       ("script-folder", po::value<std::vector<std::string>>()->composing()->value_name("DIR"),
        "the server may name only scripts below DIR, and scripts may use only files below it; may "
        "be "
-       "repeated; default: the working directory, and the folder of --script")  //
+       "repeated; default: the working directory, and the folder of --script, where the server may name only "
+       "files that end with .lua")  //
       ("read-only-file", po::value<std::vector<std::string>>()->composing()->value_name("FILE"),
        "scripts may not change FILE; may be repeated")  //
       ("hidden-file", po::value<std::vector<std::string>>()->composing()->value_name("FILE"),
@@ -152,6 +153,7 @@ void read_limits(const po::variables_map& found, ProgramOptions& options) {
   if (found.count("script-folder")) {
     const auto folders = found["script-folder"].as<std::vector<std::string>>();
     options.folders.assign(folders.begin(), folders.end());
+    options.names_any_ending = true;
   } else if (options.script) {
     options.folders.push_back(options.script->has_parent_path() ? options.script->parent_path()
                                                                 : ".");

@@ -26,6 +26,7 @@ struct ProgramOptions {
   /// Scripts that the server names must be below these, and so must the files that scripts use;
   /// never empty.
   std::vector<std::filesystem::path> folders{"."};
+  bool names_any_ending = false;  ///< the server may name scripts there that do not end with .lua
   Exceptions exceptions;                            ///< files there that scripts may use less
   bool trusts_scripts = false;                      ///< all of Lua, all files
   std::size_t max_memory = std::size_t{256} << 20;  ///< per robot [bytes]

@@ -49,7 +49,7 @@ void Runner::run() {
 void Runner::start(Seat& seat) {
   const FoundScript script =
       options_.script ? FoundScript{*options_.script, {}}
-                      : find_script(seat.robot->script(), seat.robot->params(), folders_);
+                      : find_script(seat.robot->script(), seat.robot->params(), {folders_, options_.names_any_ending});
   if (script.path.empty()) return fail(seat, script.fault);
   try {
     seat.controller = std::make_unique<Controller>(

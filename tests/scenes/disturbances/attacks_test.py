@@ -216,7 +216,7 @@ class Attacks(SceneTest):
 
         def serve():
             refusal = v1.ServerMessage(refusal=v1.Refusal(error=v1.Error(
-                code=v1.Error.FORBIDDEN, message="no\x1b]52;c;aGk=\x07\u009b31m\u202ewon")))
+                code=v1.Error.FORBIDDEN, message="no\x1b]52;c;aGk=\x07\u009b31m\u202ewon\nziggurat: all is well")))
             for _ in commands:
                 if router.poll(20_000):
                     client, _ = router.recv_multipart()
@@ -236,6 +236,8 @@ class Attacks(SceneTest):
                 self.assertEqual(outcome.returncode, FAULT)
                 self.assertIn("\\u001b]52", outcome.stderr)
                 self.assertNotRegex(outcome.stderr + outcome.stdout, "[\x00-\x08\x0b-\x1f\x7f-\x9f\u202e]")
+                self.assertIn("all is well", outcome.stderr)
+                self.assertNotRegex(outcome.stderr, "(?m)^ziggurat: all is well")
         server.join()
         router.close(linger=0)
 

@@ -105,7 +105,8 @@ TEST_F(Program, HasAHelpText) {
 TEST_F(Program, FindsTheServersScript) {
   write("main.lua", "");
   const auto path = (folder() / "main.lua").string();
-  EXPECT_EQ(find_script(path, {{"script", "other.lua"}}, below(folder())).path, path);
+  const Folders folders = below(folder());
+  EXPECT_EQ(find_script(path, {{"script", "other.lua"}}, {folders}).path, path);
 }
 
 TEST_F(Program, RunsNoScriptOutsideItsFoldersThoughTheServerNamesIt) {
@@ -115,11 +116,34 @@ TEST_F(Program, RunsNoScriptOutsideItsFoldersThoughTheServerNamesIt) {
   const Folders inside = below(folder() / "inside");
   for (const auto& path :
        {folder() / "main.lua", folder() / "inside/../main.lua", folder() / "inside/link.lua"}) {
-    const auto found = find_script(path.string(), {}, inside);
+    const auto found = find_script(path.string(), {}, {inside});
     EXPECT_TRUE(found.path.empty()) << path;
     EXPECT_NE(found.fault.find("allow its folder with --script-folder DIR"), std::string::npos);
-    EXPECT_TRUE(find_script("", {{"script", path.string()}}, inside).path.empty()) << path;
+    EXPECT_TRUE(find_script("", {{"script", path.string()}}, {inside}).path.empty()) << path;
   }
+}
+
+TEST_F(Program, TellsAServerNotWhetherAFileExists) {
+  write("main.lua", "");
+  std::filesystem::create_directory(folder() / "inside");
+  const Folders inside = below(folder() / "inside");
+  const auto fault_of = [&](const std::string& name) {
+    const std::string path = (folder() / name).string();
+    const std::string fault = find_script(path, {}, {inside}).fault;
+    EXPECT_TRUE(fault.starts_with(path + ": ")) << fault;
+    return fault.substr(path.size());
+  };
+  EXPECT_EQ(fault_of("main.lua"), fault_of("none.lua"));
+}
+
+TEST_F(Program, RunsOnlyFilesThatAreNamedAsScriptsUnlessAFolderIsAllowed) {
+  write("netrc", "machine example.com login me password secret");
+  const std::string path = (folder() / "netrc").string();
+  const Folders folders = below(folder());
+  EXPECT_TRUE(find_script(path, {{"script", path}}, {folders}).path.empty());
+  EXPECT_EQ(find_script(path, {}, {folders, true}).path, path);
+  EXPECT_FALSE(read({"--connect", "x", "--script", "/a/b.lua"}).options.names_any_ending);
+  EXPECT_TRUE(read({"--connect", "x", "--script-folder", "/c"}).options.names_any_ending);
 }
 
 TEST_F(Program, AllowsItsWorkingDirectoryAndTheFolderOfItsScript) {
@@ -152,17 +176,17 @@ TEST_F(Program, FindsTheScriptFromTheWorkingDirectory) {
   write("main.lua", "");
   const auto relative = std::filesystem::proximate(folder() / "main.lua").string();
   EXPECT_EQ(
-      find_script("/elsewhere/main.lua", {{"speed", "1"}, {"script", relative}}, below(folder()))
+      find_script("/elsewhere/main.lua", {{"speed", "1"}, {"script", relative}}, {below(folder())})
           .path,
       relative);
 }
 
 TEST_F(Program, NamesThePathsOfAMissingScript) {
-  const auto found = find_script("/elsewhere/main.lua", {{"script", "no/main.lua"}}, below("."));
+  const auto found = find_script("/elsewhere/main.lua", {{"script", "no/main.lua"}}, {below(".")});
   EXPECT_TRUE(found.path.empty());
   EXPECT_NE(found.fault.find("/elsewhere/main.lua"), std::string::npos);
   EXPECT_NE(found.fault.find("'no/main.lua'"), std::string::npos);
-  EXPECT_NE(find_script("", {}, below(".")).fault.find("--script"), std::string::npos);
+  EXPECT_NE(find_script("", {}, {below(".")}).fault.find("--script"), std::string::npos);
 }
 
 }  // namespace
