@@ -5,6 +5,8 @@ import json
 import re
 import subprocess
 
+import zmq
+
 from harness import INTERRUPTED, LUA, ZIGGURAT, SceneTest, main
 
 BOX = '<box id="{}" size="0.1,0.1,0.1" movable="true" mass="1"><body position="{}"/></box>'
@@ -88,6 +90,25 @@ class Spawn(SceneTest):
         self.read_until(process.stdout, r"^\[\d+ late17\] step")
         self.assertEqual(len(self.lua_processes(16)), scripted + 16)
         self.end(process)
+
+    def test_a_robot_that_is_removed_at_once_is_no_failure(self):
+        process = self.begin("run", *PACED)
+        self.read_until(process.stdout, r"^\[5 r0\]")
+        with zmq.Context() as context, context.socket(zmq.DEALER) as dealer:
+            dealer.linger, dealer.rcvtimeo = 0, 20_000
+            dealer.connect(self.url)
+            dealer.send_json({"hello": {"version": {"major": 1}, "role": "ROLE_SUPERVISOR"}})
+            for _ in range(10):  # before the process that it is meant for can ask for it
+                dealer.send_json({"request": {"id": 1, "spawn": {"xml": self.arm("late", "0,2,0")}}})
+                dealer.send_json({"request": {"id": 2, "remove": {"entity": "late"}}})
+            answered = 0
+            while answered < 20:
+                answer = dealer.recv_json()
+                answered += "response" in answer
+                self.assertFalse(answer.get("response", {}).get("error"), answer)
+        self.spawn(self.arm("late", "0,2,0"))
+        self.read_until(process.stdout, r"^\[\d+ late\] step 20")
+        self.assertNotRegex(self.end(process).err, "(?m)^ziggurat-lua: ")
 
     def test_the_world_waits_for_a_robot_without_session(self):
         process = self.begin("serve", *PACED)

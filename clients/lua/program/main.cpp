@@ -55,12 +55,17 @@ int exit_code(const std::optional<Ending>& ending, bool has_failed, const lua::P
   return has_failed ? exit_failed_script : exit_finished;
 }
 
-/// Robots of a list that have left the run since it was written are left out. None: all have.
-std::unique_ptr<Session> begin(Options wanted, bool has_list) {
+/// A robot that arrives may have been removed meanwhile, or another client may have been faster.
+bool is_late(const std::string& code) { return code == "NOT_YOURS" || code == "UNKNOWN_ROBOT" || code == "ROBOT_TAKEN"; }
+
+/// Robots of a list that have left the run since it was written are left out. None: all have, or the one that arrives
+/// is another's.
+std::unique_ptr<Session> begin(Options wanted, bool has_list, bool arrives) {
   for (;;) {
     try {
       return std::make_unique<Session>(wanted);
     } catch (const ProtocolError& error) {
+      if (arrives && is_late(error.details().code)) return nullptr;
       const bool has_left = error.details().code == "NOT_YOURS";
       const auto is_it = [&](const std::string& id) { return text::printable_part(id) == error.details().robot; };
       if (!has_list || !has_left || std::erase_if(wanted.robots, is_it) == 0) throw;
@@ -74,7 +79,7 @@ int run_robots(const lua::ProgramOptions& options) {
   wanted.controller = options.controller;
   wanted.robots = options.robots;
   wanted.lua_only = !options.script;  // --script runs robots with any controller
-  const auto begun = begin(wanted, options.has_list);
+  const auto begun = begin(wanted, options.has_list, !options.robots_from.empty());
   if (!begun) return exit_finished;
   Session& session = *begun;
   if (!options.quiet) {
