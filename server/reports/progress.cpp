@@ -26,10 +26,7 @@ void Progress::show(std::uint64_t tick, std::string_view waiting_for) {
   const double rate = was_reset ? 0 : static_cast<double>(tick - shown_tick_) / wall;
   const double weight = usual_rate_ == 0 ? 1 : 1 - std::exp(-wall / memory_s);
   usual_rate_ += weight * (rate - usual_rate_);
-  console_.progress(fmt::format("{}, real-time factor {:.2f}, {:.0f} ticks/s{}{}",
-                                reached(tick, ticks_, tick_length_, usual_rate_),
-                                rate * tick_length_, rate,
-                                waiting_for.empty() ? "" : ", waiting for ", waiting_for));
+  console_.progress(progress_line({tick, ticks_, tick_length_, rate, usual_rate_}, waiting_for));
   shown_at_ = now;
   shown_tick_ = tick;
 }
@@ -45,6 +42,14 @@ std::string reached(std::uint64_t tick, std::optional<std::uint64_t> ticks, doub
     text += fmt::format(", {} left", text::to_duration(static_cast<double>(*ticks - tick) / rate));
   }
   return text;
+}
+
+std::string progress_line(const Speed& at, std::string_view waiting_for) {
+  if (!waiting_for.empty()) {
+    return fmt::format("{}, waiting for {}", reached(at.tick, at.ticks, at.tick_length, 0), waiting_for);
+  }
+  return fmt::format("{}, real-time factor {:.2f}, {:.0f} ticks/s",
+                     reached(at.tick, at.ticks, at.tick_length, at.usual_rate), at.rate * at.tick_length, at.rate);
 }
 
 }  // namespace ziggurat::reports

@@ -42,4 +42,14 @@ class Progress {
 std::string reached(std::uint64_t tick, std::optional<std::uint64_t> ticks, double tick_length,
                     double rate);
 
+struct Speed {
+  std::uint64_t tick;
+  std::optional<std::uint64_t> ticks;  ///< of the whole run
+  double tick_length;                  ///< simulated [s]
+  double rate, usual_rate;             ///< since the last line, and over some seconds [ticks/s]
+};
+
+/// The whole line. A terminal cuts it at its width: whom the world waits for stands before what is not true meanwhile.
+std::string progress_line(const Speed& at, std::string_view waiting_for);
+
 }  // namespace ziggurat::reports

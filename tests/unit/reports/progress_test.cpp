@@ -14,6 +14,13 @@ TEST(Progress, HasTotalShareAndTimeLeft) {
   EXPECT_EQ(reached(0, 750'000, 0.1, 100), "t = 0.00 of 75000.00 s (0 %), 2 h 5 min left");
 }
 
+TEST(Progress, TellsWhomItWaitsForWithin80Columns) {
+  const Speed at{1, 20, 0.1, 0.2, 0.3};
+  EXPECT_EQ(progress_line(at, "r2: lim/bad.lua:3"), "t = 0.10 of 2.00 s (5 %), waiting for r2: lim/bad.lua:3");
+  EXPECT_EQ(progress_line({10, 20, 0.1, 5, 5}, ""),
+            "t = 1.00 of 2.00 s (50 %), 2 s left, real-time factor 0.50, 5 ticks/s");
+}
+
 TEST(Progress, OfARunWithoutEndHasTheTimeOnly) {
   EXPECT_EQ(reached(150, std::nullopt, 0.1, 100), "t = 15.00 s");
 }
