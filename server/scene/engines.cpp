@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "scene/draft.h"
 
@@ -10,6 +11,8 @@ namespace ziggurat::scene {
 namespace {
 
 constexpr unsigned most_iterations = 1'000'000;  // substeps of a tick
+constexpr unsigned many_iterations = 10'000;     // beyond which a scene is doubted
+constexpr double strong_gravity = 1000;          // likewise [m/s^2]
 constexpr unsigned most_solver_iterations = 10'000;
 constexpr double usual_gravity = 10.0;  // [m/s^2], the dialect's default of `g`
 constexpr std::array<std::string_view, 3> engine_names{"dynamics3d", "dynamics2d", "pointmass3d"};
@@ -28,6 +31,10 @@ void read_gravity(Draft& draft, Element gravity) {
     draft.report.warn(gravity.where("g"), "gravity",
                       gravity.sentence("g", fmt::format("lets everything fall up: g is the acceleration downwards; "
                                                         "write g=\"{:.6g}\"", -g)));
+  }
+  if (std::abs(g) > strong_gravity) {
+    draft.report.warn(gravity.where("g"), "strong gravity",
+                      gravity.sentence("g", "is more than 1000 m/s^2, a hundred times that of the Earth; write g=\"9.8\""));
   }
   gravity.done();
 }
@@ -166,6 +173,10 @@ void read_engines(Draft& draft, Element& root) {
     }
     const std::string id = engine.required("id", identifier);
     const unsigned iterations = engine.optional("iterations", Whole{1, most_iterations}, 10);
+    if (iterations > many_iterations) {
+      draft.report.warn(engine.where("iterations"), "iterations",
+                        engine.sentence("iterations", "are so many substeps of each tick, which takes long; write 10 to 1000"));
+    }
     take_id(engine, ids, id, "engine");
     if (three && has_dynamics3d) {
       engine.fault("is the second of its kind; there is one world, so write one <dynamics3d>");

@@ -22,6 +22,7 @@ constexpr std::size_t most_pairs = 100'000'000;  // of what may fall with what m
 constexpr std::size_t most_effort = 10'000'000;  // of physics::Placement
 constexpr double deep = 1e-3;                // in the floor [m]
 constexpr double huge_movable = 10, huge_fixed = 100;  // times the arena's longest side
+constexpr double far_joint = 10;                       // the same, from its links
 
 /// An axis-aligned box in W [m].
 struct Extent {
@@ -70,13 +71,14 @@ class Doubts {
 
   std::vector<scene::Problem> find() {
     check_sizes();
+    check_joints();
     check_overlaps();
     check_floor();
     check_arena();
     check_gravity();
     check_magnets();
     std::vector<scene::Problem> problems;
-    for (Kind* kind : {&size_, &overlap_, &in_floor_, &outside_, &falls_, &no_force_}) {
+    for (Kind* kind : {&size_, &far_, &overlap_, &in_floor_, &outside_, &falls_, &no_force_}) {
       if (!kind->first) continue;
       if (kind->more > 0) kind->first->text += fmt::format("; and {} more like this", kind->more);
       problems.push_back(std::move(*kind->first));
@@ -122,6 +124,20 @@ class Doubts {
         doubt(size_, entity,
               fmt::format("is {:.6g} m long, {:.3g} times the arena; lengths are in metres", size,
                           size / arena));
+        break;
+      }
+    }
+  }
+
+  void check_joints() {
+    const double arena = scene_.arena.size.maxCoeff();
+    for (const scene::Entity& entity : entities_) {
+      for (const scene::Joint& joint : entity.joints) {
+        const double distance = std::max(joint.parent_frame.position.norm(), joint.child_frame.position.norm());
+        if (!(distance > arena * far_joint)) continue;
+        doubt(far_, entity,
+              fmt::format("has joint {} {:.6g} m away from its link, {:.3g} times the arena; lengths are in metres",
+                          scene::in_quotes(joint.id), distance, distance / arena));
         break;
       }
     }
@@ -205,7 +221,7 @@ class Doubts {
   const scene::Scene& scene_;
   const std::vector<scene::Entity>& entities_;
   std::vector<Extent> extents_;  // at tick 0
-  Kind size_, overlap_, in_floor_, outside_, falls_, no_force_;
+  Kind size_, far_, overlap_, in_floor_, outside_, falls_, no_force_;
 };
 
 }  // namespace

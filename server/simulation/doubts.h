@@ -10,7 +10,7 @@
 namespace ziggurat::simulation {
 
 /// Warnings on bodies that overlap, that begin in the floor or outside of the arena, that fall forever,
-/// or whose size has nothing to do with the arena's. One of each kind, with how many there are.
+/// whose size has nothing to do with the arena's, or whose joints are far from it. One of each kind, with how many there are.
 /// @param simulation  of the scene, at tick 0
 std::vector<scene::Problem> doubts(const scene::Scene& scene, const Simulation& simulation);
 

@@ -125,6 +125,20 @@ TEST(Engines, NegativeGravityIsDoubted) {
       << all_problems(result);
 }
 
+TEST(Engines, StrongGravityAndManyIterationsAreDoubted) {
+  SceneText text;
+  const auto read = [&](const std::string& iterations, const std::string& g) {
+    text.engines = "<physics_engines><dynamics3d id=\"d\" iterations=\"" + iterations + "\"><gravity g=\"" + g +
+                   "\"/></dynamics3d></physics_engines>";
+    const ReadResult result = text.read();
+    EXPECT_TRUE(result.ok());
+    return all_problems(result);
+  };
+  EXPECT_NE(read("10", "-1e6").find("g=\"-1e6\" of <gravity> is more than 1000 m/s^2"), std::string::npos);
+  EXPECT_NE(read("10001", "9.8").find("iterations=\"10001\" of <dynamics3d> are so many substeps"), std::string::npos);
+  EXPECT_EQ(read("10000", "1000"), read("10", "9.8"));
+}
+
 TEST(Engines, DefaultsAndValues) {
   SceneText text;
   const ReadResult plain = text.read();

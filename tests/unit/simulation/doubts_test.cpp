@@ -78,5 +78,16 @@ TEST(Doubts, OfLengthsInMillimetres) {
   EXPECT_TRUE(found(body("a", "0,0,-20", false, "100,100,20")).empty()) << "a ground";
 }
 
+TEST(Doubts, OfJointsThatAreFarAway) {
+  const auto arm = [](const std::string& x) {
+    return R"(<prototype id="p" movable="true"><body position="0,0,0"/><links ref="a"><link id="a" geometry="box" size=".1,.1,.1" mass="1"/>)"
+           R"(<link id="b" geometry="box" size=".1,.1,.1" mass="1" position="0.2,0,0"/></links><joints><joint id="j" type="revolute" axis="0,0,1">)"
+           R"(<parent link="a" position=")" + x + R"(,0,0" orientation="0,0,0"/><child link="b" position=")" + x +
+           R"(,0,0" orientation="0,0,0"/></joint></joints></prototype>)";
+  };
+  expect_one(found(arm("91")), "prototype \"p\" has joint \"j\" 91 m away from its link, 10.1 times the arena");
+  EXPECT_TRUE(found(arm("0.1")).empty());
+}
+
 }  // namespace
 }  // namespace ziggurat::simulation
