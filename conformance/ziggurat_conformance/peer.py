@@ -20,6 +20,8 @@ from .wire import protocol
 _LONGEST_SEND, _LONGEST_SEND_IF_REFUSED = 60.0, 2.0
 
 
+_LONGEST_MESSAGE = (1 << 30) + (1 << 20)  # [bytes] more than a server sends (T4): the connection is closed when it is announced
+
 _BELOW = "\n" + 25 * " "  # a line of the transcript begins with time, peer and direction
 
 
@@ -61,7 +63,7 @@ class Peer:
         self._answers = Answers()
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
         self.socket.setsockopt(zmq.LINGER, 0)
-        self.socket.setsockopt(zmq.MAXMSGSIZE, -1)
+        self.socket.setsockopt(zmq.MAXMSGSIZE, _LONGEST_MESSAGE)
         self._may_be_refused = name in (PLAIN, MISLED, UNLISTED)
         longest = _LONGEST_SEND_IF_REFUSED if self._may_be_refused else _LONGEST_SEND
         self.socket.setsockopt(zmq.SNDTIMEO, int(1000 * longest))
