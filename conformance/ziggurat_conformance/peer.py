@@ -19,7 +19,6 @@ from .wire import protocol
 # [s] that a message waits for room in the queue; ZeroMQ has no queue for a connection that was refused.
 _LONGEST_SEND, _LONGEST_SEND_IF_REFUSED = 60.0, 2.0
 
-
 _LONGEST_MESSAGE = (1 << 30) + (1 << 20)  # [bytes] more than a server sends (T4): the connection is closed when it is announced
 
 _BELOW = "\n" + 25 * " "  # a line of the transcript begins with time, peer and direction
