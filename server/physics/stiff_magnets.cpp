@@ -10,14 +10,14 @@ using math::Vector3;
 
 /// Below this product of rate and substep a pair never matters: what it does in a substep is as
 /// good as constant.
-constexpr double soft = 0.02;
+constexpr double soft = 0.005;
 /// The pairs of a body must not misplace more than this share of a bond's energy in a substep.
 constexpr double share = 1e-4;
 /// Those that misplace less than this part of it count for the sum, but are not divided.
 constexpr double least_part = 0.1;
 /// Product of rate and length that a part should have where the magnets touch, and the largest that
 /// it may have where they are farther apart.
-constexpr double part_angle = 0.2, largest_angle = 0.3;
+constexpr double part_angle = 0.2, largest_angle = 0.1;
 constexpr int most_parts = 128;
 
 /// What one carrier does at a point, now and a substep ago.
