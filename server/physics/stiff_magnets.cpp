@@ -15,8 +15,8 @@ constexpr double soft = 0.005;
 constexpr double share = 1e-4;
 /// Those that misplace less than this part of it count for the sum, but are not divided.
 constexpr double least_part = 0.1;
-/// Product of rate and length that a part should have where the magnets touch, and the largest that
-/// it may have where they are farther apart.
+/// Of products of rate and length of a part: the root of the sum of squares of a body's pairs, each times the share of the bond energy
+/// that is left where they are; and the largest of a pair.
 constexpr double part_angle = 0.2, largest_angle = 0.1;
 constexpr int most_parts = 128;
 

@@ -27,14 +27,13 @@ void read_floor(Draft& draft, Element floor) {
 void read_gravity(Draft& draft, Element gravity) {
   const double g = gravity.optional("g", number, usual_gravity);
   draft.scene.physics.gravity = g;
-  if (g < 0) {
+  if (std::abs(g) > strong_gravity) {
+    draft.report.warn(gravity.where("g"), "strong gravity",
+                      gravity.sentence("g", "is stronger than 1000 m/s^2, a hundred times what the Earth's is; write g=\"9.8\""));
+  } else if (g < 0) {
     draft.report.warn(gravity.where("g"), "gravity",
                       gravity.sentence("g", fmt::format("lets everything fall up: g is the acceleration downwards; "
                                                         "write g=\"{:.6g}\"", -g)));
-  }
-  if (std::abs(g) > strong_gravity) {
-    draft.report.warn(gravity.where("g"), "strong gravity",
-                      gravity.sentence("g", "is more than 1000 m/s^2, a hundred times that of the Earth; write g=\"9.8\""));
   }
   gravity.done();
 }
