@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 #include <new>
+#include <string>
 
 #include "program/echo.h"
 #include "program/find_script.h"
@@ -30,7 +31,7 @@ class DirectorRunner {
     if (has_failed) {
       if (!options_.quiet) {
         std::fprintf(stderr, "director '%s': %s\n", text::printable(director_.id()).c_str(),
-                     text::printable(*failure).c_str());
+                     text::printable(*failure + where_).c_str());
       }
       director_.leave_failed(*failure);
     } else {
@@ -67,8 +68,9 @@ class DirectorRunner {
 
   Failure start() {
     const FoundScript script = options_.script
-                                   ? FoundScript{*options_.script, {}}
+                                   ? FoundScript{*options_.script, {}, {}}
                                    : find_script(director_.script(), director_.params(), {folders_, options_.names_any_ending});
+    where_ = script.where;
     if (script.path.empty()) return script.fault;
     try {
       script_ = std::make_unique<DirectorScript>(
@@ -96,6 +98,7 @@ class DirectorRunner {
   Director& director_;
   const ProgramOptions& options_;
   const Folders folders_;
+  std::string where_;  // a script was looked for in vain, for people here
   std::unique_ptr<DirectorScript> script_;  // from the first tick on
 };
 

@@ -12,7 +12,8 @@ namespace ziggurat::lua {
 
 struct FoundScript {
   std::filesystem::path path;  ///< empty if there is none
-  std::string fault;           ///< then: why, and which paths were tried
+  std::string fault;           ///< then: why, and what the server named; a server may learn it
+  std::string where;           ///< then: the folders that were searched, for people at this machine only
 };
 
 /// Which files a server may name as scripts.

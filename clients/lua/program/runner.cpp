@@ -48,9 +48,9 @@ void Runner::run() {
 
 void Runner::start(Seat& seat) {
   const FoundScript script =
-      options_.script ? FoundScript{*options_.script, {}}
+      options_.script ? FoundScript{*options_.script, {}, {}}
                       : find_script(seat.robot->script(), seat.robot->params(), {folders_, options_.names_any_ending});
-  if (script.path.empty()) return fail(seat, script.fault);
+  if (script.path.empty()) return fail(seat, script.fault, script.where);
   try {
     seat.controller = std::make_unique<Controller>(
         *seat.robot, ScriptOptions{script.path, session_.seed(), session_.tick(),
@@ -104,7 +104,7 @@ void Runner::hand_over_log(Seat& seat) {
 }
 
 // A script that was ended by a signal has not failed.
-void Runner::fail(Seat& seat, const std::string& message) {
+void Runner::fail(Seat& seat, const std::string& message, const std::string& only_here) {
   seat.controller.reset();
   if (are_scripts_interrupted()) return;
   ++failures_;
@@ -115,7 +115,7 @@ void Runner::fail(Seat& seat, const std::string& message) {
     return;
   }
   std::fprintf(stderr, "robot '%s': %s\n", text::printable_part(seat.robot->id(), longest_id).c_str(),
-               text::printable_part(message).c_str());
+               text::printable_part(message + only_here).c_str());
 }
 
 }  // namespace ziggurat::lua

@@ -39,7 +39,8 @@ class Runner {
   void destroy(Seat& seat, std::uint64_t max_seconds = 0);
   Failure call(Controller& controller);
   void hand_over_log(Seat& seat);
-  void fail(Seat& seat, const std::string& message);
+  /// @param only_here  what stderr tells beside that, and the server is not told
+  void fail(Seat& seat, const std::string& message, const std::string& only_here = {});
 
   ziggurat::Session& session_;
   const ProgramOptions& options_;

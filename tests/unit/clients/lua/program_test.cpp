@@ -136,6 +136,13 @@ TEST_F(Program, TellsAServerNotWhetherAFileExists) {
   EXPECT_EQ(fault_of("main.lua"), fault_of("none.lua"));
 }
 
+TEST_F(Program, TellsPeopleHereAndNotAServerWhereItLooked) {
+  const FoundScript found = find_script("/elsewhere/main.lua", {{"script", "no/main.lua"}}, {below(folder())});
+  const std::string looked_below = std::filesystem::canonical(folder()).string();
+  EXPECT_EQ(found.fault.find(looked_below), std::string::npos) << found.fault;
+  EXPECT_NE(found.where.find(looked_below), std::string::npos) << found.where;
+}
+
 TEST_F(Program, RunsOnlyFilesThatAreNamedAsScriptsUnlessAFolderIsAllowed) {
   write("netrc", "machine example.com login me password secret");
   const std::string path = (folder() / "netrc").string();

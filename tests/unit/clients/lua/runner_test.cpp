@@ -58,6 +58,7 @@ class RunnerTest : public ScriptTest {
   network::Server server_;
   world::Commands commands_ = small_.commands();
   std::vector<network::Report> reports_;
+  bool has_script_ = true;  // otherwise the server names it
   bool trusts_scripts_ = false;
   bool has_failures_ = false;
   std::atomic<pthread_t> client_{};
@@ -68,7 +69,7 @@ class RunnerTest : public ScriptTest {
   bool run_client() {
     client_ = ::pthread_self();
     ProgramOptions program;
-    program.script = folder() / "main.lua";
+    if (has_script_) program.script = folder() / "main.lua";
     program.folders = {folder()};
     program.quiet = true;
     program.trusts_scripts = trusts_scripts_;
@@ -137,6 +138,16 @@ TEST_F(RunnerTest, AFailureEndsOnlyItsRobot) {
   EXPECT_EQ(logged_at(2), "1: last words\n");
   EXPECT_EQ(logged_at(5), "0: destroy\n2: destroy\n");
   EXPECT_EQ(commands_.joint_targets, (std::vector<double>{3, 0, 3}));
+}
+
+TEST_F(RunnerTest, AScriptThatIsNotRunTellsTheServerNoFolders) {
+  has_script_ = false;
+  run("");
+  EXPECT_TRUE(has_failures_);
+  ASSERT_EQ(reports_[0].failures.size(), 3u);
+  const std::string& told = reports_[0].failures[0].message;
+  EXPECT_NE(told.find("the server names this script"), std::string::npos) << told;
+  EXPECT_EQ(told.find(folder().string()), std::string::npos) << told;
 }
 
 TEST_F(RunnerTest, AllMayFailAndTheRunContinues) {
