@@ -12,7 +12,7 @@ import zmq.auth.thread
 import zmq.utils.monitor
 
 from .case import Failed
-from .client_relay import Relay
+from .relay import ClientRelay
 from .server_process import free_port
 
 _REBINDING = 5.0  # [s] until a port is free again
@@ -21,8 +21,6 @@ _MOST_WAITING = 100  # messages of each connection that the kit has not read
 # buffers of the system.
 _MOST_TO_SEND = 1
 LONGEST_SEND = 10.0  # [s] that one waits for the client to read
-_SETTLING = 2.0  # [s] until what the relay has passed on is a message, on a busy machine too
-_AROUND_ENCRYPTED = 33  # [bytes] of each frame of an encrypted connection
 _PEER_NAMES = ("Socket-Type", "User-Id")
 
 
@@ -51,7 +49,7 @@ class ServerSocket:
             self._authenticator.configure_curve_callback(credentials_provider=_Doorkeeper(is_open))
         self._port = free_port()
         self.endpoint = f"tcp://127.0.0.1:{self._port}"
-        self._relay: Optional[Relay] = None
+        self._relay: Optional[ClientRelay] = None
         self._socket: Optional[zmq.Socket] = None
         self._monitor: Optional[zmq.Socket] = None
         self._connected: set[int] = set()  # descriptors
@@ -78,11 +76,11 @@ class ServerSocket:
         self._socket.bind(f"ipc://@{name}")
         self._relay = self._listen(name)
 
-    def _listen(self, name: str) -> Relay:
+    def _listen(self, name: str) -> ClientRelay:
         deadline = time.monotonic() + _REBINDING
         while True:
             try:
-                return Relay(self._port, name)
+                return ClientRelay(self._port, name)
             except OSError:
                 if time.monotonic() > deadline:
                     raise
@@ -117,26 +115,12 @@ class ServerSocket:
             time.sleep(max(0.0, seconds))
             return None
         self.connections()  # no more events wait than those of one call
-        if not self._is_there(seconds):
+        if not self._relay.wait(self._socket, seconds):
             return None
         first, *frames = self._socket.recv_multipart(copy=False)
-        around = _AROUND_ENCRYPTED if self._secret_key is not None else 0
-        self._relay.take(sum(len(frame) + around for frame in frames), len(frames))
+        self._relay.take(frames, self._secret_key is not None)
         facts = {name: _fact(frames[-1] if frames else first, name) for name in _PEER_NAMES}
         return Arrival(first.bytes, tuple(frames), facts["Socket-Type"], facts["User-Id"])
-
-    def _is_there(self, seconds: float) -> bool:
-        """A message, within so many seconds."""
-        self._relay.check()
-        if self._socket.poll(max(0, int(1000 * seconds))):
-            return True
-        self._relay.check()
-        if not self._relay.is_full():
-            return False
-        if self._socket.poll(int(1000 * _SETTLING)):
-            return True
-        self._relay.check_room()
-        return False
 
     def send(self, routing_id: bytes, data: bytes) -> None:
         """Has no effect if the connection has ended. Raises Failed if the client does not read what came before."""

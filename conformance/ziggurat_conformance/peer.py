@@ -9,17 +9,17 @@ from . import wire
 from .case import Failed
 from .keys import MISLED, PLAIN, UNLISTED
 from .printable import printable
+from .relay import ServerRelay
 from .rules.answers import Answers
 from .rules.fault import musts
 from .rules.session import Session
 from .rules.text_form import server_text_faults
 from .wire import protocol
+from .zmtp_frames import SERVER
 
 
 # [s] that a message waits for room in the queue; ZeroMQ has no queue for a connection that was refused.
 _LONGEST_SEND, _LONGEST_SEND_IF_REFUSED = 60.0, 2.0
-
-_LONGEST_MESSAGE = (1 << 30) + (1 << 20)  # [bytes] more than a server sends (T4): the connection is closed when it is announced
 
 _BELOW = "\n" + 25 * " "  # a line of the transcript begins with time, peer and direction
 
@@ -62,15 +62,17 @@ class Peer:
         self._answers = Answers()
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
         self.socket.setsockopt(zmq.LINGER, 0)
-        self.socket.setsockopt(zmq.MAXMSGSIZE, _LONGEST_MESSAGE)
+        self.socket.setsockopt(zmq.MAXMSGSIZE, SERVER.longest)
         self._may_be_refused = name in (PLAIN, MISLED, UNLISTED)
         longest = _LONGEST_SEND_IF_REFUSED if self._may_be_refused else _LONGEST_SEND
         self.socket.setsockopt(zmq.SNDTIMEO, int(1000 * longest))
+        self._is_encrypted = bool(keys)
         if keys:
             self.socket.curve_serverkey, self.socket.curve_publickey, self.socket.curve_secretkey = (
                 keys
             )
-        self.socket.connect(endpoint)
+        self._relay = ServerRelay(endpoint)
+        self.socket.connect(self._relay.endpoint)
 
     def send(self, message: protocol.ClientMessage) -> None:
         self.transcript.add(self.name, "──▶", wire.text_of(message))
@@ -93,7 +95,7 @@ class Peer:
         deadline = time.monotonic() + patience
         while True:
             left = max(0.0, deadline - time.monotonic())
-            if not self.socket.poll(int(left * 1000) + 1):
+            if not self._relay.wait(self.socket, left + 0.001):
                 return None
             message = self._receive()
             if wire.kind_of(message) == "heartbeat" and not heartbeats:
@@ -114,7 +116,12 @@ class Peer:
 
     def close(self) -> None:
         self.transcript.add(self.name, "───", "closes its connection")
+        self.release()
+
+    def release(self) -> None:
+        """Ends the connection without a line in the transcript."""
         self.socket.close()
+        self._relay.close()
 
     def _send(self, frames: tuple[bytes, ...]) -> None:
         try:
@@ -126,6 +133,7 @@ class Peer:
 
     def _receive(self) -> protocol.ServerMessage:
         frames = self.socket.recv_multipart()
+        self._relay.take(frames, self._is_encrypted)
         if len(frames) != 1:
             raise ValueError(f"the server sent {len(frames)} frames; expected one")
         message = wire.decode(protocol.ServerMessage, frames[0], self.form)

@@ -1,68 +1,72 @@
-"""A client's connection to the relay, and the relay's to the server's socket: bytes of each go to the other."""
+"""A connection of the program under test to a relay, and the relay's to the kit's socket: bytes of each go to the other."""
 
 import select
 import socket
 from typing import Callable
 
-from .zmtp_frames import Frames
+from .zmtp_frames import Frames, Sender
 
 AT_ONCE = 1 << 16  # [bytes] of a read; no more wait in each direction
 
 
 class RelayPipe:
-    def __init__(self, client: socket.socket, server: socket.socket, count: Callable[[int, int], None]):
-        """count: is told of frames and their bytes before the server gets them."""
-        self._client, self._server, self._count = client, server, count
-        self._frames = Frames()
-        self._to_server = self._to_client = b""
-        self._has_client = self._has_server = True  # it has not closed its end
-        client.setblocking(False)
-        client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        server.setblocking(False)
+    def __init__(self, program: socket.socket, kit: socket.socket, sender: Sender, count: Callable[[int, int], None]):
+        """count: is told of the program's frames and their bytes before the kit gets them."""
+        self._program, self._kit, self._count = program, kit, count
+        self._frames = Frames(sender)
+        self._to_kit = self._to_program = b""
+        self._has_program = self._has_kit = True  # it has not closed its end
+        for end in (program, kit):
+            end.setblocking(False)
+            if end.family != socket.AF_UNIX:
+                end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     def register(self, poll: select.poll, is_full: bool) -> None:
-        """For what can be moved. is_full: of the client, only what belongs to the frame that has begun is read."""
-        reads_client = self._has_client and self._has_server and not self._to_server and (not is_full or self._frames.left)
-        reads_server = self._has_client and self._has_server and not self._to_client
-        for end, reads, writes in ((self._client, reads_client, self._to_client),
-                                   (self._server, reads_server, self._to_server)):
+        """For what can be moved. is_full: of the program, only what belongs to the frame that has begun is read."""
+        reads_program = self._has_program and self._has_kit and not self._to_kit and (not is_full or self._frames.left)
+        reads_kit = self._has_program and self._has_kit and not self._to_program
+        for end, reads, writes in ((self._program, reads_program, self._to_program), (self._kit, reads_kit, self._to_kit)):
             if reads or writes:
                 poll.register(end, (select.POLLIN if reads else 0) | (select.POLLOUT if writes else 0))
 
     def move(self, ready: set, is_full: bool) -> None:
-        """ready: descriptors at which something can be done. Raises Failed for what the client sent."""
-        if self._client.fileno() in ready:
-            self._to_client = _written(self._client, self._to_client)
+        """ready: descriptors at which something can be done. Raises Failed for what the program sent."""
+        if self._program.fileno() in ready:
+            self._to_program = _written(self._program, self._to_program)
             most = min(AT_ONCE, self._frames.left) if is_full else AT_ONCE
-            if self._has_client and self._has_server and not self._to_server and most:
-                self._read_client(most)
-        if self._server.fileno() in ready:
-            self._to_server = _written(self._server, self._to_server)
-            if self._has_client and self._has_server and not self._to_client:
-                self._read_server()
+            if self._has_program and self._has_kit and not self._to_kit and most:
+                self._read_program(most)
+        if self._kit.fileno() in ready:
+            self._to_kit = _written(self._kit, self._to_kit)
+            if self._has_program and self._has_kit and not self._to_program:
+                self._read_kit()
+
+    def is_within_a_frame(self) -> bool:
+        """The rest of one is still to come."""
+        return self._frames.left > 0
 
     def is_over(self) -> bool:
         """One end is closed, and the other one has all that came from it."""
-        return not self._has_client and not self._to_server or not self._has_server and not self._to_client
+        return not self._has_program and not self._to_kit or not self._has_kit and not self._to_program
 
     def close(self) -> None:
-        self._client.close()
-        self._server.close()
+        self._program.close()
+        self._kit.close()
 
-    def _read_client(self, most: int) -> None:
-        data = _read(self._client, most)
+    def _read_program(self, most: int) -> None:
+        data = _read(self._program, most)
         if data is None:
             return
-        self._has_client = bool(data)
+        self._has_program = bool(data)
         self._count(*self._frames.read(data))
-        self._to_server = _written(self._server, data)
+        self._to_kit = _written(self._kit, data)
 
-    def _read_server(self) -> None:
-        data = _read(self._server, AT_ONCE)
+    def _read_kit(self) -> None:
+        data = _read(self._kit, AT_ONCE)
         if data is None:
             return
-        self._has_server = bool(data)
-        self._to_client = _written(self._client, data)
+        self._has_kit = bool(data)
+        self._to_program = _written(self._program, data)
 
 
 def _read(end: socket.socket, most: int):

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Optional
 
 from .process_group import ProcessGroup
+from .relay import connect
 
 _START = 30.0  # [s] until a server listens, on a busy machine too
 
@@ -91,16 +92,8 @@ class ServerProcess:
 
 def check_listens(endpoint: str) -> None:
     """Raises RuntimeError with a sentence unless a server does."""
-    kind, _, address = endpoint.partition("://")
     try:
-        if kind == "tcp":
-            host, _, port = address.rpartition(":")
-            socket.create_connection((host.strip("[]"), int(port)), 5).close()
-        elif kind == "ipc":
-            with socket.socket(socket.AF_UNIX) as probe:
-                probe.connect(address)
-        else:
-            raise ValueError
+        connect(endpoint, 5).close()
     except ValueError:
         raise RuntimeError(f"{endpoint!r} is no endpoint; tcp://127.0.0.1:5770 or ipc:///tmp/arena "
                            "would do") from None

@@ -160,7 +160,7 @@ class Stage:
 
     def __exit__(self, *_: Any) -> None:
         for peer in self.peers.values():
-            peer.socket.close()
+            peer.release()
 
     def peer(self, name: str) -> Peer:
         """The peer of that name, connected at its first use. "json" and "binary" use that form."""

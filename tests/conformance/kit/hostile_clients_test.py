@@ -15,7 +15,7 @@ from ziggurat_conformance import client_socket
 from ziggurat_conformance.case import Failed
 from ziggurat_conformance.client_socket import ServerSocket
 from ziggurat_conformance.keys import Keys
-from ziggurat_conformance.zmtp_frames import LONGEST, Frames
+from ziggurat_conformance.zmtp_frames import CLIENT, Frames
 
 HERE = Path(__file__).resolve().parent
 ADDRESSES = 1 << 30  # [bytes] that the kit and the client may map, each
@@ -151,17 +151,17 @@ class Sizes(unittest.TestCase):
     def test_of_frames_that_come_in_any_pieces(self):
         data = GREETING + b"\x04\x03abc" + b"\x01\x00" + b"\x00\x02xy" + b"\x02" + (300).to_bytes(8, "big") + bytes(300)
         for piece in (1, 2, 7, 64, 65, 1000):
-            frames, count, size = Frames(), 0, 0
+            frames, count, size = Frames(CLIENT), 0, 0
             for i in range(0, len(data), piece):
                 more = frames.read(data[i:i + piece])
                 count, size = count + more[0], size + more[1]
             self.assertEqual((4, 305, 0), (count, size, frames.left))
 
     def test_what_is_refused(self):
-        for data in (b"\x01", b"\xff" + bytes(9), GREETING[:10] + b"\x02", GREETING + b"\x02" + (LONGEST + 1).to_bytes(8, "big")):
+        for data in (b"\x01", b"\xff" + bytes(9), GREETING[:10] + b"\x02", GREETING + b"\x02" + (CLIENT.longest + 1).to_bytes(8, "big")):
             with self.assertRaises(Failed):
-                Frames().read(data)
-        Frames().read(GREETING + b"\x02" + LONGEST.to_bytes(8, "big"))
+                Frames(CLIENT).read(data)
+        Frames(CLIENT).read(GREETING + b"\x02" + CLIENT.longest.to_bytes(8, "big"))
 
 
 if __name__ == "__main__":
