@@ -368,6 +368,7 @@ class Kills(SweepTest):
         sweep = self.start("sweep", *self.arguments, "--out", self.out, "--quiet")
         self.wait_for(lambda: self.runs_of(sweep), lambda runs: runs, "runs")
         sweep.send_signal(signal.SIGSTOP)
+        self.assertEqual(0o600, (self.out / "lock").stat().st_mode & 0o777)  # who can read it can hold it
         outcome = self.sweep(*self.arguments, code=FAULT)
         self.assert_is_sentence(outcome, "another program works on this sweep now")
         self.assertIn("a sweep works on the others", self.sweep("status", self.out, out=False).out)
