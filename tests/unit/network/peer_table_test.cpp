@@ -65,6 +65,23 @@ TEST(PeerTable, ConnectionsWithoutSessionGrowOld) {
   EXPECT_EQ(table.without_session(), 1u);
 }
 
+TEST(PeerTable, TheOldestWhoseHandshakeIsNotOverMakesPlaceAfterASecond) {
+  using std::chrono::milliseconds;
+  const Time start = std::chrono::steady_clock::now();
+  PeerTable table;
+  const Descriptor open = connect(table, false, start), silent = connect(table, false, start),
+                   later = connect(table, false, start + milliseconds{500});
+  shake_hands(table, PeerTable::first_id + 1, open);
+  const auto has = [&](std::uint64_t number) { return table.find(PeerTable::first_id + number) != nullptr; };
+  EXPECT_FALSE(table.make_place(start + milliseconds{999}));
+  EXPECT_TRUE(table.make_place(start + seconds{1}));
+  EXPECT_TRUE(has(1) && !has(2) && has(3));
+  EXPECT_FALSE(table.make_place(start + milliseconds{1499})) << "it has a second for its handshake";
+  EXPECT_TRUE(table.make_place(start + milliseconds{1500}));
+  EXPECT_TRUE(has(1) && !has(3));
+  EXPECT_TRUE(table.make_place(start + milliseconds{1500})) << "none is left but that whose handshake is over";
+}
+
 TEST(PeerTable, ThoseWithSessionStay) {
   const Time start = std::chrono::steady_clock::now();
   PeerTable table;
