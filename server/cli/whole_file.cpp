@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <random>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -47,6 +48,8 @@ void handle_interruptions() {
   }
 }
 
+int create(const std::string& path) { return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); }
+
 }  // namespace
 
 WholeFile::WholeFile(std::string out) : out_(std::move(out)), part_(out_) {
@@ -56,7 +59,12 @@ WholeFile::WholeFile(std::string out) : out_(std::move(out)), part_(out_) {
   part_ = fmt::format("{}.{}.part", target_, ::getpid());  // another process may write the same
   // What another user has put there, as a link to a file of ours, is not written to.
   fs::remove(part_, error);
-  const int file = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  int file = create(part_);
+  if (file < 0 && errno == EEXIST) {  // and can't be removed from a folder such as /tmp
+    std::random_device number;
+    part_ = fmt::format("{}.{:08x}{:08x}.part", target_, number(), number());
+    file = create(part_);
+  }
   if (file < 0) throw std::runtime_error(fmt::format("{} can't be written: {}", out_, std::strerror(errno)));
   ::close(file);
   unfinished = part_.c_str();

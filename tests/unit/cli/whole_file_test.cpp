@@ -55,6 +55,19 @@ TEST_F(WholeFileTest, IsNotWrittenThroughALinkThatWasThereBefore) {
   EXPECT_EQ(only_file(), "out.csv: new\n");
 }
 
+TEST_F(WholeFileTest, HasAnotherPlaceIfWhatIsThereCannotBeRemoved) {
+  const std::string part = WholeFile(out_).path();
+  fs::create_directories(part + "/full");
+  {
+    WholeFile file(out_);
+    EXPECT_NE(file.path(), part);
+    std::ofstream(file.path()) << "new";
+    file.keep();
+  }
+  fs::remove_all(part);
+  EXPECT_EQ(only_file(), "out.csv: new\n");
+}
+
 TEST_F(WholeFileTest, IsRemovedIfItIsNotKept) {
   {
     const WholeFile file(out_);

@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
+#include <unistd.h>
+
 #include <filesystem>
+#include <fstream>
 #include <type_traits>
 
+#include "sweep/folder.h"
 #include "temporary_folder.h"
 
 namespace ziggurat::sweep {
@@ -32,6 +36,16 @@ class LedgerTest : public testing::Test {
   TemporaryFolder folder_;
   std::string path_ = folder_ / "sweep.sqlite";
 };
+
+TEST(FileOfASweep, IsNotWrittenThroughALinkAtThePlaceOfItsDraft) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "precious") << "kept";
+  std::filesystem::create_symlink(folder / "precious", folder / ("job.yaml." + std::to_string(::getpid()) + ".new"));
+  write_file(folder / "job.yaml", "a manifest");
+  EXPECT_EQ(read_file(folder / "precious"), "kept");
+  EXPECT_EQ(read_file(folder / "job.yaml"), "a manifest");
+  EXPECT_FALSE(std::filesystem::is_symlink(folder / "job.yaml"));
+}
 
 Result full() {
   Result result;
