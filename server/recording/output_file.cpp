@@ -132,7 +132,7 @@ class Place {
     }
     const bool is_planted = is_of_another(around, status.st_uid);
     const bool is_link = S_ISLNK(status.st_mode);
-    if (is_planted && (is_link || (is_last && (around.all_can_write || !S_ISREG(status.st_mode))))) return tell(around, status.st_mode);
+    if (is_planted && (is_link || (is_last && (around.all_can_write || !S_ISREG(status.st_mode))))) return tell(around, status.st_mode, is_last);
     if (is_link) return follow(there, is_last);
     if (!is_last) enter(std::move(there), is_planted);
   }
@@ -142,9 +142,9 @@ class Place {
     return around.is_planted || (around.all_can_write && owner != around.owner);
   }
 
-  void tell(const Folder& around, mode_t mode) {
+  void tell(const Folder& around, mode_t mode, bool is_last) {
     const char* what = S_ISLNK(mode) ? "a link" : S_ISREG(mode) ? "a file" : S_ISDIR(mode) ? "a folder" : "a pipe or device";
-    planted_ = std::string(what) + " of another user in a folder that " +
+    planted_ = (is_last ? "" : "below ") + std::string(what) + " of another user in a folder that " +
                (around.all_can_write ? "all can write" : "stands where all can write");
   }
 

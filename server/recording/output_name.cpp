@@ -126,4 +126,9 @@ void check_output(const OutputName& output, std::span<const TakenFile> taken) {
                                      output.option, output.path, kind->name));
 }
 
+void check_output_folder(const std::string& option, const std::string& path) {
+  const auto planted = planted_at(path + "/.");  // a folder of another user may be that of a group
+  if (planted) throw text::UsageError(fmt::format("{} is '{}', {}; name another folder", option, path, *planted));
+}
+
 }  // namespace ziggurat::recording

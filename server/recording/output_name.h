@@ -29,4 +29,8 @@ bool is_one_file(const std::string& a, const std::string& b);
 /// @throws text::UsageError
 void check_output(const OutputName& output, std::span<const TakenFile> taken = {});
 
+/// That another user has put no link on the way to a folder for outputs, or at its place.
+/// @throws text::UsageError
+void check_output_folder(const std::string& option, const std::string& path);
+
 }  // namespace ziggurat::recording

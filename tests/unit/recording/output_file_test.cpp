@@ -165,12 +165,12 @@ TEST_F(SharedFolder, NoLinkOfAnotherUserLeadsToTheFolderOfAnOutput) {
   EXPECT_EQ(complaint(link + file), "none") << "a link of ours";
   EXPECT_TRUE(std::filesystem::exists(mine + "/out.csv"));
   ASSERT_EQ(::lchown(link.c_str(), another, another), 0);
-  EXPECT_EQ(complaint(link + file), link + file + ": cannot be written: it is a link of another user in a folder that all can write");
+  EXPECT_EQ(complaint(link + file), link + file + ": cannot be written: it is below a link of another user in a folder that all can write");
   const auto before = std::filesystem::current_path();
   std::filesystem::current_path(mine);
   EXPECT_THROW(Images("../link/new", {}), WriteError);
   EXPECT_FALSE(std::filesystem::exists(mine + "/new"));
-  EXPECT_EQ(complaint("../link/out.csv"), "../link/out.csv: cannot be written: it is a link of another user in a folder that all can write");
+  EXPECT_EQ(complaint("../link/out.csv"), "../link/out.csv: cannot be written: it is below a link of another user in a folder that all can write");
   EXPECT_EQ(complaint("out.csv"), "none");
   std::filesystem::current_path(before);
 }
