@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import unittest
 
 from harness import FAULT, FINISHED, main
 from recorded import DIFFERS, Recorded, ROOT
@@ -60,6 +61,23 @@ class Outputs(Recorded):
             self.refuses("a scene, which it would replace", "export", "run.mcap", "--csv", link)
         self.refuses("a Lua script, which it would replace", "export", "run.mcap", "--jsonl",
                      self.links_to("swing.lua", ".jsonl")[0])
+
+    @unittest.skipIf(os.geteuid() != 0, "only root makes files of others")
+    def test_no_link_of_another_user_leads_to_an_output(self):
+        shared = self.folder / "shared"
+        shared.mkdir()
+        shared.chmod(0o1777)
+        link = shared / "link"
+        link.symlink_to(self.folder)
+        os.lchown(link, 12345, 12345)
+        before = sorted(path.name for path in self.folder.iterdir())
+        for command, option, name in ((("run", "magnets.argos", "--ticks", 1), "--hash-file", "out"),
+                                      (("run", "magnets.argos", "--ticks", 1), "--images", "out"),
+                                      (("serve", "magnets.argos"), "--snapshot-folder", "."),
+                                      (("export", "run.mcap"), "--csv", "out.csv")):
+            with self.subTest(option):
+                self.refuses("a link of another user in a folder that all can write", *command, option, link / name)
+        self.assertEqual(before, sorted(path.name for path in self.folder.iterdir()))
 
     def test_an_input_is_not_replaced(self):
         for name in ("run.mcap", "other.mcap"):
