@@ -319,7 +319,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   if (rebounding) free_.assign(free_.size(), free = 0);  // its energy is bounded as a whole
   if (free > 0) take_back_pushes(problem_, free_);
   write_impulses(problem_, contacts_, servos_, limits_);
-  if (free > 0 && fly_free(first_tree, last_tree, first_item, last_item)) return settle(first_tree, last_tree, false);
+  if (free > 0 && fly_free(first_tree, last_tree, first_item, last_item) && !problem_.two_stay_in()) return settle(first_tree, last_tree, false);
   const double before = energy_if_passive(problem_);
   note_excesses(problem_, work_, excesses_);
   take_velocities(problem_, free_, step_);

@@ -441,6 +441,7 @@ void Solver::solve_displacement(Problem& problem) {
     start_.give_back(problem);
   }
   sweep_until_converged(problem, outcome, options.displacement_sweeps);
+  if (outcome.miss > options.displacement_miss && work <= options.most_work) patient_proximal(problem, outcome);
 }
 
 }  // namespace ziggurat::dynamics

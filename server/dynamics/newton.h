@@ -52,6 +52,7 @@ struct SolverOptions {
   int first_sweeps = 20;              ///< before patient steps
   int most_patient = 60;              ///< steps of the softened problem with a line search
   int displacement_sweeps = 20;       ///< of a displacement that Newton's method does not find
+  double displacement_miss = 1e-5;    ///< [m], [rad] of it; more: the softened problem
   double rounding = 1e-7;             ///< of it, where Newton's method leads no nearer
   double relative_tolerance = 1e-9;   ///< of the largest speed or speed change in the island
   double still_tolerance = 1e-8;      ///< of it, for the momentum that the last substep's solution misses
@@ -116,7 +117,7 @@ class Solver {
   Outcome solve(Problem& problem);
   /// The solution if nothing rebounded, of a problem that is solved; leaves that as it is.
   void solve_without_rebound(Problem& problem, Snapshot& out);
-  /// Solves a displacement, which need not be exact where many bodies overlap.
+  /// Solves a displacement, which need not be exact where hundreds of bodies overlap.
   void solve_displacement(Problem& problem);
 
  private:

@@ -383,14 +383,22 @@ void Problem::harden() {
   }
 }
 
+double Problem::gap_after(const Block& block) const {
+  double u[Block::most_rows];
+  speeds(block, u);
+  return block.gap + length * (u[0] + length / 2 * block.bend);
+}
+
+bool Problem::two_stay_in() const {
+  return std::ranges::any_of(blocks, [&](const Block& block) {
+    return block.a >= 0 && block.b >= 0 && overlaps(block) && gap_after(block) < -allowed_overlap;
+  });
+}
+
 bool Problem::turn_into_displacement() {
   const auto bounces = [&](const Block& block) { return rebounded(block); };
-  const auto needs_it = [&](const Block& block) {
-    const bool overlaps = block.kind != Block::Source::servo && block.law != Block::Law::off && block.gap < -allowed_overlap;
-    return overlaps || bounces(block);
-  };
-  if (std::none_of(blocks.begin(), blocks.end(), needs_it)) return false;
-  const bool rebounding = std::any_of(blocks.begin(), blocks.end(), bounces);
+  const bool rebounding = std::ranges::any_of(blocks, bounces);
+  if (!rebounding && std::ranges::none_of(blocks, [&](const Block& block) { return overlaps(block); })) return false;
   const auto holds = [&](const Block& block) {  // through the impact: what it holds did not move when it was struck
     return rebounding && (block.kind == Block::Source::servo ? block.is_obeyed() : block.impulse[0] > 0);
   };
@@ -401,9 +409,7 @@ bool Problem::turn_into_displacement() {
       block.impulse.fill(0);  // sweeps begin with what all impulses do
       continue;
     }
-    double u[Block::most_rows];
-    speeds(block, u);
-    const double after = block.gap + length * (u[0] + length / 2 * block.bend);
+    const double after = gap_after(block);
     const bool bounced = bounces(block), both_ways = bounced || holds(block);
     block.law = Block::Law::bounded;
     block.lower = both_ways ? -std::numeric_limits<double>::infinity() : 0;

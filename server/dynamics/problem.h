@@ -104,6 +104,13 @@ struct Problem {
   void harden();
   /// Of a solved problem: whether a contact was met and rebounded. Between two walls all that it was given may add up to nothing.
   bool rebounded(const Block& block) const { return block.bounces && (in_turn || block.impulse[0] > 0); }
+  /// Whether a surface is pressed in, or a joint beyond its limit, by more than allowed_overlap.
+  bool overlaps(const Block& block) const { return block.kind != Block::Source::servo && block.law != Block::Law::off && block.gap < -allowed_overlap; }
+  /// What the present velocities leave of its gap [m], [rad].
+  double gap_after(const Block& block) const;
+  /// Whether they leave two trees overlapping that do.
+  bool two_stay_in() const;
+
   /// Turns the problem into that of the smallest displacement that undoes overlaps: v in [m] and
   /// [rad], without momentum and friction.
   /// @return  false if there is nothing to undo

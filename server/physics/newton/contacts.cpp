@@ -322,7 +322,8 @@ void Contacts::meet(Pair& pair, double length) {
   if (turning.swing > 0) swings.push_back({static_cast<int>((a.swings ? a : b).entity), turning.swing});
   add(found, pair, length);
   if (found.count > 0) note_bases(pair);
-  if (turning.may_land || (turning.tumbles && !(a.moves && b.moves))) turned_.push_back({static_cast<std::size_t>(&pair - pairs_.data()), turning.may_land});
+  if (a.moves && b.moves) return;
+  turned_.push_back({static_cast<std::size_t>(&pair - pairs_.data()), found.count == 0, turning.may_land || turning.tumbles});
 }
 
 /// Appends the pair's contacts, each with the impulse of the point of the last substep that is

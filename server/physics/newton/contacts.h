@@ -127,10 +127,11 @@ class Contacts {
   };
   std::vector<Owner> owners_;                   // of each contact
   std::array<Remembered, most_points> before_;  // of the pair under way, a substep ago
-  /// A pair one side of which stands and the other one turns far in the substep.
+  /// A pair one side of which stands and the other one turns far in the substep, or may be struck so that it does.
   struct Turned {
     std::size_t pair = 0;
     bool flies = false;  // no contact was found
+    bool turns = false;  // without being struck
   };
   std::vector<Turned> turned_;
   std::vector<dynamics::Contact> overlaps_;     // of these

@@ -2,6 +2,7 @@
 // with a corner, may overlap by a part of its size at the end, with corners that were far away.
 
 #include <algorithm>
+#include <cmath>
 
 #include "physics/convert.h"
 #include "physics/newton/contacts.h"
@@ -17,6 +18,19 @@ bool is_deep(const contact::Contacts& found) {
                      [](const contact::Point& point) { return point.distance < -deep; });
 }
 
+/// How far a point of a collider may be from where its velocity before the substep would have brought it [m].
+/// @param now     its pose behind it
+/// @param length  of the substep [s]
+double stray(const Collider& moving, const btTransform& now, double length) {
+  const btVector3 way = now.getOrigin() - moving.pose.getOrigin() - length * moving.velocity;
+  double turn = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const btVector3 before = moving.pose.getBasis().getColumn(axis);
+    turn += (now.getBasis().getColumn(axis) - before - length * moving.angular_velocity.cross(before)).length2();
+  }
+  return way.length() + moving.radius * std::sqrt(turn / 2);
+}
+
 }  // namespace
 
 std::span<dynamics::Contact> Contacts::find_turned(const dynamics::System& system) {
@@ -26,11 +40,11 @@ std::span<dynamics::Contact> Contacts::find_turned(const dynamics::System& syste
     if (pair.count == 0 && !turned.flies) continue;  // hidden
     const Collider& a = colliders_.all[pair.a];
     const Collider& b = colliders_.all[pair.b];
-    const auto pose = [&](const Collider& collider) {
-      return collider.moves ? colliders_.pose(collider, system) : collider.pose;
-    };
+    const btTransform of_a = a.moves ? colliders_.pose(a, system) : a.pose;
+    const btTransform of_b = b.moves ? colliders_.pose(b, system) : b.pose;
+    if (!turned.turns && stray(a.moves ? a : b, a.moves ? of_a : of_b, length_) <= least_reach(colliders_, length_)) continue;
     const contact::Contacts found =
-        contact::find(a.shape, pose(a), b.shape, pose(b), close, contact::Support::all);
+        contact::find(a.shape, of_a, b.shape, of_b, close, contact::Support::all);
     if (!is_deep(found)) continue;
     const dynamics::Contact law = law_of(a, b, turned.flies ? from_bullet(found.normal) : pair.normal, std::max(pair.count, 1));
     for (int i = 0; i < found.count; ++i) {

@@ -112,5 +112,41 @@ TEST(NewtonPlanks, InAHeapDoNotGoIntoTheFloor) {
   EXPECT_LT(worst, 5e-4);
 }
 
+// Planks of many sizes: light ones that lie still are struck so that they turn far, and overlaps of others push them.
+TEST(NewtonPlanks, OfManySizesInAHeapDoNotGoIntoTheFloor) {
+  if (long_runs::is_slow) return;
+  for (const int seed : {2, 18}) {
+    math::RandomStream random(seed, "planks");
+    World world(newton(true), 0.01);
+    std::vector<Vector3> sizes;
+    for (int i = 0; i < 200; ++i) {
+      sizes.push_back({random.uniform(0.1, 0.4), random.uniform(0.03, 0.1), random.uniform(0.008, 0.03)});
+      const Pose pose{{0.45 * (i % 7), 0.45 * (i / 7 % 7), 0.35 + 0.45 * (i / 49)}, any_turn(random)};
+      world.add(loose(pose, scene::Box{sizes.back()}, 600 * sizes.back().prod()));
+    }
+    double worst = 0;
+    for (int n = 0; n < 120; ++n) {
+      world.step();
+      const world::State state = state_of(world);
+      for (std::size_t i = 0; i < sizes.size(); ++i) worst = std::max(worst, depth(state.origins[i], sizes[i]));
+    }
+    EXPECT_LT(worst, 5e-4) << seed;
+  }
+}
+
+// A heavy box overlaps a light one by 20 mm, which hovers 5 mm above the floor: 16 mm of that are undone, beyond the floor, which nothing approaches.
+TEST(NewtonPlanks, OneThatAnOverlapPushesDownDoesNotGoIntoTheFloor) {
+  World world(newton(true), 0.01);
+  const Vector3 size(0.3, 0.08, 0.02);
+  world.add(loose(at(0, 0, 0.005), scene::Box{size}, 0.1));
+  world.add(loose(at(0, 0, 0.005), scene::Box{{0.3, 0.3, 0.3}}, 50));
+  double worst = 0;
+  for (int n = 0; n < 20; ++n) {
+    world.step();
+    worst = std::max(worst, depth(state_of(world).origins[0], size));
+  }
+  EXPECT_LT(worst, 5e-4);
+}
+
 }  // namespace
 }  // namespace ziggurat::physics
