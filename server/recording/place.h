@@ -1,0 +1,71 @@
+#pragma once
+// Where the path of an output leads, and who has put what stands on it.
+
+#include <sys/types.h>
+#include <unistd.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ziggurat::recording {
+
+/// A descriptor that is closed with its owner.
+class Opened {
+ public:
+  explicit Opened(int number) : number_(number) {}
+  Opened(Opened&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  Opened& operator=(Opened&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  ~Opened() {
+    if (number_ >= 0) ::close(number_);
+  }
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+/// Walks to where a path leads, from folder to folder and along links, and looks at who has put each of them there. What was
+/// looked at stays open, so that it is not exchanged before the file is opened.
+class Place {
+ public:
+  /// See error() and planted() before the rest is used.
+  explicit Place(const std::string& path);
+
+  int error() const { return error_; }  ///< of the system: a folder is not there, or can't be entered
+  /// What another user has put on the way or at its end where all can write, or below a folder that is there so.
+  const std::optional<std::string>& planted() const { return planted_; }
+
+  /// Opens the file.
+  /// @return  its descriptor, or -1 with an error of the system
+  int open(int flags) const;
+
+ private:
+  struct Folder {
+    Opened opened;
+    uid_t owner = 0;
+    bool all_can_write = false;
+    bool is_planted = false;  ///< by another user, in a folder that all can write, or below one that is planted
+  };
+
+  void push(const std::string& path);
+  void begin_at(const char* folder);
+  void enter(Opened opened, bool is_planted);
+  void step();
+  static bool is_of_another(const Folder& around, uid_t owner);
+  void tell(const Folder& around, mode_t mode, bool is_last);
+  void follow(const Opened& link, bool is_last);
+
+  std::vector<Folder> folders_;    // from the first on
+  std::vector<std::string> rest_;  // names that are still to come, the next one last
+  std::string name_;
+  bool is_of_proc_ = false;
+  int links_ = 0, error_ = 0;
+  std::optional<std::string> planted_;
+};
+
+}  // namespace ziggurat::recording
