@@ -1,6 +1,7 @@
 // One island in a substep: it flies, or its problem is solved and it moves by the solution.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -108,6 +109,17 @@ void displace(const Problem& problem, std::size_t i, std::span<const double> by,
   if (excess.kind == Excess::Kind::none) return;
   undo_excess(tree, work, excess, std::span(excesses.held).subspan(problem.offset[i], tree.dofs),
               !drifts);
+}
+
+/// Moves a tree that flew out of what it overlaps. A single body is not turned, so that its momenta and its energy stay.
+void push_out(Tree& tree, std::span<const double> by) {
+  if (tree.single && free_to_drift(tree)) {
+    displace(tree, std::array{0.0, 0.0, 0.0, by[3], by[4], by[5]});
+  } else {
+    displace(tree, by);
+  }
+  place(tree);
+  move(tree);
 }
 
 /// Gives back to contacts, servos and limits what they gave, in world axes.
@@ -341,9 +353,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
     if (!free_[i]) {
       displace(problem_, i, by, !grounded, excesses_, work_);
     } else if (std::ranges::any_of(by, [](double way) { return way != 0; })) {  // something is pushed out of it
-      displace(*problem_.trees[i], by);
-      place(*problem_.trees[i]);
-      move(*problem_.trees[i]);
+      push_out(*problem_.trees[i], by);
     }
   }
   if (rebounding) bound_energy(problem_, work_, rebound_, step_);
