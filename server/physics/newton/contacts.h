@@ -47,8 +47,8 @@ class Contacts {
   /// Notes the impulses that dynamics/ has written to them.
   /// @param more  parts of the substep are still to come
   void remember(bool more = false);
-  /// Contacts between bodies that turned far in the substep and what stands, where they overlap
-  /// now.
+  /// Contacts between what stands and bodies that turned far in the substep, or are not where their velocities led, where they
+  /// overlap now.
   std::span<dynamics::Contact> find_turned(const dynamics::System& system);
   /// Forgets what touched an entity, before it is removed or moved; wakes what rested there.
   void forget(std::size_t entity, dynamics::System& system);

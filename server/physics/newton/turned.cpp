@@ -1,5 +1,6 @@
 // A contact is linear in the displacement. What turns far in a substep, as when it strikes a floor
-// with a corner, may overlap by a part of its size at the end, with corners that were far away.
+// with a corner, may overlap by a part of its size at the end, with corners that were far away. So may
+// what is struck or pushed out of an overlap to where its velocity did not lead.
 
 #include <algorithm>
 #include <cmath>
@@ -34,6 +35,7 @@ double stray(const Collider& moving, const btTransform& now, double length) {
 }  // namespace
 
 std::span<dynamics::Contact> Contacts::find_turned(const dynamics::System& system) {
+  const double known = least_reach(colliders_, length_);  // contacts were looked for as far
   overlaps_.clear();
   for (const Turned& turned : turned_) {
     const Pair& pair = pairs_[turned.pair];
@@ -42,7 +44,7 @@ std::span<dynamics::Contact> Contacts::find_turned(const dynamics::System& syste
     const Collider& b = colliders_.all[pair.b];
     const btTransform of_a = a.moves ? colliders_.pose(a, system) : a.pose;
     const btTransform of_b = b.moves ? colliders_.pose(b, system) : b.pose;
-    if (!turned.turns && stray(a.moves ? a : b, a.moves ? of_a : of_b, length_) <= least_reach(colliders_, length_)) continue;
+    if (!turned.turns && stray(a.moves ? a : b, a.moves ? of_a : of_b, length_) <= known) continue;
     const contact::Contacts found =
         contact::find(a.shape, of_a, b.shape, of_b, close, contact::Support::all);
     if (!is_deep(found)) continue;

@@ -26,6 +26,18 @@ math::Quaternion any_turn(math::RandomStream& random) {
   return out.normalized();
 }
 
+/// How far the deepest corner of boxes comes below z = 0 [m].
+/// @param sizes  of the first of the world's bodies, which are boxes
+double worst_depth(World& world, const std::vector<Vector3>& sizes, int substeps) {
+  double worst = 0;
+  for (int n = 0; n < substeps; ++n) {
+    world.step();
+    const world::State state = state_of(world);
+    for (std::size_t i = 0; i < sizes.size(); ++i) worst = std::max(worst, depth(state.origins[i], sizes[i]));
+  }
+  return worst;
+}
+
 TEST(NewtonPlanks, LieOnTheFloorWhereTheyFell) {
   math::RandomStream random(7, "planks");
   World world(newton(true), 0.01);
@@ -35,13 +47,7 @@ TEST(NewtonPlanks, LieOnTheFloorWhereTheyFell) {
     const Pose pose{{0.5 * (i % 15), 0.5 * (i / 15), random.uniform(0.2, 0.4)}, any_turn(random)};
     world.add(loose(pose, scene::Box{sizes.back()}, 1000 * sizes.back().prod()));
   }
-  double worst = 0;
-  for (int n = 0; n < 300; ++n) {
-    world.step();
-    const world::State state = state_of(world);
-    for (std::size_t i = 0; i < sizes.size(); ++i) worst = std::max(worst, depth(state.origins[i], sizes[i]));
-  }
-  EXPECT_LT(worst, 5e-4);
+  EXPECT_LT(worst_depth(world, sizes, 300), 5e-4);
 }
 
 // Spun, its corners go ways of half a radian in a substep, about an axis that turns, too: where a straight way or a turn about an axis that stays
@@ -124,13 +130,7 @@ TEST(NewtonPlanks, OfManySizesInAHeapDoNotGoIntoTheFloor) {
       const Pose pose{{0.45 * (i % 7), 0.45 * (i / 7 % 7), 0.35 + 0.45 * (i / 49)}, any_turn(random)};
       world.add(loose(pose, scene::Box{sizes.back()}, 600 * sizes.back().prod()));
     }
-    double worst = 0;
-    for (int n = 0; n < 120; ++n) {
-      world.step();
-      const world::State state = state_of(world);
-      for (std::size_t i = 0; i < sizes.size(); ++i) worst = std::max(worst, depth(state.origins[i], sizes[i]));
-    }
-    EXPECT_LT(worst, 5e-4) << seed;
+    EXPECT_LT(worst_depth(world, sizes, 120), 5e-4) << seed;
   }
 }
 
@@ -140,12 +140,7 @@ TEST(NewtonPlanks, OneThatAnOverlapPushesDownDoesNotGoIntoTheFloor) {
   const Vector3 size(0.3, 0.08, 0.02);
   world.add(loose(at(0, 0, 0.005), scene::Box{size}, 0.1));
   world.add(loose(at(0, 0, 0.005), scene::Box{{0.3, 0.3, 0.3}}, 50));
-  double worst = 0;
-  for (int n = 0; n < 20; ++n) {
-    world.step();
-    worst = std::max(worst, depth(state_of(world).origins[0], size));
-  }
-  EXPECT_LT(worst, 5e-4);
+  EXPECT_LT(worst_depth(world, {size}, 20), 5e-4);
 }
 
 }  // namespace
