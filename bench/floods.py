@@ -1,9 +1,12 @@
-"""What floods by unknown peers take from four Lua controllers: ticks per second alone, under each flood, and alone again.
+"""What floods by unknown peers take from four Lua controllers: ticks per second under each flood, in percent of
+those just before and just after it, in the mean of many short turns and with the standard error of that mean.
 
     PYTHONPATH=build/release/python:tests/scenes/disturbances python3 bench/floods.py build/release/bin/ziggurat
 
-Beside other load: `chrt -r 5` before it. Each flood is a process of its own; `server` is its processor time
-for a tick.
+Each flood is a process of its own, begun anew for each turn. Two have no connection and show what the machine does by
+itself: `nothing` sleeps, `wakes` computes for 0.2 ms in every 10. The server has a processor of its own and the controllers
+have another one: where the system moves them about, ticks per second change twofold by themselves. `server` is its
+processor time for a tick.
 """
 
 import argparse
@@ -13,6 +16,7 @@ import os
 import pathlib
 import re
 import socket
+import statistics
 import struct
 import subprocess
 import tempfile
@@ -34,6 +38,18 @@ def observer(endpoint):
     peer.send_message(v1.ClientMessage(hello=v1.Hello(version=v1.Version(major=1), role=v1.ROLE_OBSERVER)).SerializeToString())
     peer.receive_message()
     return peer
+
+
+def nothing(endpoint, port):
+    time.sleep(3600)
+
+
+def wakes(endpoint, port):
+    while True:
+        end = time.monotonic() + 0.0002
+        while time.monotonic() < end:
+            pass
+        time.sleep(0.01)
 
 
 def observers_ask(endpoint, port, count=20):
@@ -89,7 +105,7 @@ def metrics(endpoint, port):
                 pass
 
 
-FLOODS = (observers_ask, observers_never_read, garbage, connections, metrics)
+FLOODS = (nothing, wakes, observers_ask, observers_never_read, garbage, connections, metrics)
 
 
 def used(process):
@@ -113,6 +129,29 @@ def rate(process, watcher, seconds):
     return (last - first) / (ended - begun), 1e6 * (after - before) / max(1, last - first)
 
 
+def turn(process, watcher, flood, places, seconds):
+    """Ticks per second and processor time for a tick, each in proportion to what they are without the flood."""
+    before = rate(process, watcher, seconds)
+    attacker = multiprocessing.Process(target=flood, args=places, daemon=True)
+    attacker.start()
+    time.sleep(0.2)
+    under = rate(process, watcher, seconds)
+    attacker.kill()
+    attacker.join()
+    time.sleep(0.2)
+    after = rate(process, watcher, seconds)
+    return [2 * with_flood / (first + second) for with_flood, first, second in zip(under, before, after)]
+
+
+def place(process):
+    """The server on one processor, its controllers on another."""
+    first, *rest = sorted(os.sched_getaffinity(0))
+    controllers = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    os.sched_setaffinity(process.pid, {first})
+    for each in controllers:
+        os.sched_setaffinity(int(each), {rest[0] if rest else first})
+
+
 def write_scene(folder):
     """Four arms: one more than those of the tests' scene."""
     text = SCENE.read_text()
@@ -125,30 +164,25 @@ def write_scene(folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("ziggurat", type=pathlib.Path)
-    parser.add_argument("--seconds", type=float, default=3)
+    parser.add_argument("--seconds", type=float, default=0.5, help="of each look at the ticks (default 0.5)")
+    parser.add_argument("--turns", type=int, default=20, help="of each flood (default 20: two minutes for all)")
     options = parser.parse_args()
-    endpoint, port = f"tcp://127.0.0.1:{free_port()}", free_port()
+    places = f"tcp://127.0.0.1:{free_port()}", free_port()
     with tempfile.TemporaryDirectory() as folder:
         write_scene(folder)
         process = subprocess.Popen(
             [options.ziggurat.resolve(), "run", "arms.argos", "--duration", "0", "--quiet", "--lua-processes", "4",
-             "--endpoint", endpoint, "--metrics", f"127.0.0.1:{port}"], cwd=folder, stdout=subprocess.DEVNULL)
+             "--endpoint", places[0], "--metrics", f"127.0.0.1:{places[1]}"], cwd=folder, stdout=subprocess.DEVNULL)
         try:
             time.sleep(1)
-            watcher = observer(endpoint)
+            place(process)
+            watcher = observer(places[0])
             for flood in FLOODS:
-                alone = [rate(process, watcher, options.seconds)]
-                attacker = multiprocessing.Process(target=flood, args=(endpoint, port), daemon=True)
-                attacker.start()
-                time.sleep(1)
-                under, cost = rate(process, watcher, options.seconds)
-                attacker.kill()
-                attacker.join()
-                time.sleep(1)
-                alone.append(rate(process, watcher, options.seconds))
-                (first, cheap), (second, _) = alone
-                print(f"{flood.__name__:22} {under:6.0f} ticks/s, alone {first:.0f} and {second:.0f}: "
-                      f"{100 * 2 * under / (first + second):3.0f} %; server {cost:.0f} us, alone {cheap:.0f}", flush=True)
+                turns = [turn(process, watcher, flood, places, options.seconds) for _ in range(options.turns)]
+                ticks, costs = zip(*turns)
+                error = statistics.stdev(ticks) / len(ticks) ** 0.5
+                print(f"{flood.__name__:22} {100 * statistics.mean(ticks):5.1f} +- {100 * error:.1f} % of the ticks, "
+                      f"median {100 * statistics.median(ticks):.0f}; server {statistics.mean(costs):.2f} times", flush=True)
         finally:
             process.terminate()
             process.wait()

@@ -53,10 +53,13 @@ struct Shared {
 };
 
 /// Share of the wall time that connections other than controllers' may take of the tick's thread
-/// while a tick runs. The system's work for them, and what they do themselves with the answers, may
-/// double that on the same machine: in all it is 5 %.
-inline constexpr double share_of_others = 0.025;
-/// A message counts at least that much of it, because it wakes a process: 1000 messages a second.
+/// while a tick runs. The system's work for them, and what they do themselves with the answers,
+/// costs about as much again on the same machine, and all controllers wait for a tick that waits.
+inline constexpr double share_of_others = 0.01;
+/// The same where clients need keys: a handshake takes ten times as long there, and who would come in waits
+/// behind those of strangers.
+inline constexpr double share_of_others_with_keys = 0.025;
+/// A message counts at least that much of it, because it wakes a process: 400 messages a second.
 inline constexpr std::chrono::microseconds least_cost{25};
 
 }  // namespace ziggurat::network

@@ -34,13 +34,15 @@ void ReadyList::remove(int descriptor) {
   ::epoll_ctl(number(), EPOLL_CTL_DEL, descriptor, nullptr);
 }
 
+bool ReadyList::look() {
+  if (has_more()) return true;
+  next_ = 0;
+  count_ = std::max(0, ::epoll_wait(number(), events_.data(), static_cast<int>(events_.size()), 0));
+  return has_more();
+}
+
 std::optional<ReadyList::Ready> ReadyList::next() {
-  if (!has_more()) {
-    next_ = 0;
-    count_ =
-        std::max(0, ::epoll_wait(number(), events_.data(), static_cast<int>(events_.size()), 0));
-  }
-  if (!has_more()) return std::nullopt;
+  if (!look()) return std::nullopt;
   const epoll_event& event = events_[static_cast<std::size_t>(next_++)];
   const std::uint32_t events = event.events;
   return Ready{event.data.u64, (events & ~EPOLLOUT) != 0, (events & EPOLLOUT) != 0,

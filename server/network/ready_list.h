@@ -27,6 +27,8 @@ class ReadyList {
   void change(int descriptor, std::uint64_t id, bool wants_to_read, bool wants_to_write);
   void remove(int descriptor);
 
+  /// Whether one is ready. It does not wait.
+  bool look();
   /// One that is ready, in turn. It does not wait.
   std::optional<Ready> next();
   /// Some of those that the system told of were not given out yet.

@@ -41,7 +41,7 @@ Socket::Socket(const Config& config)
       most_peers_(descriptors_for_peers()),
       most_without_session_(std::clamp(most_peers_ / 2, std::size_t{1}, most_without_session)),
       next_tending_(Clock::now()),
-      share_(share_of_others, saved_share) {
+      share_(config.curve ? share_of_others_with_keys : share_of_others, saved_share) {
   if (config.curve) keys_.emplace(*config.curve);
   const bool allows_any = config.insecure || config.curve;
   for (const std::string& endpoint : config.endpoints) listen(endpoint, false, allows_any);
@@ -124,9 +124,10 @@ bool Socket::receive(Received& received) {
   const bool has_one = receive_from(controllers_, received);
   handled();  // the look at controllers was between two messages of others
   if (has_one) return true;
-  if (!may_serve_others()) return false;
+  if (!may_serve_others() || others_.is_idle()) return false;
   begin_charge();
   if (receive_from(others_, received)) return true;
+  peers_.remove_ended();  // to close them takes time, too
   handled();
   return false;
 }

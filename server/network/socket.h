@@ -87,6 +87,7 @@ class Socket {
     std::deque<std::string> turns;   ///< those that may have messages: one each, in turn
     std::size_t until_look = 0;      ///< so many turns until the list is asked for others
 
+    bool is_idle() const { return turns.empty() && !list.look(); }
     void give_turn(PeerSocket& peer);
   };
 

@@ -35,7 +35,7 @@ class TimeShare {
   static constexpr Seconds least{0.5e-3};
   /// More than that is not owed, whatever was used at once: a question that takes longer, in a world of many
   /// thousands, keeps others waiting for some seconds, not for minutes.
-  static constexpr Seconds most_debt{50e-3};
+  static constexpr Seconds most_debt{20e-3};
 
   /// @param share  of the wall time, above 0
   /// @param most  that can be saved up, not below `least`

@@ -47,15 +47,15 @@ TEST(TimeShare, ItsTurnsAreNotShorterThanWorthwhile) {
   EXPECT_NEAR(turns, 100, 5) << "5 % of a second, in turns of half a millisecond";
 }
 
-TEST(TimeShare, FiftyMillisecondsAreOwedInFullAndNoMore) {
-  for (const std::chrono::nanoseconds used : {std::chrono::nanoseconds(50ms), std::chrono::nanoseconds(1h)}) {
+TEST(TimeShare, TwentyMillisecondsAreOwedInFullAndNoMore) {
+  for (const std::chrono::nanoseconds used : {std::chrono::nanoseconds(20ms), std::chrono::nanoseconds(1h)}) {
     TimeShare share(0.05, 5ms);
     const auto now = std::chrono::steady_clock::now();
     EXPECT_TRUE(share.has_some(now));
     share.charge(used);
     EXPECT_FALSE(share.has_some(now));
-    EXPECT_FALSE(share.has_some(now + 900ms));
-    EXPECT_TRUE(share.has_some(now + 1100ms));
+    EXPECT_FALSE(share.has_some(now + 300ms));
+    EXPECT_TRUE(share.has_some(now + 450ms));
   }
 }
 

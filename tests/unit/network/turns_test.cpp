@@ -43,6 +43,19 @@ TEST(Turns, AConnectionThatSendsMuchDoesNotKeepOthersWaiting) {
   }
 }
 
+/// Each was counted as a message: who asks now and then waited for its turn although nobody else asked.
+TEST(Turns, LooksAtOthersWhereNothingIsTakeNoneOfTheirTime) {
+  Socket socket(local_config());
+  socket.set_ticking(true);
+  Received received;
+  for (int i = 0; i < 10'000; ++i) EXPECT_FALSE(socket.receive(received));
+  const Descriptor other = connect_and_send(socket.endpoints().front(), greeting_and(1, "question"));
+  bool is_taken = false;
+  for (int look = 0; look < 10 && !is_taken; ++look) is_taken = socket.receive(received);
+  ASSERT_TRUE(is_taken) << "without waiting";
+  EXPECT_EQ(received.bytes, "question");
+}
+
 /// Commands of ZeroMQ's protocol are no messages: they are read without end if nothing bounds it.
 TEST(Turns, AConnectionThatSendsCommandsWithoutEndDoesNotKeepOthersWaiting) {
   Socket socket(local_config());
