@@ -57,7 +57,7 @@ struct Shared {
 /// costs about as much again on the same machine, and all controllers wait for a tick that waits.
 inline constexpr double share_of_others = 0.01;
 /// The same where clients need keys: a handshake takes ten times as long there, and who would come in waits
-/// behind those of strangers.
+/// behind those of unknown peers.
 inline constexpr double share_of_others_with_keys = 0.025;
 /// A message counts at least that much of it, because it wakes a process: 400 messages a second.
 inline constexpr std::chrono::microseconds least_cost{25};

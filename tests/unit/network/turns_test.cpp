@@ -43,7 +43,7 @@ TEST(Turns, AConnectionThatSendsMuchDoesNotKeepOthersWaiting) {
   }
 }
 
-/// Each was counted as a message: who asks now and then waited for its turn although nobody else asked.
+/// Each was counted as a message: who asks now and then waited for its turn although no other client asked.
 TEST(Turns, LooksAtOthersWhereNothingIsTakeNoneOfTheirTime) {
   Socket socket(local_config());
   socket.set_ticking(true);
