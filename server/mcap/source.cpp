@@ -9,6 +9,8 @@
 #include <cstring>
 #include <memory>
 
+#include "posix/descriptor.h"
+
 namespace ziggurat::mcap {
 namespace {
 
@@ -33,18 +35,15 @@ void read_whole(int descriptor, const std::string& path, std::uint64_t offset, s
 }  // namespace
 
 Source open_file(const std::string& path) {
-  const int opened = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (opened < 0) fail(path, std::strerror(errno));
-  const std::shared_ptr<const int> file(new int(opened), [](const int* each) {
-    ::close(*each);
-    delete each;
-  });
+  const auto file =
+      std::make_shared<const posix::Descriptor>(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (!file->is_open()) fail(path, std::strerror(errno));
   struct stat status {};
-  if (::fstat(*file, &status) != 0) fail(path, std::strerror(errno));
+  if (::fstat(file->number(), &status) != 0) fail(path, std::strerror(errno));
   if (!S_ISREG(status.st_mode)) fail(path, "it is not a regular file");
   return {static_cast<std::uint64_t>(status.st_size),
           [file, path](std::uint64_t offset, std::size_t size, std::string& to) {
-            read_whole(*file, path, offset, size, to);
+            read_whole(file->number(), path, offset, size, to);
           }};
 }
 

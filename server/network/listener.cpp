@@ -50,13 +50,13 @@ constexpr std::string_view path_scheme = "ipc://", address_scheme = "tcp://";
   throw EndpointError(fmt::format("{}: can't listen: {}", endpoint, reason()));
 }
 
-Descriptor open_socket(const std::string& endpoint, int family) {
-  Descriptor made(::socket(family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+posix::Descriptor open_socket(const std::string& endpoint, int family) {
+  posix::Descriptor made(::socket(family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (!made.is_open()) fail(endpoint, errno);
   return made;
 }
 
-void bind_and_listen(const std::string& endpoint, const Descriptor& socket, const sockaddr* address,
+void bind_and_listen(const std::string& endpoint, const posix::Descriptor& socket, const sockaddr* address,
                      socklen_t size) {
   if (::bind(socket.number(), address, size) != 0) fail(endpoint, errno);
   if (::listen(socket.number(), waiting_connections) != 0) fail(endpoint, errno);
@@ -68,10 +68,10 @@ void set_option(int socket, int level, int option, int value) {
 
 /// Of servers that begin at one path at the same time only one is between its look at that path and listening there.
 /// Held while it is open. Any user of this machine may hold it, too, so no server waits for long.
-Descriptor hold_path(const std::string& path) {
+posix::Descriptor hold_path(const std::string& path) {
   constexpr int most_tries = 50, between_us = 10'000;
   const std::string lock = lock_of(path);
-  Descriptor held(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  posix::Descriptor held(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   if (!held.is_open() || lock.empty()) return held;
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -137,7 +137,7 @@ std::optional<Address> resolve(std::string host, std::string port) {
 }
 
 /// "tcp://host:port" of a socket that listens.
-std::string name_of(const Descriptor& socket) {
+std::string name_of(const posix::Descriptor& socket) {
   Address address;
   address.size = sizeof address.storage;
   auto* generic = reinterpret_cast<sockaddr*>(&address.storage);
@@ -186,7 +186,7 @@ void Listener::listen_at_path(const std::string& endpoint, std::string path) {
   std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
   auto size = static_cast<socklen_t>(sizeof address);
   const bool is_abstract = path[0] == '@';
-  Descriptor held;
+  posix::Descriptor held;
   if (is_abstract) {
     address.sun_path[0] = '\0';
     size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + path.size());
@@ -194,7 +194,7 @@ void Listener::listen_at_path(const std::string& endpoint, std::string path) {
     held = hold_path(path);
     make_way(endpoint, path);
   }
-  Descriptor made = open_socket(endpoint, AF_UNIX);
+  posix::Descriptor made = open_socket(endpoint, AF_UNIX);
   bind_and_listen(endpoint, made, reinterpret_cast<const sockaddr*>(&address), size);
   if (!is_abstract) file_ = path;
   endpoint_ = std::string(path_scheme) + path;
@@ -205,7 +205,7 @@ void Listener::listen_at_address(const std::string& endpoint, const std::string&
   const std::size_t colon = address.rfind(':');
   const auto found = resolve(address.substr(0, colon), address.substr(colon + 1));
   if (!found) fail(endpoint, ENODEV);
-  Descriptor made = open_socket(endpoint, found->storage.ss_family);
+  posix::Descriptor made = open_socket(endpoint, found->storage.ss_family);
   set_option(made.number(), SOL_SOCKET, SO_REUSEADDR, 1);
   if (found->storage.ss_family == AF_INET6) {
     set_option(made.number(), IPPROTO_IPV6, IPV6_V6ONLY, 0);
@@ -216,8 +216,8 @@ void Listener::listen_at_address(const std::string& endpoint, const std::string&
   descriptor_ = std::move(made);
 }
 
-Descriptor Listener::accept() const {
-  Descriptor client(::accept4(number(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+posix::Descriptor Listener::accept() const {
+  posix::Descriptor client(::accept4(number(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
   if (client.is_open() && is_tcp_) {
     set_option(client.number(), IPPROTO_TCP, TCP_NODELAY, 1);
     set_option(client.number(), SOL_SOCKET, SO_KEEPALIVE, 1);

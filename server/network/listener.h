@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "network/descriptor.h"
+#include "posix/descriptor.h"
 
 namespace ziggurat::network {
 
@@ -25,13 +25,13 @@ class Listener {
   const std::string& endpoint() const { return endpoint_; }
   int number() const { return descriptor_.number(); }
   /// A client that has connected; not open if there is none, errno then says why.
-  Descriptor accept() const;
+  posix::Descriptor accept() const;
 
  private:
   void listen_at_path(const std::string& endpoint, std::string path);
   void listen_at_address(const std::string& endpoint, const std::string& address);
 
-  Descriptor descriptor_;
+  posix::Descriptor descriptor_;
   std::string endpoint_;
   std::string file_, folder_;  // to be removed; may be empty
   bool is_tcp_ = false;

@@ -22,7 +22,7 @@ std::size_t kept_when_idle(Standing standing) {
 
 }  // namespace
 
-PeerSocket::PeerSocket(std::string name, Descriptor descriptor, const zmtp::CurveKeys* keys,
+PeerSocket::PeerSocket(std::string name, posix::Descriptor descriptor, const zmtp::CurveKeys* keys,
                        bool is_trusted, Time now)
     : name_(std::move(name)),
       descriptor_(std::move(descriptor)),

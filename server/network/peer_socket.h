@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "network/descriptor.h"
+#include "posix/descriptor.h"
 #include "network/limits.h"
 #include "network/link.h"
 #include "network/output_queue.h"
@@ -24,7 +24,7 @@ class PeerSocket {
   /// @param name  of the connection
   /// @param keys  must outlive the connection; null: it is not encrypted
   /// @param is_trusted  of this user: limits of connections without session do not hold
-  PeerSocket(std::string name, Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_trusted,
+  PeerSocket(std::string name, posix::Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_trusted,
              Time now);
 
   const std::string& name() const { return name_; }
@@ -71,7 +71,7 @@ class PeerSocket {
   void send_reply();
 
   const std::string name_;
-  Descriptor descriptor_;
+  posix::Descriptor descriptor_;
   zmtp::Engine engine_;
   const bool is_trusted_;
   Standing standing_ = Standing::none;

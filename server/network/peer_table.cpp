@@ -23,7 +23,7 @@ std::uint64_t id_of(const std::string& name) {
 PeerTable::PeerTable(const Shared& most)
     : most_(most), next_notice_(std::chrono::steady_clock::now()) {}
 
-void PeerTable::add(Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_trusted, Time now) {
+void PeerTable::add(posix::Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_trusted, Time now) {
   const std::uint64_t id = ++last_id_;
   auto& peer = peers_[id];
   peer = std::make_unique<PeerSocket>(name_of(id), std::move(descriptor), keys, is_trusted, now);

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "network/descriptor.h"
+#include "posix/descriptor.h"
 
 namespace ziggurat::network {
 
@@ -37,7 +37,7 @@ class ReadyList {
   int number() const { return epoll_.number(); }
 
  private:
-  Descriptor epoll_;
+  posix::Descriptor epoll_;
   std::array<epoll_event, 64> events_{};
   int count_ = 0, next_ = 0;
 };

@@ -193,7 +193,7 @@ void Socket::accept(Entrance& entrance) {
     const bool is_full = are_many || peers_.size() >= most_peers_;
     if (is_full && !peers_.make_place(now)) return entrance.set_accepting(peers_.others(), false);
     peers_.remove_ended();
-    Descriptor client = entrance.listener.accept();
+    posix::Descriptor client = entrance.listener.accept();
     if (!client.is_open()) {
       const bool lacks_descriptors = errno == EMFILE || errno == ENFILE;
       if (lacks_descriptors && !peers_.make_place(now)) {

@@ -56,10 +56,10 @@ void Place::push(const std::string& path) {
 
 void Place::begin_at(const char* folder) {
   folders_.clear();
-  enter(Opened(::open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC)), false);
+  enter(posix::Descriptor(::open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC)), false);
 }
 
-void Place::enter(Opened opened, bool is_planted) {
+void Place::enter(posix::Descriptor opened, bool is_planted) {
   Status status{};
   if (opened.number() < 0 || ::fstat(opened.number(), &status) != 0) {
     error_ = errno;
@@ -82,7 +82,7 @@ void Place::step() {
   Status status{};
   // Folders that the system mounts when somebody enters them are not mounted by O_PATH.
   if (!is_last) ::fstatat(around.opened.number(), (name + "/.").c_str(), &status, 0);
-  Opened there(::openat(around.opened.number(), name.c_str(), O_PATH | O_NOFOLLOW | O_CLOEXEC));
+  posix::Descriptor there(::openat(around.opened.number(), name.c_str(), O_PATH | O_NOFOLLOW | O_CLOEXEC));
   if (there.number() < 0 || ::fstat(there.number(), &status) != 0) {
     if (!is_last || errno != ENOENT) error_ = errno;
     return;
@@ -105,7 +105,7 @@ void Place::tell(const Folder& around, mode_t mode, bool is_last) {
              (around.all_can_write ? "all can write" : "stands where all can write");
 }
 
-void Place::follow(const Opened& link, bool is_last) {
+void Place::follow(const posix::Descriptor& link, bool is_last) {
   constexpr int most_links = 40;  // as the system follows
   struct statfs system {};
   is_of_proc_ = is_last && ::fstatfs(link.number(), &system) == 0 && system.f_type == PROC_SUPER_MAGIC;

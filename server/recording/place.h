@@ -2,32 +2,14 @@
 // Where the path of an output leads, and who has put what stands on it.
 
 #include <sys/types.h>
-#include <unistd.h>
 
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "posix/descriptor.h"
+
 namespace ziggurat::recording {
-
-/// A descriptor that is closed with its owner.
-class Opened {
- public:
-  explicit Opened(int number) : number_(number) {}
-  Opened(Opened&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-  Opened& operator=(Opened&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
-  }
-  ~Opened() {
-    if (number_ >= 0) ::close(number_);
-  }
-  int number() const { return number_; }
-
- private:
-  int number_;
-};
 
 /// Walks to where a path leads, from folder to folder and along links, and looks at who has put each of them there. What was
 /// looked at stays open, so that it is not exchanged before the file is opened.
@@ -46,7 +28,7 @@ class Place {
 
  private:
   struct Folder {
-    Opened opened;
+    posix::Descriptor opened;
     uid_t owner = 0;
     bool all_can_write = false;
     bool is_planted = false;  ///< by another user, in a folder that all can write, or below one that is planted
@@ -54,11 +36,11 @@ class Place {
 
   void push(const std::string& path);
   void begin_at(const char* folder);
-  void enter(Opened opened, bool is_planted);
+  void enter(posix::Descriptor opened, bool is_planted);
   void step();
   static bool is_of_another(const Folder& around, uid_t owner);
   void tell(const Folder& around, mode_t mode, bool is_last);
-  void follow(const Opened& link, bool is_last);
+  void follow(const posix::Descriptor& link, bool is_last);
 
   std::vector<Folder> folders_;    // from the first on
   std::vector<std::string> rest_;  // names that are still to come, the next one last

@@ -32,10 +32,10 @@ std::string short_name(const std::string& scene) {
 
 /// Opens the folder, which is made if it is not there, and keeps others from removing it until it
 /// is closed. Not open unless only this user can enter it.
-network::Descriptor open_private(const std::string& folder) {
+posix::Descriptor open_private(const std::string& folder) {
   for (;;) {
     ::mkdir(folder.c_str(), 0700);
-    network::Descriptor opened(
+    posix::Descriptor opened(
         ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
     struct stat here {
     }, there{};

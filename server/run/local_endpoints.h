@@ -4,7 +4,7 @@
 #include <list>
 #include <string>
 
-#include "network/descriptor.h"
+#include "posix/descriptor.h"
 #include "processes/guardian.h"
 #include "processes/private_folder.h"
 
@@ -34,7 +34,7 @@ class LocalEndpoints {
   const processes::Guardian* guardian_;
   std::list<processes::PrivateFolder> folders_;
   std::string shared_;          ///< the folder of of_server()
-  network::Descriptor opened_;  ///< the same
+  posix::Descriptor opened_;    ///< the same
 };
 
 }  // namespace ziggurat::run

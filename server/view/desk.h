@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "channels/channel.h"
-#include "network/descriptor.h"
+#include "posix/descriptor.h"
 #include "view/call.h"
 
 namespace ziggurat::view {
@@ -51,7 +51,7 @@ class Desk {
  private:
   void wake();
 
-  network::Descriptor wake_;
+  posix::Descriptor wake_;
   std::atomic<std::size_t> viewer_count_ = 0;
   std::atomic<bool> has_news_ = false;
   mutable std::mutex mutex_;  // of all below

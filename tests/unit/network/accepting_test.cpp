@@ -55,18 +55,18 @@ TEST(Accepting, GoesOnByItselfAfterACrowd) {
   Socket socket = with_eight_places();
   const std::string endpoint = socket.endpoints().front();
   {
-    std::vector<Descriptor> crowd;
+    std::vector<posix::Descriptor> crowd;
     for (int i = 0; i < 20; ++i) crowd.push_back(connect_and_send(endpoint, greeting_and(0, {})));
     EXPECT_FALSE(serve(socket, milliseconds{50}));
   }
   EXPECT_FALSE(serve(socket, milliseconds{50}));
-  const Descriptor late = connect_and_send(endpoint, greeting_and(1, "late"));
+  const posix::Descriptor late = connect_and_send(endpoint, greeting_and(1, "late"));
   EXPECT_TRUE(serve(socket, patience.timeout));
 }
 
 /// What a server answers to a client that says something and, perhaps, that it says no more.
 std::string answer_to(Socket& socket, const std::string& said, bool ends) {
-  const Descriptor client = connect_and_send(socket.endpoints().front(), said);
+  const posix::Descriptor client = connect_and_send(socket.endpoints().front(), said);
   if (ends) ::shutdown(client.number(), SHUT_WR);
   EXPECT_FALSE(serve(socket, milliseconds{100}));
   std::string heard(1000, '\0');

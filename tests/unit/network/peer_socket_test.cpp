@@ -18,8 +18,8 @@ struct Connected {
   Connected() {
     int ends[2];
     EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends), 0);
-    client = Descriptor(ends[0]);
-    peer = std::make_unique<PeerSocket>("peer", Descriptor(ends[1]), nullptr, false, Time{});
+    client = posix::Descriptor(ends[0]);
+    peer = std::make_unique<PeerSocket>("peer", posix::Descriptor(ends[1]), nullptr, false, Time{});
   }
   void say(const std::string& bytes) {
     ASSERT_EQ(::send(client.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL),
@@ -68,7 +68,7 @@ struct Connected {
     peer->send(buffer, size, is_observation);
   }
 
-  Descriptor client;
+  posix::Descriptor client;
   std::unique_ptr<PeerSocket> peer;
   Received received;
 };

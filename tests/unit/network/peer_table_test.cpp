@@ -16,24 +16,24 @@ namespace {
 using std::chrono::seconds;
 
 struct Pair {
-  Descriptor ours, theirs;
+  posix::Descriptor ours, theirs;
 };
 
 Pair connected() {
   int ends[2];
   EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends), 0);
-  return {Descriptor(ends[0]), Descriptor(ends[1])};
+  return {posix::Descriptor(ends[0]), posix::Descriptor(ends[1])};
 }
 
 /// The table with one more connection.
 /// @returns the client's end
-Descriptor connect(PeerTable& table, bool is_trusted, Time now) {
+posix::Descriptor connect(PeerTable& table, bool is_trusted, Time now) {
   Pair pair = connected();
   table.add(std::move(pair.ours), nullptr, is_trusted, now);
   return std::move(pair.theirs);
 }
 
-void shake_hands(PeerTable& table, std::uint64_t id, const Descriptor& client) {
+void shake_hands(PeerTable& table, std::uint64_t id, const posix::Descriptor& client) {
   const std::string bytes = greeting_and(0, "");
   ASSERT_EQ(::send(client.number(), bytes.data(), bytes.size(), 0),
             static_cast<ssize_t>(bytes.size()));
@@ -54,7 +54,7 @@ std::size_t left_at(PeerTable& table, Time time) {
 TEST(PeerTable, ConnectionsWithoutSessionGrowOld) {
   const Time start = std::chrono::steady_clock::now();
   PeerTable table;
-  const Descriptor silent = connect(table, false, start), own = connect(table, true, start),
+  const posix::Descriptor silent = connect(table, false, start), own = connect(table, true, start),
                    open = connect(table, false, start);
   shake_hands(table, PeerTable::first_id + 3, open);
   EXPECT_EQ(left_at(table, start + seconds{10}), 3u);
@@ -69,7 +69,7 @@ TEST(PeerTable, TheOldestWhoseHandshakeIsNotOverMakesPlaceAfterASecond) {
   using std::chrono::milliseconds;
   const Time start = std::chrono::steady_clock::now();
   PeerTable table;
-  const Descriptor open = connect(table, false, start), silent = connect(table, false, start),
+  const posix::Descriptor open = connect(table, false, start), silent = connect(table, false, start),
                    later = connect(table, false, start + milliseconds{500});
   shake_hands(table, PeerTable::first_id + 1, open);
   const auto has = [&](std::uint64_t number) { return table.find(PeerTable::first_id + number) != nullptr; };
@@ -85,7 +85,7 @@ TEST(PeerTable, TheOldestWhoseHandshakeIsNotOverMakesPlaceAfterASecond) {
 TEST(PeerTable, ThoseWithSessionStay) {
   const Time start = std::chrono::steady_clock::now();
   PeerTable table;
-  const Descriptor client = connect(table, false, start);
+  const posix::Descriptor client = connect(table, false, start);
   shake_hands(table, PeerTable::first_id + 1, client);
   const std::string name = table.find(PeerTable::first_id + 1)->name();
   table.set_standing(name, Standing::observer, longest_without_session, start);
@@ -131,7 +131,7 @@ struct Crowd {
     }
   }
   PeerTable table;
-  std::vector<Descriptor> clients;
+  std::vector<posix::Descriptor> clients;
 };
 
 TEST(PeerTable, OneThatDoesNotReadIsDisconnectedWithANotice) {

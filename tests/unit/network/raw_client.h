@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "network/descriptor.h"
+#include "posix/descriptor.h"
 
 namespace ziggurat::network {
 
@@ -27,12 +27,12 @@ inline std::string greeting_and(int messages, const std::string& content) {
   return bytes;
 }
 
-inline Descriptor connect_and_send(const std::string& endpoint, const std::string& bytes) {
+inline posix::Descriptor connect_and_send(const std::string& endpoint, const std::string& bytes) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(std::stoi(endpoint.substr(endpoint.rfind(':') + 1))));
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  Descriptor client(::socket(AF_INET, SOCK_STREAM, 0));
+  posix::Descriptor client(::socket(AF_INET, SOCK_STREAM, 0));
   EXPECT_EQ(::connect(client.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
   EXPECT_EQ(::send(client.number(), bytes.data(), bytes.size(), 0),
             static_cast<ssize_t>(bytes.size()));

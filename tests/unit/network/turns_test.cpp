@@ -29,9 +29,9 @@ TEST(Turns, AConnectionThatSendsMuchDoesNotKeepOthersWaiting) {
   constexpr int many = 500;
   Socket socket(local_config());
   const std::string endpoint = socket.endpoints().front();
-  const Descriptor busy = connect_and_send(endpoint, greeting_and(many, "busy"));
-  const Descriptor other = connect_and_send(endpoint, greeting_and(1, "other"));
-  const Descriptor third = connect_and_send(endpoint, greeting_and(1, "third"));
+  const posix::Descriptor busy = connect_and_send(endpoint, greeting_and(many, "busy"));
+  const posix::Descriptor other = connect_and_send(endpoint, greeting_and(1, "other"));
+  const posix::Descriptor third = connect_and_send(endpoint, greeting_and(1, "third"));
   std::vector<std::string> taken;
   Received received;
   while (taken.size() < many + 2 && socket.poll(patience.timeout, {}) != Socket::Ready::timed_out) {
@@ -49,7 +49,7 @@ TEST(Turns, LooksAtOthersWhereNothingIsTakeNoneOfTheirTime) {
   socket.set_ticking(true);
   Received received;
   for (int i = 0; i < 10'000; ++i) EXPECT_FALSE(socket.receive(received));
-  const Descriptor other = connect_and_send(socket.endpoints().front(), greeting_and(1, "question"));
+  const posix::Descriptor other = connect_and_send(socket.endpoints().front(), greeting_and(1, "question"));
   bool is_taken = false;
   for (int look = 0; look < 10 && !is_taken; ++look) is_taken = socket.receive(received);
   ASSERT_TRUE(is_taken) << "without waiting";
@@ -60,7 +60,7 @@ TEST(Turns, LooksAtOthersWhereNothingIsTakeNoneOfTheirTime) {
 TEST(Turns, AConnectionThatSendsCommandsWithoutEndDoesNotKeepOthersWaiting) {
   Socket socket(local_config());
   const std::string endpoint = socket.endpoints().front();
-  const Descriptor busy = connect_and_send(endpoint, greeting_and(0, ""));
+  const posix::Descriptor busy = connect_and_send(endpoint, greeting_and(0, ""));
   std::atomic<bool> is_over = false;
   std::thread sender([&] {
     std::string commands;
@@ -82,7 +82,7 @@ TEST(Turns, AConnectionThatSendsCommandsWithoutEndDoesNotKeepOthersWaiting) {
     socket.poll(std::chrono::milliseconds{10}, {});
     socket.receive(received);
   }
-  const Descriptor other = connect_and_send(endpoint, greeting_and(1, "other"));
+  const posix::Descriptor other = connect_and_send(endpoint, greeting_and(1, "other"));
   bool is_taken = false;
   while (!is_taken && !is_over) {
     socket.poll(patience.timeout, {});
@@ -96,12 +96,12 @@ TEST(Turns, AConnectionThatSendsCommandsWithoutEndDoesNotKeepOthersWaiting) {
 
 TEST(Turns, OtherDescriptorsAreLookedAtWhileMessagesWait) {
   Socket socket(local_config());
-  const Descriptor busy = connect_and_send(socket.endpoints().front(), greeting_and(100, "busy"));
+  const posix::Descriptor busy = connect_and_send(socket.endpoints().front(), greeting_and(100, "busy"));
   Received received;
   while (!socket.receive(received)) socket.poll(patience.timeout, {});
   int ends[2];
   ASSERT_EQ(::pipe(ends), 0);
-  const Descriptor reader(ends[0]), writer(ends[1]);
+  const posix::Descriptor reader(ends[0]), writer(ends[1]);
   EXPECT_EQ(socket.poll(patience.timeout, std::array{reader.number()}), Socket::Ready::message);
   ASSERT_EQ(::write(writer.number(), "x", 1), 1);
   EXPECT_EQ(socket.poll(patience.timeout, std::array{reader.number()}), Socket::Ready::woken);
@@ -117,7 +117,7 @@ TEST(Turns, ThePrivateEntranceStaysOpenWhenOthersHaveAllPlaces) {
   Config config = local_config();
   Socket socket(config);
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &usual), 0);
-  std::vector<Descriptor> others;
+  std::vector<posix::Descriptor> others;
   for (int i = 0; i < 110; ++i) {
     others.push_back(connect_and_send(socket.endpoints().front(), greeting_and(0, "")));
   }
@@ -137,7 +137,7 @@ TEST(Turns, ThePrivateEntranceStaysOpenWhenOthersHaveAllPlaces) {
   address.sun_family = AF_UNIX;
   name.copy(address.sun_path + 1, name.size());
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  const Descriptor own(::socket(AF_UNIX, SOCK_STREAM, 0));
+  const posix::Descriptor own(::socket(AF_UNIX, SOCK_STREAM, 0));
   ASSERT_EQ(::connect(own.number(), reinterpret_cast<const sockaddr*>(&address), size), 0);
   const std::string bytes = greeting_and(1, "own");
   ASSERT_EQ(::send(own.number(), bytes.data(), bytes.size(), 0), static_cast<ssize_t>(bytes.size()));

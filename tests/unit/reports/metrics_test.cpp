@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "network/descriptor.h"
+#include "posix/descriptor.h"
 #include "http/port.h"
 #include "text/numbers.h"
 
@@ -70,9 +70,9 @@ TEST(Metrics, AreServedOverHttp) {
 
 // ---- clients that are slow, many or rude --------------------------------------------------------
 
-network::Descriptor connect_to(const MetricsPort& port) {
+posix::Descriptor connect_to(const MetricsPort& port) {
   const std::string url = port.url();
-  network::Descriptor client(::socket(AF_INET, SOCK_STREAM, 0));
+  posix::Descriptor client(::socket(AF_INET, SOCK_STREAM, 0));
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(std::stoi(url.substr(url.rfind(':') + 1))));
@@ -83,7 +83,7 @@ network::Descriptor connect_to(const MetricsPort& port) {
 
 /// Sends a text and returns the whole answer.
 std::string ask(const MetricsPort& port, const std::string& text) {
-  const network::Descriptor client = connect_to(port);
+  const posix::Descriptor client = connect_to(port);
   ::send(client.number(), text.data(), text.size(), MSG_NOSIGNAL);
   std::string answer, part(65536, '\0');
   for (;;) {
@@ -94,7 +94,7 @@ std::string ask(const MetricsPort& port, const std::string& text) {
 }
 
 TEST(Metrics, SlowClientsBlockNeitherOthersNorTheEnd) {
-  std::vector<network::Descriptor> slow;
+  std::vector<posix::Descriptor> slow;
   const auto begin = std::chrono::steady_clock::now();
   {
     MetricsPort port("127.0.0.1:0", false);

@@ -35,7 +35,7 @@ TEST_F(LocalEndpointsTest, OfServersAreInAFolderOfThisUser) {
 TEST_F(LocalEndpointsTest, AFolderThatOthersCanEnterIsNotWaitedFor) {
   ASSERT_EQ(::mkdir(shared_.c_str(), 0700), 0);
   ASSERT_EQ(::chmod(shared_.c_str(), 0755), 0);
-  const network::Descriptor other(::open(shared_.c_str(), O_RDONLY | O_DIRECTORY));
+  const posix::Descriptor other(::open(shared_.c_str(), O_RDONLY | O_DIRECTORY));
   ASSERT_EQ(::flock(other.number(), LOCK_EX), 0);
   LocalEndpoints local(nullptr);
   EXPECT_FALSE(local.of_server("vehicle.argos").starts_with("ipc://" + shared_));

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace ziggurat::network {
+namespace ziggurat::posix {
 
 class Descriptor {
  public:
@@ -27,4 +27,4 @@ class Descriptor {
   int number_ = -1;
 };
 
-}  // namespace ziggurat::network
+}  // namespace ziggurat::posix
