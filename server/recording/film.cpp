@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "posix/descriptor.h"
 #include "recording/output_file.h"
 
 namespace ziggurat::recording {
@@ -27,6 +28,7 @@ namespace {
 
 using Arguments = std::vector<std::string>;
 
+constexpr int film_of_child = 3;  // its descriptor
 constexpr const char* even_sides = "pad=ceil(iw/2)*2:ceil(ih/2)*2";
 
 /// How ffmpeg makes the format of an ending; empty: it is none of ours.
@@ -64,23 +66,15 @@ std::string find_in_path(const char* name) {
   return {};
 }
 
-/// @throws WriteError; leaves no file that was not there
-void check_place(const std::string& path) {
-  const bool was_there = std::filesystem::exists(path);
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  if (file < 0) throw WriteError(fmt::format("{}: {}", path, std::strerror(errno)));
-  ::close(file);
-  if (!was_there) ::unlink(path.c_str());
-}
-
 /// The streams of a child, and signals as for any program.
 class Start {
  public:
-  Start(int input, int messages) {
+  Start(int input, int film, int messages) {
     ::posix_spawn_file_actions_init(&streams_);
     ::posix_spawn_file_actions_adddup2(&streams_, input, STDIN_FILENO);
     ::posix_spawn_file_actions_addopen(&streams_, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     ::posix_spawn_file_actions_adddup2(&streams_, messages, STDERR_FILENO);
+    ::posix_spawn_file_actions_adddup2(&streams_, film, film_of_child);
     ::posix_spawnattr_init(&attributes_);
     sigset_t none, usual;
     ::sigemptyset(&none);
@@ -123,13 +117,13 @@ Film::Film(std::string path, const FilmFormat& format)
         "{}: films are made by ffmpeg, which is not there; install ffmpeg: sudo apt install ffmpeg",
         path_));
   }
-  check_place(path_);
+  check_can_be_written(path_);
 }
 
 Film::~Film() { end(); }
 
 void Film::start() {
-  const std::string url = "file:" + path_;  // a path with a colon is no protocol
+  const posix::Descriptor film(open_alone(path_));  // by which ffmpeg opens it: the name may lead elsewhere by then
   Arguments arguments{"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
                       "-f", "rawvideo", "-pixel_format", "rgb24",
                       "-video_size", fmt::format("{}x{}", format_.width, format_.height),
@@ -137,12 +131,13 @@ void Film::start() {
                       "-i", "pipe:0", "-an"};
   const Arguments encoder = encoder_of(path_);
   arguments.insert(arguments.end(), encoder.begin(), encoder.end());
-  arguments.push_back(url);
+  const std::string ending = std::filesystem::path(path_).extension().string();
+  arguments.insert(arguments.end(), {"-f", ending.substr(1), fmt::format("file:/dev/fd/{}", film_of_child)});
   std::array<int, 2> pipe{};
   if (::pipe2(pipe.data(), O_CLOEXEC) != 0) fail(std::strerror(errno));
   input_ = pipe[1];
   messages_ = ::memfd_create("ffmpeg", MFD_CLOEXEC);
-  const int error = Start(pipe[0], messages_)(program_, arguments, id_);
+  const int error = Start(pipe[0], film.number(), messages_)(program_, arguments, id_);
   ::close(pipe[0]);
   if (error != 0) {
     id_ = -1;

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "posix/descriptor.h"
 #include "recording/place.h"
 
 namespace ziggurat::recording {
@@ -56,6 +57,17 @@ int open_alone(const std::string& path, int flags) {
   ::close(file);
   if (!is_taken) fail(path, error);
   throw WriteError(path + ": cannot be written: another program writes to it; name another file");
+}
+
+void check_can_be_written(const std::string& path) {
+  const Place place = place_to_write(path);
+  constexpr int flags = O_WRONLY | O_CREAT | O_CLOEXEC;
+  const posix::Descriptor made(place.open(flags | O_EXCL));
+  if (made.is_open()) {
+    place.remove();
+  } else if (errno != EEXIST || !posix::Descriptor(place.open(flags)).is_open()) {
+    fail(path, errno);
+  }
 }
 
 bool has_name(int descriptor) {

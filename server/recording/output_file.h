@@ -26,6 +26,9 @@ std::optional<std::string> planted_at(const std::string& path);
 /// another program writes to it, which would mix both
 int open_alone(const std::string& path, int flags = 0);
 
+/// That open_alone() could open it. It stays as it is, and no file stays that was not there. @throws WriteError
+void check_can_be_written(const std::string& path);
+
 /// Whether an open file has a name, by which it can be found when it is closed.
 bool has_name(int descriptor);
 

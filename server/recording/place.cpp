@@ -47,6 +47,8 @@ int Place::open(int flags) const {
   return ::openat(folders_.back().opened.number(), name_.c_str(), flags | (is_of_proc_ ? 0 : O_NOFOLLOW), 0666);
 }
 
+void Place::remove() const { ::unlinkat(folders_.back().opened.number(), name_.c_str(), 0); }
+
 /// Its names come next. The last one of what ends with a slash is a folder.
 void Place::push(const std::string& path) {
   if (rest_.empty() && path.ends_with('/')) rest_.emplace_back(".");

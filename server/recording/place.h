@@ -25,6 +25,8 @@ class Place {
   /// Opens the file.
   /// @return  its descriptor, or -1 with an error of the system
   int open(int flags) const;
+  /// Removes a file that open() has made.
+  void remove() const;
 
  private:
   struct Folder {
