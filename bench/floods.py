@@ -143,7 +143,7 @@ def turn(process, watcher, flood, places, seconds):
     return [2 * with_flood / (first + second) for with_flood, first, second in zip(under, before, after)]
 
 
-def place(process):
+def pin(process):
     """The server on one processor, its controllers on another."""
     first, *rest = sorted(os.sched_getaffinity(0))
     controllers = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
@@ -165,8 +165,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("ziggurat", type=pathlib.Path)
     parser.add_argument("--seconds", type=float, default=0.5, help="of each look at the ticks (default 0.5)")
-    parser.add_argument("--turns", type=int, default=20, help="of each flood (default 20: two minutes for all)")
+    parser.add_argument("--turns", type=int, default=20, help="of each flood, at least 2 (default 20: five minutes for all)")
     options = parser.parse_args()
+    if options.turns < 2:
+        parser.error("--turns must be at least 2: the mean has no error otherwise")
     places = f"tcp://127.0.0.1:{free_port()}", free_port()
     with tempfile.TemporaryDirectory() as folder:
         write_scene(folder)
@@ -175,7 +177,7 @@ def main():
              "--endpoint", places[0], "--metrics", f"127.0.0.1:{places[1]}"], cwd=folder, stdout=subprocess.DEVNULL)
         try:
             time.sleep(1)
-            place(process)
+            pin(process)
             watcher = observer(places[0])
             for flood in FLOODS:
                 turns = [turn(process, watcher, flood, places, options.seconds) for _ in range(options.turns)]

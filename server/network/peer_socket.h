@@ -7,11 +7,11 @@
 #include <span>
 #include <string>
 
-#include "posix/descriptor.h"
 #include "network/limits.h"
 #include "network/link.h"
 #include "network/output_queue.h"
 #include "network/zmtp/engine.h"
+#include "posix/descriptor.h"
 
 namespace ziggurat::network {
 

@@ -55,7 +55,7 @@ TEST(PeerTable, ConnectionsWithoutSessionGrowOld) {
   const Time start = std::chrono::steady_clock::now();
   PeerTable table;
   const posix::Descriptor silent = connect(table, false, start), own = connect(table, true, start),
-                   open = connect(table, false, start);
+                          open = connect(table, false, start);
   shake_hands(table, PeerTable::first_id + 3, open);
   EXPECT_EQ(left_at(table, start + seconds{10}), 3u);
   EXPECT_EQ(left_at(table, start + seconds{11}), 2u) << "its handshake is not over";
@@ -70,7 +70,7 @@ TEST(PeerTable, TheOldestWhoseHandshakeIsNotOverMakesPlaceAfterASecond) {
   const Time start = std::chrono::steady_clock::now();
   PeerTable table;
   const posix::Descriptor open = connect(table, false, start), silent = connect(table, false, start),
-                   later = connect(table, false, start + milliseconds{500});
+                          later = connect(table, false, start + milliseconds{500});
   shake_hands(table, PeerTable::first_id + 1, open);
   const auto has = [&](std::uint64_t number) { return table.find(PeerTable::first_id + number) != nullptr; };
   EXPECT_FALSE(table.make_place(start + milliseconds{999}));

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "posix/descriptor.h"
 #include "http/port.h"
+#include "posix/descriptor.h"
 #include "text/numbers.h"
 
 namespace ziggurat::reports {
