@@ -21,7 +21,7 @@ GOOGLE_BEGIN = re.compile(r"^\[ RUN      \] (\S+)", re.M)
 GOOGLE_END = re.compile(r"^\[ (?:      OK|  FAILED|  SKIPPED) \] ([^\s,]+)", re.M)
 UNITTEST = re.compile(r"^(?:FAIL|ERROR): \w+ \(([\w.]+)\)", re.M)
 NODE = re.compile(r"^\s*not ok \d+ - (.+)$", re.M)
-KIT = re.compile(r"^(?:\x1b\[\d+m)?fail(?:\x1b\[0?m)? +([A-Z]\w*\d[\w.-]*):", re.M)
+KIT = re.compile(r"^(?:\x1b\[\d+m)?fail(?:\x1b\[0?m)? +([A-Z]\d\S*):", re.M)
 
 
 COUNT = re.compile(r"^(?:\[==========\] (\d+) tests? from .* ran\.|Ran (\d+) tests?|# tests (\d+)$|(\d+) cases in )", re.M)
