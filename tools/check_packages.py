@@ -9,7 +9,7 @@ import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-LISTS = ["build", "test", "clang"]
+LISTS = ["build", "test", "clang", "test-all"]
 
 
 def listed(name):

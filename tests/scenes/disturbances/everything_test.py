@@ -1,5 +1,5 @@
 """Everything at once: viewers, recorder, metrics port, director, supervisor, snapshots, resets, Ctrl-C. The
-recording repeats the run. By the thread sanitizer's build (docs/sanitizers.md) it finds what threads share.
+recording repeats the run. By the thread sanitizer's build (docs/testing.md) it finds what threads share.
 
 everything_test.py         3 s
 everything_test.py --full  a minute
