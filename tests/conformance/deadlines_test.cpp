@@ -21,39 +21,6 @@ TEST(Deadline, HoldKeepsWhatWasCommanded) {
   EXPECT_EQ(pair.peers.barrier.deadlines.missed_ticks(), (std::vector<std::uint64_t>{1, 0}));
 }
 
-TEST(Deadline, ZeroStopsTheRobotUntilItIsCommandedAnew) {
-  Pair pair(with_deadline(DeadlineAction::zero, 50));
-  pair.peers.pass(milliseconds{50});
-  EXPECT_TRUE(pair.peers.is_complete());
-  EXPECT_EQ(pair.target(), 0);
-  EXPECT_EQ(pair.peers.commands.joint_targets[1], 7);
-  pair.tick(6);
-  EXPECT_EQ(pair.target(), 0) << "W7";
-  pair.tick(7, {2});
-  EXPECT_EQ(pair.target(), 2);
-}
-
-TEST(Deadline, DropTakesTheRobotsOutForGood) {
-  Pair pair(with_deadline(DeadlineAction::drop, 50));
-  pair.peers.pass(milliseconds{50});
-  EXPECT_TRUE(pair.peers.is_complete());
-  EXPECT_EQ(pair.target(), 0);
-  EXPECT_EQ(pair.peers.status()[0].membership, Membership::gone);
-  EXPECT_EQ(pair.peers.told("p").error().code(), v1::Error::DEADLINE_MISSED);
-  pair.peers.publish(6);
-  EXPECT_TRUE(pair.peers.inboxes["p"].empty()) << "L3";
-}
-
-TEST(Deadline, DropHoldsTheBudgetFirst) {
-  Pair pair(with_deadline(DeadlineAction::drop, 50, 2));
-  pair.miss_and_go_on(6);
-  pair.miss_and_go_on(7);
-  EXPECT_EQ(pair.target(), 3);
-  EXPECT_EQ(pair.peers.status()[0].membership, Membership::held);
-  pair.peers.pass(milliseconds{50});
-  EXPECT_EQ(pair.peers.status()[0].membership, Membership::gone);
-}
-
 TEST(Deadline, DropIsReportedDespiteManyOtherNotices) {
   Pair pair(with_deadline(DeadlineAction::drop, 50));
   for (int i = 0; i < 500; ++i) pair.peers.send_bytes("unknown", "\xff");
@@ -63,30 +30,6 @@ TEST(Deadline, DropIsReportedDespiteManyOtherNotices) {
   ASSERT_EQ(dropped.size(), 1U);
   EXPECT_NE(dropped[0].find("robot0"), std::string::npos);
   EXPECT_TRUE(pair.peers.take_report().dropped.empty());
-}
-
-TEST(Deadline, HoldDropsBeyondTheBudget) {
-  for (const auto action : {DeadlineAction::hold, DeadlineAction::zero}) {
-    Pair pair(with_deadline(action, 50, 2));
-    pair.miss_and_go_on(6);
-    pair.miss_and_go_on(7);
-    EXPECT_EQ(pair.peers.status()[0].membership, Membership::held);
-    pair.peers.pass(milliseconds{50});
-    EXPECT_EQ(pair.peers.status()[0].membership, Membership::gone);
-  }
-}
-
-TEST(Deadline, StopEndsTheRunWithASentence) {
-  Pair pair(with_deadline(DeadlineAction::stop, 50, 1));
-  pair.miss_and_go_on(6);
-  EXPECT_TRUE(pair.peers.take_report().stopped.empty());
-  pair.peers.pass(milliseconds{50});
-  EXPECT_FALSE(pair.peers.is_complete());
-  const auto stopped = pair.peers.take_report().stopped;
-  EXPECT_NE(stopped.find("'lua'"), std::string::npos) << stopped;
-  EXPECT_NE(stopped.find("robot0"), std::string::npos);
-  EXPECT_NE(stopped.find("tick 6"), std::string::npos);
-  EXPECT_NE(stopped.find("stop:50:1"), std::string::npos);
 }
 
 TEST(Deadline, W1_TheLongestOfASessionCounts) {
@@ -262,37 +205,6 @@ TEST(Deadline, W11_ARobotMissesATickOnceWhoeverHasIt) {
   EXPECT_EQ(pair.peers.status()[0].membership, Membership::gone);
 }
 
-TEST(Deadline, W3_TheBeginningWaitsForever) {
-  const SmallRun small(2);
-  Peers peers(small, with_deadline(DeadlineAction::drop, 50));
-  peers.join("p", "robot0");
-  peers.pass(milliseconds{10'000});
-  EXPECT_FALSE(peers.is_gathered());
-  EXPECT_EQ(peers.status()[1].membership, Membership::free);
-}
-
-TEST(Deadline, W4_AnAnswerSetsTheBudgetBack) {
-  Pair pair(with_deadline(DeadlineAction::drop, 50, 1));
-  pair.peers.pass(milliseconds{50});
-  pair.tick(6);
-  pair.peers.publish(7);
-  pair.peers.say("q", Peers::command(7));
-  pair.peers.pass(milliseconds{50});
-  EXPECT_EQ(pair.peers.status()[0].membership, Membership::held);
-  EXPECT_EQ(pair.peers.barrier.deadlines.missed_ticks()[0], 2U);
-}
-
-TEST(Deadline, W5_TheSessionIsToldAndGetsWhatFollows) {
-  Pair pair(with_deadline(DeadlineAction::hold, 50));
-  pair.peers.pass(milliseconds{50});
-  const auto error = pair.peers.told("p").error();
-  EXPECT_EQ(error.code(), v1::Error::DEADLINE_MISSED);
-  EXPECT_EQ(error.severity(), v1::Error::WARNING);
-  EXPECT_EQ(error.tick(), 5U);
-  pair.peers.publish(6);
-  EXPECT_EQ(pair.peers.told("p").observation().tick(), 6U);
-}
-
 TEST(Deadline, W6_LateCommandsAreStaleAndNoOffence) {
   Pair pair(with_deadline(DeadlineAction::hold, 50));
   for (std::uint64_t tick = 5; tick < 300; ++tick) {
@@ -305,18 +217,6 @@ TEST(Deadline, W6_LateCommandsAreStaleAndNoOffence) {
   }
   EXPECT_EQ(pair.target(), 3);
   EXPECT_EQ(pair.peers.status()[0].membership, Membership::held);
-}
-
-TEST(Deadline, W6_AlsoWhileTheTickIsInHand) {
-  Config config = with_deadline(DeadlineAction::hold, 50);
-  config.deadlines.pop_back();
-  Pair pair(config);
-  pair.peers.publish(6);
-  pair.peers.pass(milliseconds{50});
-  EXPECT_FALSE(pair.peers.is_complete()) << "q waits forever";
-  pair.peers.inboxes.clear();
-  pair.peers.say("p", Peers::command(6, {99}));
-  EXPECT_EQ(pair.peers.told("p").error().code(), v1::Error::STALE_TICK);
 }
 
 TEST(Deadline, W8_AFullQueueIsAMissOrALoss) {
@@ -359,19 +259,6 @@ TEST(Deadline, H15_AWishThatIsNeverGrantedIsToldBeforeATakenRobot) {
   const auto error = peers.told("q").refusal().error();
   EXPECT_EQ(error.code(), v1::Error::FORBIDDEN);
   EXPECT_FALSE(error.retryable());
-}
-
-TEST(Deadline, H8_InvalidPolicies) {
-  const SmallRun small(1);
-  Peers peers(small);
-  peers.say("p", wish("*", v1::DeadlinePolicy::HOLD, 0));
-  EXPECT_EQ(peers.told("p").refusal().error().code(), v1::Error::BAD_VALUE);
-  for (const int action : {6, -1, 1'000'000}) {
-    peers.say("p", wish("*", static_cast<v1::DeadlinePolicy::Action>(action), 10));
-    EXPECT_EQ(peers.told("p").refusal().error().code(), v1::Error::BAD_VALUE) << action;
-  }
-  peers.say("p", wish("*", v1::DeadlinePolicy::ACTION_UNSPECIFIED, 0));
-  EXPECT_EQ(peers.told("p").welcome().deadline_policy().action(), v1::DeadlinePolicy::WAIT);
 }
 
 }  // namespace

@@ -48,39 +48,6 @@ TEST_F(Directing, R1_AHelloNamesADirectorOfTheScene) {
   EXPECT_TRUE(welcome.robots().empty());
 }
 
-TEST_F(Directing, R1_ADirectorOfAnEarlierVersionIsNone) {
-  auto hello = director("judge");
-  hello.mutable_hello()->mutable_version()->set_minor(3);
-  EXPECT_EQ(refused(peers, hello).code(), v1::Error::BAD_VALUE);
-}
-
-TEST_F(Directing, R1_ADirectorIsHeldByOneSessionUntilATakeover) {
-  begin();
-  auto other = director("judge");
-  peers.say("r", other);
-  const v1::ServerMessage taken = peers.told("r");
-  EXPECT_EQ(taken.refusal().error().code(), v1::Error::ROBOT_TAKEN);
-  EXPECT_TRUE(taken.refusal().error().retryable());
-  EXPECT_EQ(taken.refusal().holder(), "tester");
-  peers.inboxes.clear();
-  other.mutable_hello()->set_takeover(true);
-  peers.say("r", other);
-  EXPECT_TRUE(peers.told("p").has_displaced());
-  ASSERT_EQ(peers.inboxes["r"].size(), 3U);  // Welcome, WorldLayout, WorldState
-  EXPECT_EQ(peers.inboxes["r"].back().world_state().tick(), 5U);
-}
-
-TEST_F(DirectingFromOutside, R1_OthersComeIfTheServerAllowsIt) {
-  EXPECT_EQ(refused(peers, director("a b")).code(), v1::Error::BAD_VALUE);
-  peers.say("r", director("third"));
-  EXPECT_TRUE(peers.told("r").has_welcome());
-  peers.say("s", director("fourth"));
-  EXPECT_TRUE(peers.told("s").has_welcome());
-  const v1::Error refusal = refused(peers, director("fifth"));
-  EXPECT_EQ(refusal.code(), v1::Error::TOO_MANY);
-  EXPECT_TRUE(refusal.retryable()) << "one of the four may leave";
-}
-
 TEST_F(DirectingFromOutside, R1_OneThatHasLeftMakesPlaceForAnother) {
   begin();
   const auto come = [&](const std::string& peer, const std::string& id) {
@@ -142,54 +109,12 @@ TEST_F(DirectingByOptions, R2_WhatADirectorIsToldAndAnswersIsDelayedToo) {
   EXPECT_TRUE(peers.is_complete());
 }
 
-TEST_F(DirectingFromOutside, R2_TheWorldWaitsForOneThatHasCome) {
-  begin();
-  peers.say("r", director("third"));
-  peers.say("p", direction(5));
-  peers.say("q", direction(5));
-  EXPECT_FALSE(peers.is_complete());
-  peers.say("r", direction(5));
-  EXPECT_TRUE(peers.is_complete());
-  peers.say("r", Peers::leave());
-  publish(6);
-  EXPECT_FALSE(peers.is_complete());
-  peers.say("c", Peers::command(6));
-  peers.say("p", direction(6));
-  peers.say("q", direction(6));
-  EXPECT_TRUE(peers.is_complete()) << "one that has left is not waited for";
-  peers.inboxes.clear();
-  peers.say("s", director("third"));
-  EXPECT_EQ(peers.told("s").refusal().error().code(), v1::Error::NOT_YOURS);
-}
-
 TEST_F(Directing, R2_TheWorldWaitsForTheDirectorsOfItsScene) {
   EXPECT_FALSE(peers.is_gathered());
   peers.say("p", director("judge"));
   EXPECT_FALSE(peers.is_gathered());
   peers.say("q", director("hasty"));
   EXPECT_TRUE(peers.is_gathered());
-}
-
-TEST_F(Directing, R2_ADirectionIsForTheTickOfTheWorldState) {
-  begin();
-  EXPECT_EQ(faulted(peers, direction(4)).code(), v1::Error::STALE_TICK);
-  EXPECT_EQ(faulted(peers, direction(6)).code(), v1::Error::FUTURE_TICK);
-  auto of_another_epoch = direction(5);
-  of_another_epoch.mutable_direction()->set_epoch(3);
-  EXPECT_EQ(faulted(peers, of_another_epoch).code(), v1::Error::FUTURE_TICK);
-  EXPECT_EQ(faulted(peers, Peers::command(5)).code(), v1::Error::OUT_OF_STATE);
-  EXPECT_EQ(answered(), Ids{});
-  peers.say("p", direction(5));
-  EXPECT_EQ(answered(), Ids{"judge"});
-  EXPECT_EQ(faulted(peers, direction(5)).code(), v1::Error::DUPLICATE_TICK);
-  peers.say("c", direction(5));
-  EXPECT_EQ(peers.told("c").error().code(), v1::Error::OUT_OF_STATE);
-}
-
-TEST_F(Directing, R2_BeforeTheFirstTickADirectionIsOutOfState) {
-  peers.say("p", director("judge"));
-  peers.inboxes.clear();
-  EXPECT_EQ(faulted(peers, direction(0)).code(), v1::Error::OUT_OF_STATE);
 }
 
 TEST_F(Directing, R2_ADeadlineEndsTheWaitAndThenTheDirector) {
@@ -216,15 +141,6 @@ TEST_F(Directing, R2_ADeadlineEndsTheWaitAndThenTheDirector) {
   peers.say("c", Peers::command(8));
   peers.say("p", direction(8));
   EXPECT_TRUE(peers.is_complete()) << "its budget of two is spent: it is dropped";
-}
-
-TEST_F(Directing, R2_ALateDirectionIsStaleAndNoBadMessage) {
-  begin();
-  peers.pass(milliseconds(50));
-  peers.inboxes.clear();
-  peers.say("q", direction(5));
-  EXPECT_EQ(peers.told("q").error().code(), v1::Error::STALE_TICK);
-  EXPECT_EQ(answered(), Ids{});
 }
 
 TEST_F(Directing, R2_ALostDirectorIsWaitedForAndResumesWithItsToken) {
@@ -282,28 +198,6 @@ TEST_F(Directing, R2_AnAnswerOfBeforeIsNotThatOfATickThatIsMissed) {
   peers.say("r", hello);
   peers.pass(milliseconds(60));
   EXPECT_EQ(answered(), Ids{});
-}
-
-TEST_F(Directing, R2_AResetIsTold) {
-  begin();
-  restart(peers.barrier, {.seed = 9});
-  boxes = Boxes(1);
-  publish(0);
-  const auto messages = told();
-  ASSERT_EQ(messages.size(), 3U);
-  EXPECT_EQ(messages[0].reset().seed(), 9U);
-  EXPECT_EQ(messages[1].world_layout().first(), 0U);
-  EXPECT_EQ(messages[1].world_layout().entities_size(), 1);
-  EXPECT_EQ(messages[2].world_state().epoch(), 1U);
-}
-
-TEST_F(Directing, R2_APauseIsTold) {
-  begin();
-  peers.say("p", direction(5));
-  peers.say("q", direction(5));
-  pause(peers.barrier);
-  EXPECT_TRUE(peers.told("p").has_paused());
-  EXPECT_FALSE(peers.is_complete());
 }
 
 }  // namespace

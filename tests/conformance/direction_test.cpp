@@ -63,18 +63,6 @@ TEST_F(Directing, R4_AllThatADirectorIsToldOfHasABound) {
   EXPECT_FALSE(is_told(v1::most_laid_out - 100));
 }
 
-TEST_F(Directing, R3_WithoutSubscriptionItIsToldOfNothing) {
-  auto hello = director("judge");
-  hello.mutable_hello()->clear_subscription();
-  peers.say("p", hello);
-  peers.inboxes.clear();
-  publish(5);
-  const auto messages = told();
-  ASSERT_EQ(messages.size(), 2U);
-  EXPECT_TRUE(messages[0].world_layout().entities().empty());
-  EXPECT_TRUE(messages[1].world_state().poses().empty());
-}
-
 TEST_F(Directing, R3_ASubscriptionHas64PatternsOf256Bytes) {
   auto hello = director("judge");
   for (int i = 0; i < 64; ++i) hello.mutable_hello()->mutable_subscription()->add_entities("b*");
@@ -90,25 +78,6 @@ TEST_F(Directing, R3_ASubscriptionHas64PatternsOf256Bytes) {
   more.mutable_hello()->set_session_token(welcome.session_token());
   peers.say("r", more);
   EXPECT_EQ(peers.told("r").refusal().error().code(), v1::Error::TOO_MANY) << "also to resume";
-}
-
-TEST_F(Directing, R4_EntitiesThatComeStandBehindTheOthersAndThoseThatGoKeepTheirPlaces) {
-  begin();
-  peers.say("p", direction(5));
-  boxes.add();
-  boxes.state.absent[0] = true;
-  publish(6);
-  auto messages = told();
-  ASSERT_EQ(messages.size(), 2U);
-  const v1::WorldLayout& layout = messages[0].world_layout();
-  EXPECT_EQ(layout.first(), 2U);
-  ASSERT_EQ(layout.entities_size(), 1);
-  EXPECT_EQ(layout.entities(0).id(), "b2");
-  ASSERT_EQ(layout.removed_size(), 1);
-  EXPECT_EQ(layout.removed(0), 0U);
-  EXPECT_EQ(messages[1].world_state().poses_size(), 21);
-  publish(7);
-  EXPECT_EQ(told().size(), 1U) << "nothing has changed: no layout";
 }
 
 TEST_F(Directing, R4_ALayoutThatDidNotArriveIsToldAgain) {
@@ -149,15 +118,6 @@ TEST_F(Directing, R5_ContactsAreToldByTheirLinks) {
   EXPECT_EQ(state.contacts(2), 3);
   EXPECT_EQ(state.contacts(5), -1);
   EXPECT_EQ(state.contacts(8), -5);
-}
-
-TEST_F(Directing, R6_ActsAreInTheOrderOfTheIds) {
-  begin();
-  peers.say("p", direction(5));
-  peers.say("q", direction(5));
-  EXPECT_EQ(answered(), (Ids{"hasty", "judge"}));
-  publish(6);
-  EXPECT_EQ(answered(), Ids{});
 }
 
 TEST_F(Directing, R7_AWrongDirectionHasNoEffect) {
@@ -287,16 +247,6 @@ TEST_F(Directing, R9_ADirectionCountsAlthoughItsDirectorLeaves) {
   peers.say("q", direction(5));
   EXPECT_TRUE(peers.is_complete());
   EXPECT_EQ(answered(), (Ids{"hasty", "judge"}));
-}
-
-TEST_F(Directing, R10_AResultHas1KiB) {
-  begin();
-  auto finish = direction(5);
-  finish.mutable_direction()->mutable_finish()->set_result(std::string(1025, 'x'));
-  EXPECT_EQ(faulted(peers, finish).code(), v1::Error::TOO_LARGE);
-  finish.mutable_direction()->mutable_finish()->set_result("it stands");
-  peers.say("p", finish);
-  EXPECT_EQ(directions(peers.barrier).at(0).direction.finish, "it stands");
 }
 
 TEST_F(Directing, V12_AStatusNamesThem) {

@@ -1,4 +1,5 @@
-// Rule T6 of docs/protocol.md, the JSON twin, beyond what all other tests here hold of both forms.
+// Rule T6 of docs/protocol.md, the JSON twin. The kit plays its cases in both forms; here is what depends on the
+// text itself.
 
 #include <gtest/gtest.h>
 
@@ -73,14 +74,6 @@ TEST_F(Twin, T6_AWholeExchange) {
   EXPECT_EQ(barrier.journal.take().log.at(0).text, "h\xc3\xa9");
   finish(barrier, {});
   EXPECT_EQ(told("p")["end"]["reason"], "FINISHED");
-}
-
-TEST_F(Twin, T6_TheTokenOfAWelcomeResumesAsItStands) {
-  join("p");
-  const json token = told("p")["welcome"]["sessionToken"];
-  say("q", R"({"hello":{"version":{"major":1},"role":"ROLE_CONTROLLER","sessionToken":)" +
-               token.dump() + "}}");
-  EXPECT_EQ(told("q")["welcome"]["sessionToken"], token);
 }
 
 TEST_F(Twin, T6_OtherSpellingsOfTheSame) {
@@ -168,12 +161,6 @@ TEST_F(Twin, T6_WhatDoesNotMatchTheMessageIsMalformed) {
   }
 }
 
-TEST_F(Twin, T6_UnknownNamesMayHoldAnyJson) {
-  say("p", R"({"hello":{"version":{"major":1},"role":"ROLE_CONTROLLER","robots":["*"],)"
-           R"("later":{"a":[1,[true,null],{"robots":"*"}],"a":"\u00e9"}}})");
-  EXPECT_TRUE(told("p").contains("welcome"));
-}
-
 TEST_F(Twin, T6_DepthIsBounded) {
   const auto nested = [](std::size_t levels) {
     return R"({"later":)" + std::string(levels, '[') + std::string(levels, ']') +
@@ -195,32 +182,6 @@ TEST_F(Twin, T6_SeveralFramesAreAnsweredInTheFormOfTheFirst) {
   join("p");
   receive(barrier, {"p", "x", false, Access{}, 0, wire::Encoding::binary}, &commands);
   EXPECT_EQ(told("p")["error"]["code"], "MALFORMED") << "in the session's form";
-}
-
-TEST_F(Twin, T6_AMalformedMessageOfASessionIsDiscarded) {
-  join("p");
-  publish(0);
-  say("p", R"({"command":{"tick":"0","jointTargets":[1,)");
-  EXPECT_EQ(told("p")["error"]["severity"], "DISCARD");
-  EXPECT_FALSE(barrier.gate.is_complete());
-  say("p", R"({"command":{"tick":"0"}})");
-  EXPECT_TRUE(barrier.gate.is_complete());
-}
-
-TEST_F(Twin, T6_FormsAreNotMixed) {
-  join("p", "robot0");
-  say("q", bytes_of(Peers::hello("robot1"), false));
-  publish(0);
-  inboxes.clear();
-  say("p", bytes_of(Peers::command(0), false));
-  EXPECT_EQ(told("p")["error"]["code"], "MALFORMED") << "told in the session's form";
-  say("q", R"({"command":{"tick":"0"}})");
-  EXPECT_EQ(message_of(inboxes["q"].at(0)).error().code(), v1::Error::MALFORMED);
-  EXPECT_EQ(inboxes["q"].at(0)[0], 0x32) << "binary";
-  EXPECT_FALSE(barrier.gate.is_complete());
-  say("p", R"({"command":{"tick":"0"}})");
-  say("q", bytes_of(Peers::command(0), false));
-  EXPECT_TRUE(barrier.gate.is_complete());
 }
 
 TEST_F(Twin, T6_ABinarySessionMayResumeInJson) {

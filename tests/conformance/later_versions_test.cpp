@@ -1,5 +1,5 @@
-// What versions 1.1 and 1.2 of the protocol add (docs/protocol.md: W10, L13, V15; S13, L6, V17),
-// and that sessions of lower versions see none of it.
+// Of what versions 1.1 and 1.2 of the protocol add (docs/protocol.md: W10, L13, V15; S13, L6, V17): policies of a
+// command line, crossings of a reset, and moments between two ticks.
 
 #include <gtest/gtest.h>
 
@@ -33,8 +33,8 @@ TEST(LaterVersions, H2_TheLowerMinorVersionCounts) {
 
 /// "p" has robot0 to robot2, of which "lua" drops at once (0, 2), and "external" (1) holds.
 struct Dropping {
-  explicit Dropping(std::uint32_t minor) : small(3), peers(small, config()) {
-    peers.say("p", hello("*", minor));
+  Dropping() : small(3), peers(small, config()) {
+    peers.say("p", hello("*", 1));
     peers.publish(5);
     peers.inboxes.clear();
     peers.pass(milliseconds{50});
@@ -49,7 +49,7 @@ struct Dropping {
 };
 
 TEST(LaterVersions, W10_ASessionIsToldWhichOfItsRobotsWereDropped) {
-  Dropping run(1);
+  Dropping run;
   const auto& told = run.peers.inboxes["p"];
   ASSERT_EQ(told.size(), 2U);
   EXPECT_EQ(told[0].error().code(), v1::Error::DEADLINE_MISSED);
@@ -65,69 +65,14 @@ TEST(LaterVersions, W10_ASessionIsToldWhichOfItsRobotsWereDropped) {
 }
 
 TEST(LaterVersions, W10_OnceForEachRobot) {
-  Dropping run(1);
+  Dropping run;
   run.peers.publish(6);
   run.peers.inboxes.clear();
   run.peers.pass(milliseconds{50});
   EXPECT_EQ(run.peers.told("p").error().code(), v1::Error::DEADLINE_MISSED) << "and nothing else";
 }
 
-TEST(LaterVersions, W10_NotInVersion10) {
-  Dropping run(0);
-  EXPECT_EQ(run.peers.told("p").error().code(), v1::Error::DEADLINE_MISSED) << "and nothing else";
-}
-
 // ---- resumed sessions ---------------------------------------------------------------------------
-
-/// "p" has commanded 3 and 4 at tick 4, and left with robot1 if asked to; "new" resumes at tick 5.
-struct Resuming {
-  explicit Resuming(std::uint32_t minor, bool leaves = false) : small(2), peers(small) {
-    const auto token = peers.join("p", "*").session_token();
-    peers.publish(4);
-    if (leaves) peers.say("p", Peers::leave({1}));
-    peers.say("p", Peers::command(4, {3, 4}));
-    zero_missing(peers.barrier, peers.commands);
-    peers.publish(5);
-    peers.inboxes.clear();
-    peers.say("new", hello("*", minor, token));
-    welcome = peers.inboxes["new"].at(0).welcome();
-  }
-  SmallRun small;
-  Peers peers;
-  v1::Welcome welcome;
-};
-
-TEST(LaterVersions, L13_TheWelcomeOfAResumedSessionHasWhatWasCommanded) {
-  Resuming run(1);
-  ASSERT_TRUE(run.welcome.resumed().has_commanded());
-  auto message = v1::ClientMessage();
-  *message.mutable_command() = run.welcome.resumed().commanded();
-  ASSERT_EQ(message.command().joint_targets_size(), 2);
-  EXPECT_EQ(message.command().joint_targets(0), 3);
-  EXPECT_EQ(message.command().joint_targets(1), 4);
-  EXPECT_EQ(run.welcome.resumed().gone_robots_size(), 0);
-  const auto before = run.peers.commands.joint_targets;
-  message.mutable_command()->set_tick(5);
-  run.peers.say("new", message);
-  EXPECT_TRUE(run.peers.is_complete()) << "it is a Command as it stands";
-  EXPECT_EQ(run.peers.commands.joint_targets, before);
-}
-
-TEST(LaterVersions, L13_AndSaysWhichRobotsHaveLeft) {
-  Resuming run(1, true);
-  ASSERT_EQ(run.welcome.resumed().gone_robots_size(), 1);
-  EXPECT_EQ(run.welcome.resumed().gone_robots(0), 1U);
-  EXPECT_EQ(run.welcome.resumed().commanded().joint_targets_size(), 2) << "S2";
-  EXPECT_EQ(run.welcome.resumed().commanded().joint_targets(1), 0) << "L1";
-}
-
-TEST(LaterVersions, L13_OnlyIfResumedAndFromVersion11On) {
-  EXPECT_FALSE(Resuming(0).welcome.has_resumed());
-  const SmallRun small(1);
-  Peers peers(small);
-  peers.say("p", hello("*", 1));
-  EXPECT_FALSE(peers.told("p").welcome().has_resumed());
-}
 
 TEST(LaterVersions, L13_BeforeTheFirstTickNothingWasCommanded) {
   const SmallRun small(2);
@@ -141,45 +86,10 @@ TEST(LaterVersions, L13_BeforeTheFirstTickNothingWasCommanded) {
   EXPECT_FALSE(welcome.resumed().has_commanded());
 }
 
-// ---- spawned robots -----------------------------------------------------------------------------
-
-/// "p" has robot0 of "lua", "q" robot1 of "external"; then a robot2 of "lua" comes at tick 5.
-struct Spawning {
-  explicit Spawning(std::uint32_t minor) : small(2), peers(small) {
-    peers.say("p", hello("robot0", minor));
-    peers.say("q", hello("robot1", minor));
-    peers.publish(5);
-    peers.inboxes.clear();
-    small.add_robot();
-    peers.commands.joint_targets.resize(3);
-    peers.add_robots("/scenes/spawned.lua", small.observations(5));
-  }
-  SmallRun small;
-  Peers peers;
-};
-
-TEST(LaterVersions, V15_SessionsWithRobotsOfItsControllerAreToldOfASpawnedRobot) {
-  Spawning run(1);
-  const auto told = run.peers.told("p");
-  ASSERT_TRUE(told.has_robot_spawned());
-  EXPECT_EQ(told.robot_spawned().robot(), "robot2");
-  EXPECT_EQ(told.robot_spawned().controller(), "lua");
-  EXPECT_EQ(told.robot_spawned().tick(), 5U);
-  EXPECT_TRUE(run.peers.inboxes["q"].empty());
-  run.peers.say("fleet", hello(told.robot_spawned().robot(), 1));
-  EXPECT_TRUE(run.peers.inboxes["fleet"].front().has_welcome());
-}
-
-TEST(LaterVersions, V15_NotInVersion10) {
-  Spawning run(0);
-  EXPECT_TRUE(run.peers.inboxes["p"].empty());
-}
-
 // ---- epochs and snapshots -----------------------------------------------------------------------
 
-v1::ClientMessage command(std::uint64_t tick, std::uint64_t epoch,
-                          std::vector<double> targets = {}) {
-  auto message = Peers::command(tick, std::move(targets));
+v1::ClientMessage command(std::uint64_t tick, std::uint64_t epoch) {
+  auto message = Peers::command(tick);
   message.mutable_command()->set_epoch(epoch);
   return message;
 }
@@ -187,38 +97,6 @@ v1::ClientMessage command(std::uint64_t tick, std::uint64_t epoch,
 v1::ServerMessage last(Peers& peers) {
   const auto messages = std::exchange(peers.inboxes["p"], {});
   return messages.empty() ? v1::ServerMessage{} : messages.back();
-}
-
-TEST(LaterVersions, S13_ObservationsAndResetsHaveAnEpoch) {
-  const SmallRun small(1);
-  Peers peers(small);
-  peers.say("p", hello("*", 2));
-  peers.publish(0);
-  const v1::ServerMessage first = last(peers);
-  EXPECT_TRUE(first.observation().has_epoch());
-  EXPECT_EQ(first.observation().epoch(), 0U);
-  restart(peers.barrier, {7});
-  EXPECT_EQ(last(peers).reset().epoch(), 1U);
-  peers.publish(0);
-  EXPECT_EQ(last(peers).observation().epoch(), 1U);
-}
-
-TEST(LaterVersions, S13_ACommandThatCrossesAResetIsNotTakenForTheNewTick) {
-  const SmallRun small(1);
-  Peers peers(small);
-  peers.say("p", hello("*", 2));
-  peers.publish(0);
-  restart(peers.barrier, {7});
-  peers.publish(0);
-  peers.say("p", command(0, 0, {3}));
-  const v1::ServerMessage stale = last(peers);
-  EXPECT_EQ(stale.error().code(), v1::Error::STALE_TICK);
-  EXPECT_EQ(stale.error().field(), "epoch");
-  EXPECT_FALSE(peers.is_complete());
-  peers.say("p", command(0, 2));
-  EXPECT_EQ(last(peers).error().code(), v1::Error::FUTURE_TICK);
-  peers.say("p", command(0, 1));
-  EXPECT_TRUE(peers.is_complete());
 }
 
 /// A supervisor that puts the world back again and again is no fault of a controller.
@@ -257,57 +135,6 @@ TEST(LaterVersions, M4_NorWithoutEpochs) {
     restart(peers.barrier, {7});
   }
   EXPECT_TRUE(peers.barrier.journal.take().notices.empty());
-}
-
-TEST(LaterVersions, S13_ACommandWithoutEpochAnswersTheLastObservation) {
-  const SmallRun small(1);
-  Peers peers(small);
-  peers.say("p", hello("*", 2));
-  restart(peers.barrier, {7});
-  peers.publish(0);
-  peers.say("p", Peers::command(0));
-  EXPECT_TRUE(peers.is_complete());
-}
-
-TEST(LaterVersions, S13_SessionsOfLowerVersionsSeeNoEpoch) {
-  for (const std::uint32_t minor : {0U, 1U}) {
-    const SmallRun small(1);
-    Peers peers(small);
-    peers.say("p", hello("*", minor));
-    peers.publish(0);
-    restart(peers.barrier, {7});
-    const v1::ServerMessage reset = last(peers);
-    EXPECT_TRUE(reset.has_reset());
-    EXPECT_FALSE(reset.reset().has_epoch());
-    peers.publish(0);
-    const v1::ServerMessage observed = last(peers);
-    EXPECT_TRUE(observed.has_observation());
-    EXPECT_FALSE(observed.observation().has_epoch());
-    peers.say("p", command(0, 5));  // an unknown field
-    EXPECT_TRUE(peers.is_complete());
-  }
-}
-
-TEST(LaterVersions, L6_ARestoreTellsTheTickTheNameAndWhatWasCommanded) {
-  const SmallRun small(1);
-  Peers peers(small);
-  auto begin = hello("*", 2);
-  begin.mutable_hello()->set_can_restore(true);
-  peers.say("p", begin);
-  peers.publish(5);
-  world::Commands then = peers.commands;
-  then.joint_targets = {0.5};
-  wire::Restart back{7};
-  back.snapshot = {"here", 3, &then, 1};
-  restart(peers.barrier, back);
-  const v1::Restored restored = last(peers).restored();
-  EXPECT_EQ(restored.tick(), 3U);
-  EXPECT_EQ(restored.snapshot(), "here");
-  EXPECT_EQ(restored.epoch(), 1U);
-  ASSERT_EQ(restored.commanded().joint_targets_size(), 1);
-  EXPECT_EQ(restored.commanded().joint_targets(0), 0.5);
-  peers.publish(3);
-  EXPECT_EQ(last(peers).observation().tick(), 3U);
 }
 
 /// One robot whose client can go back; at tick 5 its world goes back to tick 3, which is not published yet.

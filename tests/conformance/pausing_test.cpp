@@ -13,26 +13,6 @@ using scene::DeadlineAction;
 using std::chrono::milliseconds;
 using Membership = RobotStatus::Membership;
 
-TEST(Pause, P1_TakesEffectWhenTheTickIsAnswered) {
-  Pair pair{Config{}};
-  pause(pair.peers.barrier);
-  EXPECT_TRUE(pair.peers.inboxes.empty());
-  EXPECT_FALSE(pair.peers.barrier.gate.is_standing());
-  pair.peers.say("p", Peers::command(5, {1}));
-  EXPECT_FALSE(pair.peers.is_complete());
-  EXPECT_TRUE(pair.peers.barrier.gate.is_standing());
-  EXPECT_EQ(pair.peers.commands.joint_targets[0], 1);
-  for (const auto* peer : {"p", "q"}) {
-    const auto told = pair.peers.told(peer);
-    ASSERT_TRUE(told.has_paused());
-    EXPECT_EQ(told.paused().tick(), 5U);
-  }
-  resume(pair.peers.barrier);
-  EXPECT_TRUE(pair.peers.is_complete());
-  pair.tick(6);
-  EXPECT_TRUE(pair.peers.is_complete());
-}
-
 TEST(Pause, P1_TakesEffectWhenTheLastThatOwesIsClosedForItsMessages) {
   Pair pair{Config{}};
   pair.peers.say("p", Peers::leave({0}));  // it still owes its answer
@@ -54,26 +34,6 @@ TEST(Pause, P1_AWorldWithoutRobotsStandsAtEachTick) {
   peers.publish(0);
   EXPECT_TRUE(peers.barrier.gate.is_standing());
   EXPECT_FALSE(peers.is_complete());
-}
-
-TEST(Pause, P2_ASessionThatBeginsMeanwhileIsToldAfterItsAnswer) {
-  Pair pair{Config{}};
-  pair.peers.say("p", Peers::command(5));
-  pause(pair.peers.barrier);
-  pair.peers.say("p", Peers::leave({}));
-  pair.peers.unreachable.insert("q");
-  pair.peers.probe();
-  pair.peers.unreachable.clear();
-  pair.peers.inboxes.clear();
-  pair.peers.say("late", Peers::hello("robot1"));
-  ASSERT_EQ(pair.peers.inboxes["late"].size(), 2U);
-  EXPECT_EQ(pair.peers.inboxes["late"][1].observation().tick(), 5U);
-  pair.peers.inboxes.clear();
-  pair.peers.say("late", Peers::command(5, {8}));
-  EXPECT_EQ(pair.peers.told("late").paused().tick(), 5U);
-  EXPECT_EQ(pair.peers.commands.joint_targets[1], 8);
-  resume(pair.peers.barrier);
-  EXPECT_TRUE(pair.peers.is_complete());
 }
 
 TEST(Pause, P2_BeforeTheFirstTickNoSessionIsTold) {

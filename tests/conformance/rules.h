@@ -46,19 +46,4 @@ inline v1::ClientMessage takeover(const std::string& robots) {
   return hello;
 }
 
-/// Four robots; "p" holds robot0, robot1 and robot3 and owes tick 5, "q" holds robot2 and has
-/// answered.
-struct Stepping : ::testing::Test {
-  Stepping() : small(4), peers(small) {
-    auto hello = Peers::hello("robot[013]");
-    peers.say("p", hello);
-    peers.join("q", "robot2");
-    peers.publish(5);
-    peers.say("q", Peers::command(5));
-    peers.inboxes.clear();
-  }
-  SmallRun small;
-  Peers peers;
-};
-
 }  // namespace ziggurat::network

@@ -2,32 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "pair.h"
 #include "rules.h"
 
 namespace ziggurat::network {
 namespace {
-
-TEST(Takeover, H13_AHolderWithoutRobotsLeftIsToldAndClosed) {
-  const SmallRun small(4);
-  Peers peers(small);
-  peers.join("p", "robot[01]");
-  peers.join("q", "robot[23]");
-  peers.publish(2);
-  peers.inboxes.clear();
-  peers.say("new", takeover("*"));
-  EXPECT_EQ(peers.told("p").displaced().by(), "usurper");
-  EXPECT_EQ(peers.told("q").displaced().by(), "usurper");
-  ASSERT_EQ(peers.inboxes["new"].size(), 2U);
-  const auto status = peers.status();
-  for (const auto& robot : status) EXPECT_EQ(robot.holder, "usurper");
-  peers.say("p", Peers::command(2, {9, 9}));
-  EXPECT_EQ(peers.told("p").error().code(), v1::Error::OUT_OF_STATE);
-  EXPECT_EQ(peers.commands.joint_targets[0], 0);
-  EXPECT_FALSE(peers.is_complete());
-  peers.say("new", Peers::command(2));
-  EXPECT_TRUE(peers.is_complete());
-}
 
 /// "p" holds robots 0 to 2 of four, "q" the last one; "new" takes over robots 2 and 3.
 struct PartOfASession : testing::Test {
@@ -46,23 +24,6 @@ struct PartOfASession : testing::Test {
   Peers peers;
   std::string token;
 };
-
-TEST_F(PartOfASession, H13_TheHolderKeepsTheRest) {
-  take();
-  EXPECT_EQ(peers.told("q").displaced().by(), "usurper");
-  const auto told = peers.told("p").error();
-  EXPECT_EQ(told.code(), v1::Error::NOT_YOURS);
-  EXPECT_EQ(told.severity(), v1::Error::WARNING);
-  EXPECT_EQ(told.robot(), "robot2");
-  const auto status = peers.status();
-  for (const std::size_t robot : {0, 1}) EXPECT_EQ(status[robot].holder, "tester");
-  for (const std::size_t robot : {2, 3}) EXPECT_EQ(status[robot].holder, "usurper");
-  peers.say("p", Peers::command(2, {1, 2, 9}));
-  EXPECT_FALSE(peers.is_complete());
-  peers.say("new", Peers::command(2, {3, 4}));
-  EXPECT_TRUE(peers.is_complete());
-  EXPECT_EQ(peers.commands.joint_targets, (std::vector<double>{1, 2, 3, 4}));
-}
 
 TEST_F(PartOfASession, H13_CommandsForRobotsThatWereTakenHaveNoEffect) {
   take();
@@ -109,42 +70,6 @@ TEST_F(PartOfASession, L4_ALostOneKeepsTheRest) {
   EXPECT_TRUE(peers.inboxes["back"].front().has_welcome());
   EXPECT_EQ(peers.status()[1].holder, "tester");
   EXPECT_EQ(peers.status()[2].holder, "usurper");
-}
-
-TEST_F(PartOfASession, H13_RobotByRobotUntilNoneIsLeft) {
-  for (const char* robot : {"robot0", "robot1", "robot2"}) {
-    peers.say(robot, takeover(robot));
-  }
-  const auto& inbox = peers.inboxes["p"];
-  ASSERT_EQ(inbox.size(), 3U);
-  EXPECT_EQ(inbox[1].error().robot(), "robot1");
-  EXPECT_EQ(inbox[2].displaced().by(), "usurper");
-  peers.say("back", with_token(token));
-  EXPECT_EQ(peers.told("back").refusal().error().code(), v1::Error::NO_SUCH_SESSION);
-}
-
-TEST(Takeover, H13_ARefusedOneDisplacesNoSession) {
-  const SmallRun small(2);
-  Config config;
-  config.deadlines = {{{}, true}};
-  Peers peers(small, config);
-  peers.join("p", "robot0");
-  peers.join("q", "robot1");
-  auto hello = takeover("robot0");
-  hello.mutable_hello()->add_robots("nobody");
-  peers.say("new", hello);
-  EXPECT_EQ(peers.told("new").refusal().error().code(), v1::Error::UNKNOWN_ROBOT);
-  hello = wish("*", v1::DeadlinePolicy::HOLD, 10);
-  hello.mutable_hello()->set_takeover(true);
-  peers.say("new", hello);
-  EXPECT_EQ(peers.told("new").refusal().error().code(), v1::Error::FORBIDDEN);
-  peers.say("q", Peers::leave());
-  hello = takeover("robot0");
-  hello.mutable_hello()->add_robots("robot1");
-  peers.say("new", hello);
-  EXPECT_EQ(peers.told("new").refusal().error().code(), v1::Error::NOT_YOURS);
-  EXPECT_TRUE(peers.inboxes["p"].empty());
-  EXPECT_EQ(peers.status()[0].holder, "tester");
 }
 
 }  // namespace

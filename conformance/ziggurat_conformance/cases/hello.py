@@ -66,6 +66,7 @@ CASES = [
          (Join("p", hello("*", version={"major": 1, "minor": 0}), {"version": {"major": 1, "minor": 0}}),)),
     _refused("H3.no-role", "BAD_VALUE", "A Hello without role is refused", role="ROLE_UNSPECIFIED"),
     _refused("H3.unknown-role", "BAD_VALUE", "A role of the future is refused", role=77),
+    _refused("H3.negative-role", "BAD_VALUE", "A role below 0 is refused", role=-7),
     _refused("H4.nothing-asked", "BAD_VALUE", "A Hello that asks for no robot is refused", robots=()),
     Case("H4.one", "A robot by id", (Join("p", hello("arm1"), _robots_are("arm1")),)),
     Case("H4.some", "Robots by id come in scene order",

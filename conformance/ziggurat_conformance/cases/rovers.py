@@ -130,7 +130,8 @@ CASES = [
          [0.1, 0.1], robots=[2]),
     _case("D6.left", "The wheels of robots that left stand (L1)", ALL,
           answer("p", wheel_velocities=[0.1] * 4), observe("p"), leave("p", 0), answer("p"),
-          observe("p"), _speeds(0, 0, 0.1, 0.1, 0, 0), fresh=True),
+          observe("p"), _speeds(0, 0, 0.1, 0.1, 0, 0),
+          answer("p", wheel_velocities=[0.1] * 4), observe("p"), _speeds(0, 0, 0.1, 0.1, 0, 0), fresh=True),
     *[_bad("S6", f"{name}-{_KEBAB[field]}", f"One value of {field} too {word}", field, values)
       for field, zeros in _ZEROS.items()
       for name, word, values in (("short", "few", zeros[1:]), ("long", "many", zeros + zeros[:1]))],
@@ -147,6 +148,9 @@ CASES = [
           answer("p"), observe("p"), _turned(0, 0, 0),  # a value changes no mode
           answer("p", turret_modes=["TURRET_SPEED", "TURRET_PASSIVE"]), observe("p"),
           _turned(0.1, 0, 0), fresh=True),  # and waits for its own
+    _case("D7.left", "The turrets of robots that left stand (L1)", ALL,
+          answer("p", turret_modes=["TURRET_SPEED"] * 2, turret_speeds=[1.0, 1.0]), observe("p"), leave("p", 0),
+          answer("p"), observe("p"), Check("", _remember), answer("p"), observe("p"), _turned(0, 0.1, 0), fresh=True),
     _case("D7.speed", "At a speed it turns, until told otherwise", ALL, _stands(), Check("", _remember),
           answer("p", turret_modes=["TURRET_SPEED"] * 2, turret_speeds=[1.0, -0.5]), observe("p"),
           _turned(0.1, -0.05, 0), answer("p"), observe("p"), _turned(0.2, -0.1, 0),

@@ -108,6 +108,13 @@ def _joints_turned(stage) -> str:
     return "" if all(abs(t - 0.1) < 0.03 for t in turned) else f"joints turned by {turned}; expected 0.1"
 
 
+def _joints_stand(stage) -> str:
+    """Since _note_joints."""
+    pairs = zip(stage.memory["joints"], stage.peer("p").observation.joint_readings)
+    turned = [b - a for a, b in pairs]
+    return "" if all(abs(t) < 0.03 for t in turned) else f"joints turned by {turned}; expected 0"
+
+
 def _joints_turn(stage) -> str:
     """At 1 rad/s for a tick of 0.1 s. Where they stood before does not matter: others moved them too."""
     stage.play((answer("p"),))
@@ -176,6 +183,10 @@ CASES = [
     Case("S9.duplicate", "A second Command for a tick is DUPLICATE_TICK; the first counts",
          (TWO, answer("p"), answer("p"), hear_error("p", "DUPLICATE_TICK"), answer("q"),
           observe("p", "q"))),
+    Case("S9.first-counts", "The values of a second Command for a tick have no effect",
+         (TWO, answer("p", joint_targets=Zeros("joint_actuators")), answer("q"), observe("p", "q"),
+          Check("joints", _note_joints), answer("p"), answer("p", joint_targets=Zeros("joint_actuators", 0, 1.0)),
+          hear_error("p", "DUPLICATE_TICK"), answer("q"), observe("p", "q"), Check("joints", _joints_stand))),
     Case("S9.resend", "Resending ten times is harmless",
          (TWO, answer("p"), *[s for _ in range(10) for s in
                               (answer("p"), hear_error("p", "DUPLICATE_TICK"))], answer("q"),
@@ -184,6 +195,12 @@ CASES = [
          (ALL, answer("p", radio_messages=[_message(0, b"lost")], led_colors=[1]),
           hear_error("p", "BAD_VALUE"), answer("p"),
           Hear("p", "observation", {"radio_messages": Count(0)}))),
+    Case("S10.last-fault", "… whatever stands before its fault",
+         (ALL, answer("p", joint_targets=Zeros("joint_actuators")), observe("p"), Check("joints", _note_joints),
+          answer("p", joint_targets=Zeros("joint_actuators", 0, 1.0), radio_messages=[_message(0)],
+                 log=[{"robot": 9, "text": "x"}]),
+          hear_error("p", "UNKNOWN_ROBOT"), answer("p"), Hear("p", "observation", {"radio_messages": Count(0)}),
+          Check("joints", _joints_stand))),
     Case("S11.log", "Lines may be logged", (ALL, answer("p", log=[{"robot": 0, "text": "hello"},
                                                                   {"robot": 3, "error": True,
                                                                    "text": "oh"}]), observe("p"))),
@@ -222,6 +239,13 @@ CASES = [
         _message(4294967295)]),
     _bad("D1", "radio-not-spoken-for", "NOT_YOURS", "A radio of a robot that is not spoken for",
          robots=[0], radio_messages=[_message(1)]),
+    Case("D1.of-the-session", "Radios are counted by session",
+         (TWO, answer("q", radio_messages=[_message(0)]), answer("p"),
+          Hear("p", "observation", {"radio_messages": Count(2)}),
+          Hear("q", "observation", {"radio_messages": [{"radio": 1}]}))),
+    Case("D1.left", "Messages of robots that left are ignored",
+         (ALL, leave("p", 0), answer("p", radio_messages=[_message(0)]),
+          Hear("p", "observation", {"radio_messages": Count(0)})), fresh=True),
     # In JSON a Command may be shorter than such a message (T4).
     _bad("D2", "message-too-long", "TOO_LARGE", "A message above 1 MiB", forms=("binary",), radio_messages=[
         _message(0, b"x" * (2**20 + 1))]),

@@ -37,30 +37,6 @@ void attend(Server& server, const Progress& progress = {}) {
   server.attend(progress, {milliseconds{100}, {}});
 }
 
-TEST(Loading, H12_LoadingAtOnceAndWelcomeWithoutAnotherHello) {
-  const SmallRun small(1);
-  Server server(config_with_heartbeat(out_of_the_way));
-  Peer peer(server.endpoints());
-  peer.say(hello("*"));
-  attend(server, {0.5, "half of it is there"});
-  const auto loading = peer.hear();
-  EXPECT_EQ(loading.loading().progress(), 0.5);
-  EXPECT_EQ(loading.loading().message(), "half of it is there");
-  server.open(small.run(), config_with_heartbeat(out_of_the_way));
-  EXPECT_EQ(server.gather(patience), Outcome::complete);
-  EXPECT_EQ(peer.hear().loading().progress(), 1);
-  EXPECT_EQ(peer.hear().welcome().robots_size(), 1);
-}
-
-TEST(Loading, H12_AgainAboutEverySecond) {
-  Server server(config_with_heartbeat(milliseconds{20}));
-  Peer peer(server.endpoints());
-  peer.say(hello("*"));
-  server.attend({0.25, "first"}, {milliseconds{100}, {}});
-  server.attend({0.75, "second"}, {milliseconds{200}, {}});
-  for (int i = 0; i < 5; ++i) EXPECT_TRUE(peer.hear().has_loading());
-}
-
 TEST(Loading, H12_IfThereIsNoWorldInTheEnd) {
   std::optional<Server> server(config_with_heartbeat(out_of_the_way));
   Peer peer(server->endpoints());

@@ -1,7 +1,6 @@
 #pragma once
 // Peers of a barrier without sockets: what they send, and what they are told.
 
-#include <cstdlib>
 #include <map>
 #include <optional>
 #include <set>
@@ -21,13 +20,6 @@
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::network {
-
-/// The form that peers talk: JSON if ZIGGURAT_TEST_ENCODING=json is in the environment. ctest runs
-/// the conformance tests in both.
-inline bool talks_json() {
-  const char* encoding = std::getenv("ZIGGURAT_TEST_ENCODING");
-  return encoding != nullptr && encoding == std::string("json");
-}
 
 inline std::string bytes_of(const v1::ClientMessage& message, bool json) {
   return json ? v1::to_json(message) : message.SerializeAsString();
@@ -182,7 +174,7 @@ class Peers {
   Config config_;
 
  public:
-  bool json = talks_json();              ///< what say() talks
+  bool json = false;                     ///< what say() talks
   std::set<std::string> told_otherwise;  ///< peers that were told something in the other form
   std::map<std::string, std::vector<v1::ServerMessage>> inboxes;
   std::set<std::string> unreachable, congested;
