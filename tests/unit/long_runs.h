@@ -55,6 +55,12 @@ inline std::vector<double> some_of(const std::vector<double>& all) {
   return out;
 }
 
+/// The first alone in the normal run: what a longer one adds takes much and rarely breaks.
+inline std::vector<double> first_of(const std::vector<double>& all) {
+  if (takes_all() && !is_slow) return all;
+  return {all.front()};
+}
+
 /// Which substep rates a test is for [Hz].
 struct Range {
   double least = 50, most = 2000;
