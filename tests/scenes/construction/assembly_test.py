@@ -33,10 +33,12 @@ class Building(unittest.TestCase):
     def test_two_robots_in_cpp(self):
         self.assert_built(4, perturb.perturb_steps("rules_cross"), CPP)
 
+    @unittest.skipUnless(perturb.TAKES_ALL, "./quickstart test-all runs it")
     def test_one_robot_in_cpp_and_one_in_lua_by_another_table(self):
         self.assert_built(0, with_robot_in_cpp(perturb.perturb_steps("rules_stairs"), "robot1"),
                           f"--controller=in_cpp={PROGRAM}")
 
+    @unittest.skipUnless(perturb.TAKES_ALL, "./quickstart test-all runs it")
     def test_robots_in_cpp_that_are_killed_and_started_again(self):
         self.assert_built(4, perturb.perturb_steps("rules_cross"), CPP, kills=1)
 

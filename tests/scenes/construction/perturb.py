@@ -42,6 +42,7 @@ STAIRCASE = ROOT / "scenes/construction/staircase.argos"
 STEPS = ROOT / "scenes/construction/steps.argos"
 PYRAMID = ROOT / "scenes/construction/pyramid.argos"
 BIN = pathlib.Path(os.environ.get("ZIGGURAT_BIN", ROOT / "build/release/bin"))
+TAKES_ALL = os.environ.get("ZIGGURAT_TEST_ALL") == "1"  # all runs of the tests, not a few of each
 
 
 def move(body, x=0.0, y=0.0, turn=0.0):

@@ -151,6 +151,7 @@ class Building(unittest.TestCase):
     def test_another_table_gives_a_staircase(self):
         self.assert_built(0, "rules_stairs")
 
+    @unittest.skipUnless(perturb.TAKES_ALL, "./quickstart test-all runs it")
     def test_robots_that_are_killed_and_started_again(self):
         self.assert_built(4, "rules_cross", kills=2)
 

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trees.h"
+#include "../long_runs.h"
 #include "dynamics/system.h"
+#include "trees.h"
 
 namespace ziggurat::dynamics {
 namespace {
@@ -58,7 +59,7 @@ struct Ball {
 // ball strikes: both falls are exact.
 TEST(Friction, ABallBouncesAsHighAsItsRestitutionSays) {
   for (const double restitution : {0.5, 1.}) {
-    for (const double hz : {50., 100., 1000.}) {
+    for (const double hz : long_runs::some_of({50., 100., 1000.})) {
       for (const double fall : {0.05, 0.37, 1.}) {
         Ball ball(radius + fall);
         ball.law.restitution = restitution;
@@ -79,7 +80,7 @@ TEST(Friction, ABallBouncesAsHighAsItsRestitutionSays) {
 
 // Over many rebounds, too, no height is gained.
 TEST(Friction, ABallThatLosesNothingBouncesForAMinute) {
-  for (const double hz : {50., 200.}) {
+  for (const double hz : long_runs::some_of({50., 200.})) {
     Ball ball(radius + 0.3);
     ball.law.restitution = 1;
     for (int i = 0; i < 60 * hz; ++i) {
@@ -95,7 +96,7 @@ TEST(Friction, ABallThatLosesNothingBouncesForAMinute) {
 TEST(Friction, RollingFrictionStopsABall) {
   const double lever = 1e-3, speed = 0.5;
   const double deceleration = 5. / 7 * lever * g / radius;
-  for (const double hz : {100., 1000.}) {
+  for (const double hz : long_runs::some_of({100., 1000.})) {
     Ball ball(radius);
     ball.law.friction = 0.5;
     ball.law.rolling = lever;

@@ -68,8 +68,8 @@ Vector3 drift_of(const Tree& tree) {
 
 // A smooth floor pushes upwards only.
 TEST(Tumbling, OnASmoothFloorKeepsItsDrift) {
-  for (const double hz : long_runs::some_of({50, 100, 200, 500, 1000, 2000})) {
-    for (unsigned seed = 0; seed < 4; ++seed) {
+  for (const double hz : long_runs::substep_rates()) {
+    for (unsigned seed = 0; seed < long_runs::runs(4, 2); ++seed) {
       Random random{std::mt19937(seed)};
       Touching world;
       world.planes.push_back({Vector3::Zero(), Vector3::UnitZ(), 0});
@@ -86,7 +86,7 @@ TEST(Tumbling, OnASmoothFloorKeepsItsDrift) {
 
 TEST(Tumbling, GivesMechanismsNoEnergy) {
   for (const double hz : long_runs::some_of({100, 500})) {
-    for (unsigned seed = 0; seed < 30; ++seed) {
+    for (unsigned seed = 0; seed < long_runs::runs(30, 6); ++seed) {
       tumble(hz, JointType::revolute, 1 + seed % 3, seed);
       tumble(hz, JointType::spherical, 1 + seed % 3, seed);
     }
@@ -118,7 +118,7 @@ void rebound(double hz, double restitution, unsigned seed) {
 
 TEST(Tumbling, ReboundsGiveBoxesNoEnergy) {
   for (const double hz : long_runs::some_of({100, 500})) {
-    for (unsigned seed = 0; seed < 20; ++seed) {
+    for (unsigned seed = 0; seed < long_runs::runs(20, 5); ++seed) {
       rebound(hz, 0.7, seed);
       rebound(hz, 1, seed);
     }

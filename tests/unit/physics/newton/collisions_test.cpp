@@ -48,14 +48,14 @@ std::vector<Vector3> after_a_blow(double hz, const Vector3& train) {
 
 // Angular momentum was kept about where a ball had been: what rebounds does not move along its velocity, so it got spin.
 TEST(NewtonCollision, IsTheSameOnATrain) {
-  for (const double hz : {50, 100, 200, 500, 1000}) {
+  for (const double hz : long_runs::substep_rates({.most = 1000})) {
     const auto resting = after_a_blow(hz, Vector3::Zero()), moving = after_a_blow(hz, {0, 3, -1});
     for (std::size_t i = 0; i < resting.size(); ++i) EXPECT_LT((resting[i] - moving[i]).norm(), 1e-9) << hz << ' ' << i;
   }
 }
 
 TEST(NewtonCollision, WithASmoothFloorGivesNoSpin) {
-  for (const double hz : {50, 100, 200, 500, 1000}) {
+  for (const double hz : long_runs::substep_rates({.most = 1000})) {
     World world(newton(true, 0), 1 / hz);
     world.add(ball(0.02, 0.1, {0, 0, 0.073}, {.friction = 0, .restitution = 1}));
     push_off(world, hz, {{0.1, 0, -0.1}});
@@ -81,7 +81,7 @@ double spin_from_a_plate(double hz, bool plate_first) {
 // Levers were about a point half-way between the surfaces of the substep's beginning: 7 cm off at 50 Hz.
 TEST(NewtonCollision, GivesTheSpinOfFrictionInAnyOrder) {
   const double impulse = 1 / (1 / 0.1 + 1 / 1.0), expected = 2.5 * 0.25 * impulse / (0.1 * 0.02);
-  for (const double hz : {50, 100, 200, 500, 1000}) {
+  for (const double hz : long_runs::substep_rates({.most = 1000})) {
     const double first = spin_from_a_plate(hz, true);
     EXPECT_NEAR(first, expected, 0.1 / hz * expected) << hz;
     EXPECT_NEAR(first, spin_from_a_plate(hz, false), 1e-6 * expected) << hz;
@@ -90,7 +90,7 @@ TEST(NewtonCollision, GivesTheSpinOfFrictionInAnyOrder) {
 
 // The normal was that of up to a millimetre before the balls touch: up to 9 % off at 50 Hz, and 2 % from 200 Hz on.
 TEST(NewtonCollision, GoesAlongTheLineOfCentres) {
-  for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+  for (const double hz : long_runs::substep_rates()) {
     for (const double radius : {0.01, 0.05}) {
       for (int phase = 0; phase < 8; ++phase) {
         World world(newton(false, 0), 1 / hz);
@@ -108,7 +108,7 @@ TEST(NewtonCollision, GoesAlongTheLineOfCentres) {
 
 // Newton's cradle. Speeds of all impacts of a substep were sought at once, so all balls moved.
 TEST(NewtonCollision, GoesThroughARowOfBalls) {
-  for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+  for (const double hz : long_runs::substep_rates()) {
     for (const double gap : {0.0, 1e-4, 2e-3}) {
       World world(newton(false, 0), 1 / hz);
       std::vector<Vector3> momenta;
@@ -130,7 +130,7 @@ TEST(NewtonCollision, GoesThroughARowOfBalls) {
 
 // Of 5 m/s and 2 mm: fifty impacts in a substep of 20 ms. It went through the second wall.
 TEST(NewtonCollision, GoesToAndFroBetweenTwoWalls) {
-  for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+  for (const double hz : long_runs::substep_rates()) {
     for (const double room : {0.002, 0.01, 0.05}) {
       World world(newton(false, 0), 1 / hz);
       world.add(ball(0.02, 0.1, {0, 0, 0}, {.friction = 0, .restitution = 1}));
@@ -150,7 +150,7 @@ TEST(NewtonCollision, GoesToAndFroBetweenTwoWalls) {
 TEST(NewtonCollision, OfAGasKeepsItsEnergy) {
   constexpr double radius = 0.05, mass = 0.1;
   constexpr scene::Surface smooth{.friction = 0, .restitution = 1};
-  for (const double hz : long_runs::some_of({100, 200, 500, 1000})) {
+  for (const double hz : long_runs::substep_rates({.least = 100, .most = 1000})) {
     World world(newton(false, 0), 1 / hz);
     std::mt19937 random(1);
     std::normal_distribution<double> speed(0, 0.6);
@@ -183,7 +183,7 @@ TEST(NewtonCollision, OfAGasKeepsItsEnergy) {
 // A ball of 10 g on the floor is nipped by one of 10 kg: its friction is more than tan(12.3 degrees), so it rolls out below the other one. It went
 // by up to 11 m in a substep: the frictions on it, which normal impulses balance, were taken out of its way alone.
 TEST(NewtonCollision, NipsALightBallWithoutThrowingIt) {
-  for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+  for (const double hz : long_runs::substep_rates()) {
     scene::Physics physics = newton(true);
     physics.floor->surface.friction = 1;
     World world(physics, 1 / hz);
@@ -205,10 +205,10 @@ TEST(NewtonCollision, NipsALightBallWithoutThrowingIt) {
 // A body that turns was let fly where its contact seemed to do no more than push out what is pressed in; the other one got the impulse: 0.1 N s.
 TEST(NewtonCollision, GivesOneWhatItTakesFromTheOther) {
   constexpr double height = 0.08;
-  for (const double hz : long_runs::some_of({500, 1000, 2000})) {
+  for (const double hz : long_runs::substep_rates({.least = 500})) {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> share(0, 1);
-    for (int heap = 0; heap < 12; ++heap) {
+    for (unsigned heap = 0; heap < long_runs::runs(12, 4); ++heap) {
       World world(newton(false, 0), 1 / hz);
       std::vector<double> masses;
       std::vector<Vector3> momenta;

@@ -64,7 +64,7 @@ double expected_lean(double lean, double omega, double seconds) {
 // the shorter the substep.
 TEST(NewtonDriven, ARodOnATurningHubSwingsOut) {
   const double omega = 8, lean = 0.3;
-  for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+  for (const double hz : long_runs::substep_rates()) {
     World world(newton(), 1 / hz);
     world.add(rod_on_hub(lean));
     turn_hub(world, omega, 1 / hz);
@@ -81,7 +81,7 @@ TEST(NewtonDriven, ARodOnATurningHubSwingsOut) {
 // Two rods on hinges that are not parallel, on a hub that its motor holds: what the forces of the beginning of a
 // substep add to their turning is taken from them.
 TEST(NewtonDriven, RodsOnAHubThatIsHeldKeepTheirEnergy) {
-  for (const double hz : long_runs::some_of({50, 100, 200, 500, 1000, 2000})) {
+  for (const double hz : long_runs::substep_rates()) {
     World world(newton(), 1 / hz);
     scene::Entity entity = rod_on_hub(1.4);
     entity.links.push_back(link("rod2", rod, 1));
@@ -149,7 +149,7 @@ struct Gimbal {
 TEST(NewtonDriven, AGyroscopeWithAMotorPrecessesAndNutates) {
   const Gimbal gimbal;
   for (const double spin : {100., 600.}) {
-    for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+    for (const double hz : long_runs::substep_rates()) {
       SCOPED_TRACE(::testing::Message() << spin << " rad/s at " << hz);
       World world(newton(), 1 / hz);
       world.add(gimbal.entity());

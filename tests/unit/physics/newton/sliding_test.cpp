@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "../../long_runs.h"
 #include "newton_scene.h"
 
 namespace ziggurat::physics {
@@ -12,11 +13,11 @@ namespace {
 
 using namespace testing;
 
-class NewtonAt : public ::testing::TestWithParam<int> {
+class NewtonAt : public ::testing::TestWithParam<double> {
  protected:
   double h = 1.0 / GetParam();
 };
-INSTANTIATE_TEST_SUITE_P(Hertz, NewtonAt, ::testing::Values(50, 100, 200, 500, 1000, 2000));
+INSTANTIATE_TEST_SUITE_P(Hertz, NewtonAt, ::testing::ValuesIn(long_runs::substep_rates()), long_runs::name_of_rate<::testing::TestParamInfo<double>>);
 
 TEST_P(NewtonAt, ABoxSlidesDownASlopeByTheFormula) {
   const double angle = 0.35, mu = 0.3, seconds = 3;
@@ -283,7 +284,7 @@ TEST_P(NewtonAt, WhatComesAtThreeHundredMetresPerSecondIsStopped) {
 // A push was less than what counted as none beside the impulses on the light balls over their mass: the plate stood still for good.
 TEST(NewtonPush, MovesAHeavyPlateOnLightBalls) {
   const double mass = 1e4, ball = 1e-3, push = 2000, seconds = 0.8;
-  for (const double hz : {50, 100, 200, 500, 1000}) {
+  for (const double hz : long_runs::substep_rates({.most = 1000})) {
     World world(newton(true), 1 / hz);
     for (const double x : {-1, 1}) {
       for (const double y : {-1, 1}) world.add(loose(at(x, y, 0), scene::Sphere{0.02}, ball, 0.7));

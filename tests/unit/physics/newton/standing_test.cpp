@@ -19,7 +19,7 @@ using namespace testing;
 double tower_drift(int count, const scene::Geometry& geometry, double height, double mass) {
   World world(newton(true), 0.01);
   for (int i = 0; i < count; ++i) world.add(loose(at(0, 0, i * height), geometry, mass));
-  run(world, long_runs::a_minute, 0.01);
+  run(world, long_runs::a_minute(), 0.01);
   EXPECT_EQ(world.convergence().not_converged, 0u);
   return (origin(world, count - 1).position - Vector3(0, 0, (count - 1) * height)).norm();
 }
@@ -77,7 +77,7 @@ scene::Entity rail(double x) {
 
 // The two ends of what a log shares with a rail have their own distances: with the same it stayed tilted in the air.
 TEST(NewtonLog, FallsIntoItsGrooveThoughItBeginsTilted) {
-  for (const double hz : {50.0, 200.0, 1000.0}) {
+  for (const double hz : long_runs::some_of({50.0, 200.0, 1000.0})) {
     for (const scene::Geometry& log : {scene::Geometry(scene::Cylinder{0.05, 0.2}), scene::Geometry(scene::Capsule{0.05, 0.2})}) {
       World world(newton(), 1 / hz);
       world.add(rail(-0.06));
@@ -92,7 +92,7 @@ TEST(NewtonLog, FallsIntoItsGrooveThoughItBeginsTilted) {
 }
 
 TEST(NewtonPlank, FallsOntoItsRollersThoughItBeginsTilted) {
-  for (const double hz : {50.0, 200.0, 1000.0}) {
+  for (const double hz : long_runs::some_of({50.0, 200.0, 1000.0})) {
     for (const double angle : {0.02, 0.1, 0.3}) {
       World world(newton(), 1 / hz);
       world.add(rail(-0.3));
@@ -118,7 +118,7 @@ scene::Geometry pebble() {
 
 // Of its corners within reach of the floor, those that are higher displaced those that carry it: it trembled, and never slept.
 TEST(NewtonHull, OfManyCornersComesToRestOnTheFloor) {
-  for (const double hz : {50.0, 100.0, 500.0}) {
+  for (const double hz : long_runs::some_of({50.0, 100.0, 500.0})) {
     for (const double angle : {0.1, 0.8}) {
       World world(newton(true), 1 / hz);
       world.add(loose(tilted(0, 0, 0.08, angle), pebble(), 1, 1));
@@ -169,7 +169,7 @@ TEST(NewtonStack, ThatSleepsMovesWithNothingAndWakesWhenItsFloorIsTaken) {
 TEST(NewtonPlate, LoadsTwentyFiveCubesLinearly) {
   constexpr double pitch = 0.05, mass = 10, cube_mass = 0.1;
   const double away_x = 0.02, away_y = 0.01;  // of the cubes' middle
-  for (const double hz : {50, 100, 500, 2000}) {
+  for (const double hz : long_runs::some_of({50, 100, 500, 2000})) {
     World world(newton(true), 1 / hz);
     world.add(loose(at(0, 0, 0.02), scene::Box{{0.4, 0.4, 0.02}}, mass, 0.5));
     std::vector<Eigen::Vector2d> places;
@@ -222,7 +222,7 @@ TEST(NewtonCards, AHouseOfThreeStoreysStands) {
   }
   std::vector<Vector3> start;
   for (int i = 0; i < cards; ++i) start.push_back(origin(world, i).position);
-  run(world, long_runs::a_minute, 0.01);
+  run(world, long_runs::a_minute(), 0.01);
   for (int i = 0; i < cards; ++i) {
     EXPECT_LT((origin(world, i).position - start[i]).norm(), 2e-3) << "card " << i;
   }
@@ -230,7 +230,7 @@ TEST(NewtonCards, AHouseOfThreeStoreysStands) {
 
 // All of the weight is on a rim of 5 cm, and a little beside its middle.
 TEST(NewtonStack, ALoadOfTonsStandsOnALightCylinder) {
-  for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+  for (const double hz : long_runs::substep_rates()) {
     World world(newton(true), 1 / hz);
     world.add(loose(at(0, 0, 0), scene::Cylinder{0.05, 0.1}, 0.1));
     world.add(loose(at(0.004, 0.003, 0.1), scene::Box{{0.1, 0.1, 0.1}}, 1000));
@@ -246,7 +246,7 @@ TEST(NewtonCylinder, TipsOverEachPointOfItsRimAlike) {
   const double radius = 0.05, height = 0.2, mass = 1;
   const double threshold = mass * earth * radius / (height / 2);
   for (const double heading : {0.0, 0.3, M_PI / 4, 1.2}) {
-    for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+    for (const double hz : long_runs::substep_rates()) {
       for (const double share : {0.98, 1.02}) {
         scene::Physics physics = newton(true);
         physics.floor->surface.friction = 1;
@@ -292,7 +292,7 @@ double slip_of_cards(double lean, double friction, double hz) {
 TEST(NewtonCards, LeanOnEachOtherWithTheFrictionThatTheyNeed) {
   for (const double lean : {0.2, 0.4, 0.6}) {
     const double needed = std::tan(lean) / 2 - 0.001 / 0.16;
-    for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+    for (const double hz : long_runs::substep_rates()) {
       EXPECT_LT(slip_of_cards(lean, 1.01 * needed, hz), 1e-6) << lean << ' ' << hz;
       EXPECT_GT(slip_of_cards(lean, 0.99 * needed, hz), 1e-3) << lean << ' ' << hz;
     }

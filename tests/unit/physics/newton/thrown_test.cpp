@@ -4,14 +4,13 @@
 
 #include <cmath>
 
+#include "../../long_runs.h"
 #include "newton_scene.h"
 
 namespace ziggurat::physics {
 namespace {
 
 using namespace testing;
-
-constexpr double rates[] = {50, 100, 200, 500, 1000, 2000};
 
 scene::Entity wall(double near, double thickness) {
   return standing(at(near + thickness / 2, 0, -0.5), scene::Box{{thickness, 1, 1}}, 1);
@@ -26,7 +25,7 @@ scene::Entity slide(double mass) {
 
 // It was through the wall at 100 Hz, because its reach was that of its speed at the beginning, 0.
 TEST(NewtonThrown, AMotorStopsAtAThinWall) {
-  for (const double hz : rates) {
+  for (const double hz : long_runs::substep_rates({.first = 100})) {
     for (const double gap : {0.005, 0.02, 0.035}) {
       World world(newton(false), 1 / hz);
       world.add(slide(0.05));
@@ -44,7 +43,7 @@ TEST(NewtonThrown, AMotorStopsAtAThinWall) {
 
 // An arm went through a post, because what it may touch was looked for along a straight way.
 TEST(NewtonThrown, AnArmStopsAtAPost) {
-  for (const double hz : rates) {
+  for (const double hz : long_runs::substep_rates()) {
     for (const double speed : {10, 60, 150}) {
       for (const double angle : {0.6, 1.7, 2.9}) {
         World world(newton(false, 0), 1 / hz);
@@ -67,7 +66,7 @@ TEST(NewtonThrown, AnArmStopsAtAPost) {
 
 // Only the bound that was nearer at the substep's beginning held: the head passed the other by up to metres.
 TEST(NewtonThrown, AMotorStopsAtItsLimit) {
-  for (const double hz : rates) {
+  for (const double hz : long_runs::substep_rates()) {
     for (const bool floats : {false, true}) {
       for (const double force : {10, 100}) {
         World world(newton(false, 0), 1 / hz);
@@ -89,7 +88,7 @@ TEST(NewtonThrown, AMotorStopsAtItsLimit) {
 
 // Two with magnets take the substep in parts, in which nothing was foreseen: the head passed the block and the wall.
 TEST(NewtonThrown, AMotorWithAMagnetStopsAtABlockWithAMagnet) {
-  for (const double hz : rates) {
+  for (const double hz : long_runs::substep_rates()) {
     for (const double mass : {0.002, 0.02}) {
       scene::Physics physics = newton(false, 0);
       physics.magnetism = scene::Magnetism{};
@@ -116,7 +115,7 @@ TEST(NewtonThrown, AMotorWithAMagnetStopsAtABlockWithAMagnet) {
 
 // Fingers of 20 g met within the block.
 TEST(NewtonThrown, AGripperClosesOnABlock) {
-  for (const double hz : rates) {
+  for (const double hz : long_runs::substep_rates()) {
     for (const double force : {2, 5, 10, 20}) {
       World world(newton(true), 1 / hz);
       scene::Entity gripper = prototype("gripper", at(0, 0, 0.2), false, {link("palm", scene::Box{{0.01, 0.01, 0.01}}, 1)});
@@ -140,7 +139,7 @@ TEST(NewtonThrown, AGripperClosesOnABlock) {
 }
 
 TEST(NewtonThrown, WhatIsStruckStopsAtAWall) {
-  for (const double hz : rates) {
+  for (const double hz : long_runs::substep_rates()) {
     for (const double speed : {3, 10}) {
       World world(newton(false, 0), 1 / hz);
       world.add(loose(at(-0.5, 0, 0), scene::Box{{0.1, 0.1, 0.1}}, 1, 0));
@@ -161,7 +160,7 @@ TEST(NewtonThrown, WhatIsStruckStopsAtAWall) {
 // A foot rebounds from the floor, the body above it still falls, and the limit of the slide between them jerks the foot down: it was up to
 // 70 mm below the floor at the substep's end.
 TEST(NewtonThrown, WhatALimitJerksDownStopsAtTheFloor) {
-  for (const double hz : rates) {
+  for (const double hz : long_runs::substep_rates()) {
     for (const double height : {0.3, 0.4, 0.5}) {
       World world(newton(true), 1 / hz);
       scene::Entity hopper = prototype("hopper", at(0, 0, height), true,
@@ -180,7 +179,7 @@ TEST(NewtonThrown, WhatALimitJerksDownStopsAtTheFloor) {
 
 // A kicker that is faster at once than it takes to the ball: the ball left with v + e gap / h, 26 % less.
 TEST(NewtonThrown, ABallReboundsFromAKickerThatIsSetInMotion) {
-  for (const double hz : rates) {
+  for (const double hz : long_runs::substep_rates()) {
     World world(newton(false, 0), 1 / hz);
     scene::Entity kicker = slide(0.2);
     kicker.links[1].surface.restitution = 0.5;
@@ -194,7 +193,7 @@ TEST(NewtonThrown, ABallReboundsFromAKickerThatIsSetInMotion) {
 }
 
 TEST(NewtonThrown, APushStopsAtAWall) {
-  for (const double hz : rates) {
+  for (const double hz : long_runs::substep_rates()) {
     World world(newton(false, 0), 1 / hz);
     world.add(loose(at(0, 0, 0), scene::Box{{0.04, 0.04, 0.04}}, 0.1, 0));
     world.add(wall(0.05, 0.01));
@@ -209,7 +208,7 @@ TEST(NewtonThrown, APushStopsAtAWall) {
 
 // It rose by g h^2 / 2 in each substep, and through the ceiling: its speed at the end of each was none.
 TEST(NewtonThrown, WhatAPushNearlyCarriesStaysBelowACeiling) {
-  for (const double hz : rates) {
+  for (const double hz : long_runs::substep_rates()) {
     for (const double share : {0.9, 0.99, 0.999, 1.0, 1.001, 1.5}) {
       World world(newton(false), 1 / hz);
       world.add(standing(at(0, 0, 0), scene::Box{{0.4, 0.4, 0.1}}));

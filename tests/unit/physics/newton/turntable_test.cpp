@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "../../long_runs.h"
 #include "newton_scene.h"
 
 namespace ziggurat::physics {
@@ -17,7 +18,7 @@ using namespace testing;
 // Velocities are those at the substep's beginning: along them it would go outwards by a share of (w h)^2 / 2 in each.
 TEST(NewtonTurntable, CarriesABoxInACircle) {
   const double radius = 0.2, speed = 2, seconds = 10;
-  for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+  for (const double hz : long_runs::substep_rates()) {
     World world(newton(), 1 / hz);
     scene::Entity table = prototype("table", at(0, 0, 0), false,
                                     {link("base", scene::Box{{0.1, 0.1, 0.1}}, 1), link("disc", scene::Cylinder{0.4, 0.02}, 5)});
@@ -36,7 +37,7 @@ TEST(NewtonTurntable, CarriesABoxInACircle) {
 // its point of contact is not that of its material.
 TEST(NewtonTurntable, LetsABallRollInACircle) {
   const double radius = 0.05, mass = 0.2, turning = 10, from = 0.1;
-  for (const double hz : {50, 100, 200, 500, 1000, 2000}) {
+  for (const double hz : long_runs::substep_rates()) {
     for (const double speed : {0.0, 0.3}) {
       World world(newton(), 1 / hz);
       scene::Entity table = prototype("table", at(0, 0, 0), false,
@@ -75,7 +76,7 @@ void fix(scene::Entity& entity, std::size_t parent, std::size_t child, const Pos
 // The wall went round and the ball straight on, so that it stood in the wall by 1.27 r (w h)^2 / 2 for good, and was through it from w h = 0.4 on.
 TEST(NewtonTurntable, CarriesABallAlongItsWall) {
   const double turning = 10, radius = 0.05, from = 0.45, clearance = 1e-3;
-  for (const double hz : {25, 50, 100, 200, 500, 1000}) {
+  for (const double hz : long_runs::some_of({25, 50, 100, 200, 500, 1000})) {
     World world(newton(), 1 / hz);
     scene::Entity table = prototype("table", at(0, 0, 0), false,
                                     {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1), link("disc", scene::Cylinder{0.8, 0.05}, 5),
@@ -102,7 +103,7 @@ TEST(NewtonTurntable, CarriesABallAlongItsWall) {
 // A pendulum's bob in the slot of a slide. The slide was led along chords, and took 25 to 0.6 % of the energy at 50 to 2 000 Hz.
 TEST(NewtonGuide, KeepsTheEnergyOfWhatASlotLeads) {
   const double length = 0.1, radius = 0.01, thickness = 0.02;
-  for (const double hz : {50, 100, 200, 500, 1000}) {
+  for (const double hz : long_runs::substep_rates({.most = 1000})) {
     World world(newton(), 1 / hz);
     scene::Entity crank = prototype("crank", at(0, 0.1, 1), false, {link("base", scene::Box{{0.01, 0.01, 0.01}}, 1), link("bob", scene::Sphere{radius}, 0.3)});
     crank.joints.push_back(joint(scene::JointType::revolute, Vector3::UnitY(), at(0, -0.1, 0), at(-length, 0, radius)));
