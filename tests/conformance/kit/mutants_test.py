@@ -17,7 +17,9 @@ import client_mutants
 import server_mutants
 
 HERE = Path(__file__).resolve().parent
-PATIENCE = 30.0  # [s] for the right programs: a busy machine may take long
+PATIENCE = 30.0  # [s] for the right programs: more is a hang
+SILENCE = 10.0  # [s] for mutants, of which many say nothing
+START_PATIENCE = 120.0  # [s]
 SIDE_BY_SIDE = 6  # mutants; most of the time they wait
 
 
@@ -25,18 +27,17 @@ def _client(mutant) -> list:
     """Outcomes of the mutant's case."""
     command = [sys.executable, "-B", str(HERE / "tiny_client.py"), mutant.bug, mutant.form]
     cases = [case for case in client_mode.CASES if case.id == mutant.case]
-    options = Options(mutant.patience, mutant.form)
-    return client_mode.play(cases, command, options, lambda outcome: None)
+    return client_mode.play(cases, command, Options(SILENCE, START_PATIENCE, mutant.form), lambda outcome: None)
 
 
 def _right_client(form: str, cases: list) -> list:
     command = [sys.executable, "-B", str(HERE / "tiny_client.py"), "", form]
-    return client_mode.play(cases, command, Options(PATIENCE, form), lambda outcome: None)
+    return client_mode.play(cases, command, Options(PATIENCE, START_PATIENCE, form), lambda outcome: None)
 
 
 def _server(mutant) -> list:
     cases = list(server_mode.chosen(SERVER_CASES, [mutant.case], mutant.form))
-    return _play_server(cases, mutant.program, mutant.bug, mutant.patience)
+    return _play_server(cases, mutant.program, mutant.bug, SILENCE)
 
 
 def _right_server(program: str, form: str, ids: list) -> list:
@@ -48,7 +49,7 @@ def _play_server(cases: list, program: str, bug: str, patience: float) -> list:
     command = shlex.join([sys.executable, "-B", str(HERE / program), "{endpoint}", "{scene}", bug])
     variants = {"curve": f"{command} {{curve_secret}} {{curve_clients}}", "lease": f"{command} --lease 2",
                 "director": f"{command} --allow-director"}
-    return server_mode.play(cases, server_mode.Servers(command, variants, patience), patience,
+    return server_mode.play(cases, server_mode.Servers(command, variants, START_PATIENCE), patience,
                             lambda outcome: None)
 
 
