@@ -38,7 +38,7 @@ class RawPeer:
             return
         for byte in data:
             self.socket.sendall(bytes([byte]))
-            time.sleep(self._drip)
+            time.sleep(self._drip)  # elapsed time is the subject
 
     def send_message(self, message):
         self._send_bytes(_frame(0, message))
