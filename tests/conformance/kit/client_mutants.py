@@ -180,3 +180,9 @@ MUTANTS = [
     _should("sees-ticks-twice", "L9", "L9.same-answer"),
     _should("ignores-keys", "T10", "K1.session"),
 ]
+
+# They say nothing where something is expected: to wait for long shows no more.
+SILENT = {
+    "skips-zero", "skips-a-tick", "keeps-quiet", "stops-after-miss", "only-consecutive", "no-watchdog", "no-resume",
+    "ignores-end",
+}

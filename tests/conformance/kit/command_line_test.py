@@ -243,7 +243,7 @@ class Reports(unittest.TestCase):
     def setUp(self):
         self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
-    def play(self, *arguments, patience="1"):
+    def play(self, *arguments, patience="10"):
         code, out, _ = run("server", "--patience", patience, "--form", "binary", *arguments, "--json",
                            str(self.folder / "r.json"), "--junit", str(self.folder / "r.xml"), "--html",
                            str(self.folder / "r.html"), "--", *self.server)
@@ -251,8 +251,7 @@ class Reports(unittest.TestCase):
 
     def test_of_a_server_that_is_right(self):
         self.server = TINY
-        code, out, report = self.play("--only", "S9.*", "--only", "L7.*", "--only", "K1.listed",
-                                      patience="10")
+        code, out, report = self.play("--only", "S9.*", "--only", "L7.*", "--only", "K1.listed")
         self.assertEqual(0, code, out)
         self.assertEqual({"Core": None, "Reconnect": None, "HIL": None, "Secure": None},
                          report["badges"], "some cases are no badge")

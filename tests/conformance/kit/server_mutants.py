@@ -285,3 +285,14 @@ MUTANTS = [
     _bent("listens-anywhere", "T8.any-address"),
     _bent("supervisors-need-keys", "K4.any-role"),
 ]
+
+# They say nothing where something is expected: to wait for long shows no more.
+SILENT = {
+    "late-waits", "silent-on-garbage", "duplicate-silent", "plain-text", "garbage-is-silent", "too-large-is-silent",
+    "deaf-to-hello", "state-is-silent", "refused-for-ever", "late-gets-nothing", "displaced-not-told",
+    "stale-is-silent", "duplicate-is-silent", "packets-cut", "waits-always", "paused-not-told", "too-many-is-silent",
+    "any-reason", "leave-beyond-dropped", "leave-ignored", "end-not-told", "hello-after-end-is-silent",
+    "resumed-without-observation", "resume-not-done", "one-step-more", "step-of-none", "shutdown-not-done",
+    "removed-not-told", "reset-not-done", "paused-told-to-one", "lost-are-taken", "dead-is-waited-for",
+    "flood-is-served", "dropped-not-told", "spawned-not-told", "leaves-robots", "commands-direct",
+}

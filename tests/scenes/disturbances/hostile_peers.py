@@ -13,7 +13,7 @@ from zmtp import GREETING, RawPeer
 
 def _open(endpoint):
     host, port = endpoint.removeprefix("tcp://").rsplit(":", 1)
-    connection = socket.create_connection((host, int(port)), timeout=20)
+    connection = socket.create_connection((host, int(port)), timeout=60)
     connection.setblocking(False)
     return connection
 

@@ -98,7 +98,7 @@ def half_a_greeting(endpoint, number):
 
 def connect(endpoint):
     host, port = endpoint.removeprefix("tcp://").rsplit(":", 1)
-    return socket.create_connection((host, int(port)), timeout=20)
+    return socket.create_connection((host, int(port)), timeout=60)
 
 
 def status_request(number):
@@ -163,7 +163,7 @@ class Leaks(SceneTest):
         half_open = [connect(endpoint) for _ in range(2 * soft)]
         polite(endpoint, 1)
         for connection in half_open:  # each has sent nothing
-            connection.settimeout(20)
+            connection.settimeout(60)
             while connection.recv(100):  # the server's greeting, then the end
                 pass
             connection.close()

@@ -17,7 +17,7 @@ class RawPeer:
 
     def __init__(self, endpoint, drip=0.0, routing_id=b""):
         host, port = endpoint.removeprefix("tcp://").rsplit(":", 1)
-        self.socket = socket.create_connection((host, int(port)), timeout=20)
+        self.socket = socket.create_connection((host, int(port)), timeout=60)
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._drip = drip
         self._send_bytes(GREETING)
