@@ -80,6 +80,9 @@ def _parser(version: str) -> argparse.ArgumentParser:
                           help="ids of cases that must fail, one per line; # begins a comment")
         mode.add_argument("--patience", type=float, default=3.0, metavar="SECONDS",
                           help="how long to wait for an expected message (default: 3)")
+        mode.add_argument("--start-patience", type=float, default=60.0, metavar="SECONDS",
+                          help="how long a program may take until it connects, or listens; --patience counts from then "
+                               "(default: 60)")
         mode.add_argument("--chaos", type=int, metavar="SEED",
                           help="legal but unpleasant behaviour instead of cases, drawn from this seed")
         mode.add_argument("--ticks", type=int, default=500, help="length of chaos (default: 500)")
@@ -157,7 +160,7 @@ def _server(options, terminal):
         servers = server_mode.RunningServer(options.target[0])
     else:
         servers = server_mode.Servers(shlex.join(options.target), _variants(options.variant),
-                                      options.patience)
+                                      options.start_patience)
     if options.chaos is not None:
         forms = (options.form,) if options.form else wire.FORMS
         return chaos.play_server(servers, options.chaos, options.ticks, options.patience, forms,
@@ -177,13 +180,13 @@ def _client_options(options) -> Options:
     if options.played is None:
         if options.controller:
             raise _Mistake("--controller names one of a scene: give --scene too")
-        return Options(options.patience, options.form)
+        return Options(options.patience, options.start_patience, options.form)
     command = options.server
     beside = Path(sys.argv[0]).resolve().parent / "ziggurat"
     if command == _SERVER and beside.is_file():
         command = shlex.quote(str(beside)) + command.removeprefix("ziggurat")
-    scene = robots_of(options.played, command)
-    return Options(options.patience, options.form, scene, scene.controller(options.controller))
+    scene = robots_of(options.played, command, options.start_patience)
+    return Options(options.patience, options.start_patience, options.form, scene, scene.controller(options.controller))
 
 
 def _print_list(options) -> None:

@@ -2,6 +2,7 @@
 
 import os
 import secrets
+import select
 import socket
 import time
 from dataclasses import dataclass
@@ -37,9 +38,8 @@ class Arrival:
 class ServerSocket:
     """A ROUTER behind a relay that listens at a port of its own. It may be closed and opened again there."""
 
-    def __init__(self, secret_key: Optional[bytes] = None, is_open: bool = True,
-                 listens: bool = True):
-        """is_open: every key may connect; otherwise none. listens: at once, or from open() on."""
+    def __init__(self, secret_key: Optional[bytes] = None, is_open: bool = True):
+        """is_open: every key may connect; otherwise none."""
         self._context = zmq.Context()
         self._secret_key = secret_key
         self._authenticator = None
@@ -53,8 +53,7 @@ class ServerSocket:
         self._socket: Optional[zmq.Socket] = None
         self._monitor: Optional[zmq.Socket] = None
         self._connected: set[int] = set()  # descriptors
-        if listens:
-            self.open()
+        self.open()
 
     def open(self) -> None:
         """Raises Failed for what a client sent before it was closed."""
@@ -88,12 +87,17 @@ class ServerSocket:
 
     def close(self) -> None:
         """Ends all connections."""
-        if self._socket is not None and not self._socket.closed:
+        if self._socket is not None:
             self._socket.disable_monitor()
             self._monitor.close(linger=0)
             self._socket.close()
+            self._socket = None
         if self._relay is not None:
             self._relay.close()
+
+    def is_reached(self) -> bool:
+        """A client has connected since it was opened."""
+        return self._relay.has_client()
 
     def connections(self) -> int:
         """How many there are now."""
@@ -163,10 +167,14 @@ class PlainGreeter:
         self._listener = socket.create_server(("127.0.0.1", 0))
         self.endpoint = f"tcp://127.0.0.1:{self._listener.getsockname()[1]}"
 
-    def mechanisms(self, first_within: float, seconds: float) -> list:
-        """Of the first connection and every later one within `seconds` of it: "CURVE", "NULL", …"""
+    def is_reached(self) -> bool:
+        """A client has connected, or waits for it."""
+        return bool(select.select([self._listener], [], [], 0)[0])
+
+    def mechanisms(self, seconds: float) -> list:
+        """Of every connection within so many seconds: "CURVE", "NULL", …"""
         found = []
-        deadline = time.monotonic() + first_within
+        deadline = time.monotonic() + seconds
         while (left := deadline - time.monotonic()) > 0:
             self._listener.settimeout(left)
             try:
@@ -176,8 +184,6 @@ class PlainGreeter:
             with connection:
                 connection.settimeout(1.0)
                 found.append(_mechanism_of(connection))
-            if len(found) == 1:
-                deadline = time.monotonic() + seconds
         return found
 
     def destroy(self) -> None:

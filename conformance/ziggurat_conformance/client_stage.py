@@ -11,7 +11,7 @@ from .client_messages import refusal
 from .client_program import ClientProgram
 from .client_robots import readings, robot
 from .client_steps import (CheckClient, Cut, Ends, HearCorrection, HearFrom, HearLate, HearResume, Listen,
-                           Mechanisms, Quiet, Refuse, Remove, SinceMinor, Tell, TellBytes, TellObservation, TellWelcome, Wait)
+                           Mechanisms, Quiet, Refuse, Remove, Restart, SinceMinor, Tell, TellBytes, TellObservation, TellWelcome, Wait)
 from .client_variants import TOKEN, environment_for, keys_for, socket_for
 from .keys import RESTARTED
 from .peer import Transcript
@@ -22,7 +22,7 @@ from .rules.session import Session, State
 from .scene_robots import SceneRobots
 from .wire import protocol
 
-_START = 10.0  # [s] until a program's first message
+_FIRST = 10.0  # [s] from a program's connection to its first message
 _RULES = {"hello": "H1", "command": "S3", "leave": "L5"}  # that ask for these messages
 _LATE = 0.3  # [s] for a Command that need not come
 _MOST_AT_ONCE, _MOST_A_SECOND = 2000, 1000  # M7
@@ -32,7 +32,8 @@ _MOST_AT_ONCE, _MOST_A_SECOND = 2000, 1000  # M7
 class Options:
     """How all cases of a run are played."""
 
-    patience: float  # [s]
+    patience: float  # [s], once the program has connected
+    start_patience: float  # [s] until it connects
     form: Optional[str] = None  # the client must use it; None: it chooses
     scene: Optional[SceneRobots] = None  # None: the kit's robots
     controller: str = "steady"  # of these robots, in the client's environment
@@ -46,6 +47,7 @@ class ClientStage:
         self.session = Session()
         self.form: Optional[str] = None  # of the session
         self.routing_id: Optional[bytes] = None
+        self._has_spoken = False  # the program
         self.key = ""  # of the client
         self.keys = keys_for(case.variant)
         self._played: list = []  # robots of the scene that the client has
@@ -65,6 +67,8 @@ class ClientStage:
             raise
 
     def __enter__(self) -> "ClientStage":
+        """The program has connected, or ended: no limit of a case contains its start."""
+        self.program.await_start(self._socket.is_reached, self.options.start_patience)
         return self
 
     def __exit__(self, *_: Any) -> None:
@@ -124,8 +128,7 @@ class ClientStage:
         self._send(data)
 
     def hear(self, step: HearFrom) -> None:
-        is_first = self.routing_id is None  # the program may take a while to start
-        message = self._receive(max(self.patience, _START) if is_first else self.patience)
+        message = self._receive(self._patience())
         while step.kind == "command" and message is not None and message.leave.robots:  # L2: of some robots
             message = self._receive(self.patience)
         late = time.monotonic() - self._observed_at - step.within
@@ -185,18 +188,24 @@ class ClientStage:
         self._lose()
         self._socket.open()
 
+    def restart(self, _: Restart) -> None:
+        self.transcript.add("server", "───", "closes; the program is started anew")
+        self._socket.close()
+        self.program.restart()
+
     def listen(self, _: Listen) -> None:
         self.transcript.add("server", "───", "listens from now on")
         self._socket.open()
 
     def hear_resume(self, step: HearResume) -> None:
-        deadline = time.monotonic() + max(step.within, self.patience)
+        limit = max(step.within, self._patience())
+        deadline = time.monotonic() + limit
         if self.session.state is not State.NEW:
             self._lose(is_connected=True)
         while True:
             message = self._receive(deadline - time.monotonic(), is_new=True)
             if message is None or time.monotonic() >= deadline and not message.HasField("hello"):
-                _judge(f"it did not resume its session within {max(step.within, self.patience):g} s (M3, L4)"
+                _judge(f"it did not resume its session within {limit:g} s (M3, L4)"
                        f"{self._gone()}", True)
                 return
             if message.HasField("hello"):
@@ -235,7 +244,7 @@ class ClientStage:
         _judge(f"{step.title}: {complaint}" if complaint else "", step.should)
 
     def mechanisms(self, step: Mechanisms) -> None:
-        found = self._socket.mechanisms(_START, step.seconds)
+        found = self._socket.mechanisms(step.seconds)
         self.transcript.add("client", "──▶", f"greetings with {', '.join(found[:20]) or 'nothing'}")
         if "NULL" in found and "CURVE" not in found:
             raise Unimplemented("it connects without the keys that it was given (T10)")
@@ -248,6 +257,10 @@ class ClientStage:
     def connections(self) -> int:
         """For checks."""
         return self._socket.connections()
+
+    def _patience(self) -> float:
+        """[s] for the next message."""
+        return self.patience if self._has_spoken else max(self.patience, _FIRST)
 
     # ---- messages ----------------------------------------------------------------------------------
 
@@ -311,6 +324,7 @@ class ClientStage:
         limit = self.session.welcome.max_message_bytes if self.session.welcome is not None else 64 << 10
         if size > limit:
             raise Failed(f"the client sent {size} bytes; at most {limit} are allowed (T4)")
+        self._has_spoken = True
         self.routing_id, self.key = arrival.routing_id, arrival.key
         data = arrival.frames[0].bytes
         message = self._decoded(data)
@@ -396,6 +410,7 @@ _players: dict = {
     HearResume: ClientStage.hear_resume,
     SinceMinor: ClientStage.since_minor,
     Cut: ClientStage.cut,
+    Restart: ClientStage.restart,
     Listen: ClientStage.listen,
     Quiet: ClientStage.quiet,
     Ends: ClientStage.ends,

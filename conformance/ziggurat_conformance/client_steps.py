@@ -88,6 +88,11 @@ class Cut:
 
 
 @dataclass(frozen=True)
+class Restart:
+    """The program is started anew, and no server listens. It gets the time that it took to connect before, and as long again."""
+
+
+@dataclass(frozen=True)
 class Listen:
     """The server listens from now on."""
 

@@ -3,10 +3,10 @@
 from typing import Optional, Union
 
 from .client_socket import PlainGreeter, ServerSocket
-from .keys import LATE_SERVER, MISLED, PLAIN_SERVER, RESTARTED, SPACED_FILE, UNLISTED, VARIANT, WRONG_FILE, Keys
+from .keys import MISLED, PLAIN_SERVER, RESTARTED, SPACED_FILE, UNLISTED, VARIANT, WRONG_FILE, Keys
 
 TOKEN = b"token of the kit"  # of the session
-_PROTECTED = (VARIANT, MISLED, UNLISTED, SPACED_FILE, WRONG_FILE, LATE_SERVER)
+_PROTECTED = (VARIANT, MISLED, UNLISTED, SPACED_FILE, WRONG_FILE)
 
 
 def keys_for(variant: str) -> Optional[Keys]:
@@ -17,7 +17,7 @@ def socket_for(variant: str, keys: Optional[Keys]) -> Union[PlainGreeter, Server
     if variant == PLAIN_SERVER:
         return PlainGreeter()
     if keys is not None:
-        return ServerSocket(keys.server[1], is_open=variant != UNLISTED, listens=variant != LATE_SERVER)
+        return ServerSocket(keys.server[1], is_open=variant != UNLISTED)
     return ServerSocket()
 
 

@@ -9,10 +9,9 @@ from typing import Optional
 import zmq
 
 VARIANT = "curve"
-# Variants of cases for clients: what the file with their key is like, and when a server listens.
+# Variants of cases for clients: what the file with their key is like.
 SPACED_FILE = "spaced-file"
 WRONG_FILE = "wrong-file"
-LATE_SERVER = "late-server"
 RESTARTED = "restarted"  # the program finds the token of its session in its environment
 PLAIN_SERVER = "plain-server"  # of cases for clients: a server without keys is where one with keys should be
 

@@ -13,7 +13,7 @@ _KINDS = {  # what a file begins with → what it is worth more than a report as
     b"<argos-configuration": "a scene",
 }
 _SPACE = b" \t\r\n"
-_READER_STARTS = 1.0  # [s] that a reader which was started beside this program may take
+_READER_STARTS = 10.0  # [s] that a reader which was started beside this program may take
 _READER_TAKES = 0.3  # [s] for the last words
 
 

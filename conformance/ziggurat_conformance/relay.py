@@ -172,6 +172,10 @@ class ClientRelay(_Relay):
         self._connections = 0  # in all
         super().__init__(socket.create_server(("127.0.0.1", port), backlog=100), CLIENT)
 
+    def has_client(self) -> bool:
+        """One has connected, if only for a moment."""
+        return self._connections > 0
+
     def _has_place(self) -> bool:
         return len(self._pipes) < _MOST_SIDE_BY_SIDE
 

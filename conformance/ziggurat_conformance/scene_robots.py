@@ -50,11 +50,11 @@ class SceneRobots:
         return chosen
 
 
-def robots_of(path: Path, command: str) -> SceneRobots:
+def robots_of(path: Path, command: str, start_patience: float) -> SceneRobots:
     """Starts a server with the scene, as `command` says, and asks it. Raises RuntimeError."""
     if not path.is_file():
         raise RuntimeError(f"--scene {path}: there is no such file")
-    server = ServerProcess(command, path.resolve(), 10.0)
+    server = ServerProcess(command, path.resolve(), start_patience)
     peer = Peer("kit", server.endpoint, wire.BINARY, Transcript())
     try:
         peer.send(wire.from_dict(protocol.ClientMessage, {"hello": hello("*")}))

@@ -16,15 +16,17 @@ from .wire import protocol
 
 _MOST_VAIN_STARTS = 3
 _TRIES_WITH_DEADLINES = 3
+_WORLD = 10.0  # [s] until a server says that its world loads, or has loaded; on a busy machine too
 _MENDING = 3.0  # [s] that making a server usable again may take
 
 
 class Servers:
     """Gives each case the server that it needs: one for all that leave it usable, or its own."""
 
-    def __init__(self, command: str, variants: dict, patience: float):
+    def __init__(self, command: str, variants: dict, start_patience: float):
+        """start_patience: [s] until a server listens."""
         self._commands = {"": command, **variants}
-        self._patience = patience
+        self._start_patience = start_patience
         self._shared: dict[tuple, ServerProcess] = {}  # by variant and scene
         self.own: Optional[ServerProcess] = None
         self.keys = Keys()
@@ -47,7 +49,7 @@ class Servers:
     def _start(self, command: str, scene: str, files: dict) -> ServerProcess:
         """Raises RuntimeError if it never did start, or does not any more; Failed if it may again."""
         try:
-            server = ServerProcess(command, path_of(scene), self._patience, files)
+            server = ServerProcess(command, path_of(scene), self._start_patience, files)
         except RuntimeError as error:
             self._vain_starts += 1
             if self._vain_starts < _MOST_VAIN_STARTS and command in self._commands_started:
@@ -82,9 +84,7 @@ def _await_world(endpoint: str, keys: Optional[tuple]) -> None:
     probe = Peer("probe", endpoint, "binary", Transcript(), keys)
     try:
         probe.send(wire.from_dict(protocol.ClientMessage, {"hello": {"version": {"major": 0}}}))
-        message = probe.hear(1.0)
-        if message is not None and wire.kind_of(message) == "loading":
-            probe.hear_behind("loading", 10.0)
+        probe.hear_behind("loading", _WORLD)
     finally:
         probe.close()
 

@@ -10,14 +10,13 @@ from typing import Optional
 from .process_group import ProcessGroup
 from .relay import connect
 
-_START = 30.0  # [s] until a server listens, on a busy machine too
-
 
 class ServerProcess:
     """Starts the command and waits until something listens at its endpoint."""
 
-    def __init__(self, command: str, scene: Path, patience: float, extra: Optional[dict] = None):
+    def __init__(self, command: str, scene: Path, start_patience: float, extra: Optional[dict] = None):
         self.endpoint = f"tcp://127.0.0.1:{free_port()}"
+        self._start_patience = start_patience  # [s] until it listens
         self._command, self._values = command, {"scene": str(scene), **(extra or {})}
         self._arguments = self._arguments_for(self.endpoint)
         try:
@@ -26,7 +25,7 @@ class ServerProcess:
             raise RuntimeError(f"{self._arguments[0]}: the server can't be started: "
                                f"{error.strerror}") from None
         try:
-            self._wait_until_it_listens(patience)
+            self._wait_until_it_listens()
         except BaseException:
             self._group.end()
             raise
@@ -35,15 +34,16 @@ class ServerProcess:
         values = {**self._values, "endpoint": endpoint}
         return [_filled(word, values) for word in shlex.split(self._command)]
 
-    def refuses_to_listen(self, endpoint: str, patience: float) -> str:
+    def refuses_to_listen(self, endpoint: str) -> str:
         """What is wrong with another server of this command that is to listen there and must not: it has to
         end by itself, with another exit code than 0. Empty if nothing is."""
         other = ProcessGroup(self._arguments_for(endpoint))
         try:
-            code = other.wait(max(patience, 10.0))
+            listens = _awaits_listener(other, endpoint, self._start_patience)
+            code = other.exit_code()
         finally:
             other.end()
-        return "it runs" if code is None else "it ended with exit code 0" if code == 0 else ""
+        return "it listens" if listens else "it runs" if code is None else "it ended with exit code 0" if code == 0 else ""
 
     def interrupt(self) -> None:
         self._group.interrupt()
@@ -69,25 +69,28 @@ class ServerProcess:
         self._group.printed()
         return self._group.output.last_words()
 
-    def _wait_until_it_listens(self, patience: float) -> None:
-        host, port = self.endpoint.removeprefix("tcp://").rsplit(":", 1)
-        limit = max(patience, _START)
-        deadline = time.monotonic() + limit
-        while time.monotonic() < deadline:
-            if not self.runs():
-                words = self.last_words()
-                raise RuntimeError(
-                    f"the server ended at once, with exit code {self._group.exit_code()}; it "
-                    + (f"said:\n{words}" if words else "said nothing"))
-            try:
-                with socket.create_connection((host, int(port)), 0.2):
-                    return
-            except OSError:
-                time.sleep(0.01)
+    def _wait_until_it_listens(self) -> None:
+        if _awaits_listener(self._group, self.endpoint, self._start_patience):
+            return
         words = self.last_words()
+        said = f"said:\n{words}" if words else "said nothing"
+        if not self.runs():
+            raise RuntimeError(f"the server ended at once, with exit code {self._group.exit_code()}; it {said}")
         raise RuntimeError(f"nothing listens at {self.endpoint}, which takes the place of {{endpoint}} in "
-                           f"the command, after {limit:g} s; the server "
-                           + (f"said:\n{words}" if words else "said nothing"))
+                           f"the command, after {self._start_patience:g} s; the server {said}")
+
+
+def _awaits_listener(program: ProcessGroup, endpoint: str, seconds: float) -> bool:
+    """Whether one listens there before the program ends, and within so many seconds."""
+    host, port = endpoint.removeprefix("tcp://").rsplit(":", 1)
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline and program.exit_code() is None:
+        try:
+            with socket.create_connection((host, int(port)), 0.2):
+                return True
+        except OSError:
+            time.sleep(0.01)
+    return False
 
 
 def check_listens(endpoint: str) -> None:

@@ -234,7 +234,7 @@ class Stage:
     def refuses_to_listen(self, step: RefusesToListen) -> None:
         endpoint = step.endpoint.replace("{port}", str(free_port()))
         self.transcript.add("server", "───", f"another one is started at {endpoint}")
-        complaint = self.server.refuses_to_listen(endpoint, self.patience)
+        complaint = self.server.refuses_to_listen(endpoint)
         if complaint:
             raise Failed(f"the server is to listen at {endpoint}, unprotected, and must refuse (T8): {complaint}")
 

@@ -115,7 +115,7 @@ class Deadlines(SceneTest):
         self.read_until(process.stdout, r"^\[5 r2\]")
         [(victim, _)] = self.processes("ziggurat-lua", f"{self.runtime}/", "/robots-1")
         os.kill(victim, signal.SIGSTOP)
-        time.sleep(0.5)
+        time.sleep(0.5)  # elapsed time is the subject: that of ten ticks
         os.kill(victim, signal.SIGCONT)
         outcome = self.finish(process)
         self.assertEqual((outcome.code, outcome.lines[-1]), (FINISHED, expected))

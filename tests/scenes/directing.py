@@ -4,7 +4,7 @@ import json
 import os
 import sys
 
-from harness import SceneTest
+from harness import LIMIT, SceneTest
 
 sys.path.insert(0, os.environ["ZIGGURAT_PYTHON_PACKAGE"])
 
@@ -50,7 +50,7 @@ class Directing(SceneTest):
 
     def direct(self, id="judge", **options):
         options.setdefault("tell", EVERYTHING)
-        world = ziggurat.direct(id, self.endpoint, wait_timeout=30, **options)
+        world = ziggurat.direct(id, self.endpoint, wait_timeout=LIMIT, **options)
         self.addCleanup(world.abandon)
         return world
 

@@ -4,10 +4,9 @@ import contextlib
 import os
 import random
 import threading
-import time
 
 from directing import EVERYTHING, Directing, box
-from harness import main
+from harness import LIMIT, main
 
 import ziggurat
 
@@ -207,6 +206,8 @@ class Acts(Directing):
         self.write_scene('<director id="a" /><director id="b" />', length=0.5)
         self.begin()
         worlds = {id: self.direct(id) for id in ("a", "b")}
+        watcher = ziggurat.supervise(self.endpoint, observer=True)
+        self.addCleanup(watcher.close)
         for _ in range(5):
             for id in (first, second):
                 next(worlds[id])
@@ -214,7 +215,7 @@ class Acts(Directing):
                 worlds[id].move("b1", (1 if id == "a" else 2, 3, 0))
                 worlds[id].remove("b2") if "b2" in worlds[id].entities else None
                 worlds[id].answer()
-                time.sleep(0.02)
+                watcher.status()  # is answered behind that
         for world in worlds.values():
             next(world)
             place = world.entities["b1"].position[0]
@@ -319,7 +320,7 @@ class Acts(Directing):
         lost.abandon()
         with self.assertRaisesRegex(ziggurat.Refused, "ROBOT_TAKEN"):
             ziggurat.direct("judge", self.endpoint)
-        world = ziggurat.direct("judge", tell=EVERYTHING, wait_timeout=30)
+        world = ziggurat.direct("judge", tell=EVERYTHING, wait_timeout=LIMIT)
         tick = next(world)
         self.assertEqual((tick.number, tick.event), (0, ziggurat.Event.RESUME))
         self.assertEqual(set(world.entities), {"b1", "b2", "wall"})

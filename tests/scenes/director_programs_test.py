@@ -17,7 +17,7 @@ EXPERIMENTS = HERE.parents[1] / "scenes/experiments"
 class Programs(Directing):
     def program(self, text):
         self.write("director.py", f"import sys\nsys.path.insert(0, {os.environ['ZIGGURAT_PYTHON_PACKAGE']!r})\n"
-                                  f"import ziggurat, os, signal, time\n{text}")
+                                  f"import ziggurat, os, signal\n{text}")
         return f'command="{sys.executable} director.py"'
 
     def test_a_program_of_the_scene_directs(self):
@@ -36,7 +36,7 @@ class Programs(Directing):
         self.assert_is_sentence(outcome, r"director 'judge' \(process \d+\) (ended with exit code 137|was killed by signal 9)")
 
     def test_a_program_that_dies_or_hangs_is_dropped_by_its_policy(self):
-        for end in ("os.kill(os.getpid(), signal.SIGKILL)", "time.sleep(1000)"):
+        for end in ("os.kill(os.getpid(), signal.SIGKILL)", "signal.pause()"):
             command = self.program(f"world = ziggurat.direct()\nnext(world)\n{end}\n")
             self.write_scene(f'<director id="judge" {command} deadline="drop" deadline_ms="200" />', length=1)
             outcome = self.run_scene("--allow-drops", "--hash")
@@ -45,7 +45,7 @@ class Programs(Directing):
             self.assertEqual(outcome.lines[-1], self.run_scene("--hash").lines[-1])
 
     def test_a_policy_that_stops_ends_the_run(self):
-        command = self.program("world = ziggurat.direct()\nnext(world)\ntime.sleep(1000)\n")
+        command = self.program("world = ziggurat.direct()\nnext(world)\nsignal.pause()\n")
         self.write_scene(f'<director id="judge" {command} deadline="stop" deadline_ms="200" />')
         self.assert_is_sentence(self.run_scene(code=CONTROLLER_FAILED), "director 'judge' did not answer at tick 0")
 
@@ -56,7 +56,7 @@ class Programs(Directing):
                                 "director 'judge' failed at tick 0: ValueError: no food")
 
     def test_options_name_directors(self):
-        command = self.program("world = ziggurat.direct()\nnext(world)\ntime.sleep(1000)\n")
+        command = self.program("world = ziggurat.direct()\nnext(world)\nsignal.pause()\n")
         self.write_scene(f'<director id="judge" {command} />', length=1)
         for arguments in (("--deadline", "judge=hold:50"), ("--hil",)):
             self.assertRegex(self.run_scene(*arguments).err, r"\(director 'judge'\) missed its deadline of (50|90) ms")

@@ -287,7 +287,7 @@ side_length="0.05" payload="hello"/></tags></devices>
         for command in ([ZIGGURAT, "--version"], [ZIGGURAT, "--help"], [ZIGGURAT, "help"], [ZIGGURAT, "help", "run"],
                         [lua, "--version"], [lua, "--help"]):
             with self.subTest(command), open("/dev/full", "w") as full:
-                ended = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, timeout=20)
+                ended = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
                 self.assertEqual(ended.returncode, FAULT)
                 self.assertRegex(ended.stderr, r"^ziggurat(-lua)?: stdout cannot be written: No space left on device\n$")
 

@@ -4,9 +4,9 @@ import json
 import socket
 import subprocess
 import threading
-import time
 
 from harness import FINISHED, LUA, SceneTest, main
+from waiting import wait_until
 
 TICKS = 2000
 CUTS = 6
@@ -86,8 +86,7 @@ class Reconnect(SceneTest):
         cuts = 0
         while cuts < CUTS and server.poll() is None:
             before = relay.passed
-            while relay.passed - before < BETWEEN_CUTS and server.poll() is None:
-                time.sleep(0.001)
+            wait_until(lambda: relay.passed - before >= BETWEEN_CUTS or server.poll() is not None, "messages pass")
             relay.cut()
             cuts += 1
         outcome = self.finish(server)

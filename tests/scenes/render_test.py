@@ -5,7 +5,6 @@ import shutil
 import signal
 import struct
 import subprocess
-import time
 import unittest
 import zlib
 
@@ -186,8 +185,8 @@ class FilmTest(SceneTest):
 
     def test_ctrl_c_leaves_a_film_that_can_be_played_and_says_so(self):
         process = self.start("render", self.scene, "--size", "320x240", "--video", "a.mp4", "--to", "900")
-        self.wait_for(lambda: (self.folder / "a.mp4").exists(), bool, "film")
-        time.sleep(1)
+        film = self.folder / "a.mp4"
+        self.wait_for(lambda: film.exists() and film.stat().st_size, bool, "frames in the film")
         process.send_signal(signal.SIGINT)
         outcome = self.finish(process)
         self.assertEqual(outcome.code, INTERRUPTED)

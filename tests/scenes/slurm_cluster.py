@@ -11,10 +11,11 @@ import socket
 import subprocess
 import sys
 import tempfile
-import time
 
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "srun", "squeue", "scontrol", "sinfo")
-LIMIT = 60  # [s] of wall time
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+
+from waiting import HANG as LIMIT, wait_until  # noqa: E402
 
 CONF = """ClusterName=ziggurat
 SlurmctldHost={host}(127.0.0.1)
@@ -120,11 +121,10 @@ class Cluster:
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=LIMIT).stdout
 
     def wait(self, is_so, what):
-        end = time.monotonic() + LIMIT
-        while not is_so():
-            if time.monotonic() > end:
-                raise RuntimeError(f"no {what}:\n{self.logs()}")
-            time.sleep(0.1)
+        try:
+            wait_until(is_so, what)
+        except AssertionError as error:
+            raise RuntimeError(f"{error}:\n{self.logs()}") from None
 
     def logs(self):
         return "\n".join(f"--- {path.name}\n{path.read_text(errors='replace')[-2000:]}"
@@ -134,7 +134,7 @@ class Cluster:
         """Jobs first, then the daemons in reverse order."""
         if self.programs and self.ask("squeue", "--noheader", "--partition=test").strip():
             self.ask("scancel", "--partition=test")
-            time.sleep(1)
+            self.wait(lambda: not self.ask("squeue", "--noheader", "--partition=test").strip(), "end of the jobs")
         for program in reversed(self.programs):
             program.send_signal(signal.SIGTERM)
         for program in reversed(self.programs):

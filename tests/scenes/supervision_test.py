@@ -6,12 +6,16 @@ import pathlib
 import signal
 import socket
 import subprocess
+import sys
 import tempfile
-import time
 import unittest
 import urllib.request
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests"))
+
+from waiting import HANG, wait_until, wait_until_idle  # noqa: E402
+
 BIN = pathlib.Path(os.environ.get("ZIGGURAT_BIN", ROOT / "build/release/bin"))
 DROP = ROOT / "scenes/dynamics3d_single_body_test.argos"
 VEHICLE = ROOT / "scenes/dynamics3d_multi_body_test.argos"
@@ -32,14 +36,14 @@ class Server:
     def __exit__(self, *_):
         self.process.send_signal(signal.SIGINT)
         try:
-            self.process.communicate(timeout=60)
+            self.process.communicate(timeout=HANG)
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.communicate()
 
     def ask(self, command, *words, check=True):
         outcome = subprocess.run([BIN / "ziggurat", command, self.url, *words], capture_output=True,
-                                 text=True, timeout=60)
+                                 text=True, timeout=HANG)
         if check and outcome.returncode != 0:
             raise AssertionError(f"{command} {words}: {outcome.stderr}")
         return outcome
@@ -47,11 +51,12 @@ class Server:
     def tick(self):
         return int(json.loads(self.ask("ctl", "status", "--json").stdout)["tick"])
 
+    def sessions(self):
+        """How many there are, with the one that asks."""
+        return len(json.loads(self.ask("ctl", "status", "--json").stdout)["sessions"])
+
     def wait_for_tick(self, tick):
-        end = time.monotonic() + 60
-        while self.tick() < tick:
-            if time.monotonic() > end:
-                raise AssertionError(f"the world never came to tick {tick}")
+        wait_until(lambda: self.tick() >= tick, f"the world is at tick {tick}")
 
     def read(self, *patterns):
         return json.loads(self.ask("ctl", "read", *patterns, "--json").stdout)
@@ -106,7 +111,7 @@ class Ctl(unittest.TestCase):
                                   (("pause", "--seed", "1"), "--seed is for reset")):
                 with self.subTest(words), open("/dev/zero", "rb") as endless:
                     outcome = subprocess.run([BIN / "ziggurat", "ctl", f"ipc://{folder}/none", *words], capture_output=True,
-                                             text=True, stdin=endless, timeout=30)
+                                             text=True, stdin=endless, timeout=HANG)
                     self.assertEqual(1, outcome.returncode)
                     self.assertIn(reason, outcome.stderr)
 
@@ -151,21 +156,22 @@ class Ctl(unittest.TestCase):
 
     def test_can_be_paused_from_the_start(self):
         with Server(DROP, "--duration", "0", "--real-time", "--paused") as server:
-            time.sleep(0.3)
-            self.assertEqual(server.tick(), 0)
+            self.assertIn("paused, tick 0", server.ask("ctl", "status").stdout)
+            server.ask("ctl", "step", "1")
+            self.assertEqual(server.tick(), 1)
             server.ask("ctl", "resume")
-            server.wait_for_tick(2)
+            server.wait_for_tick(3)
 
     def test_a_step_waits_for_controllers_of_a_world_that_begins_paused(self):
         with Server(VEHICLE, "--duration", "0", "--paused") as server:
             step = subprocess.Popen([BIN / "ziggurat", "ctl", server.url, "step", "3"], stdout=subprocess.DEVNULL,
                                     stderr=subprocess.PIPE, text=True)
-            with self.assertRaises(subprocess.TimeoutExpired):
-                step.wait(0.5)
+            wait_until_idle(step.pid)
+            self.assertIsNone(step.poll())
             lua = subprocess.Popen([BIN / "ziggurat-lua", "--connect", server.url, "--quiet"],
                                    stdout=subprocess.DEVNULL)
             try:
-                self.assertEqual(step.communicate(timeout=60)[1], "")
+                self.assertEqual(step.communicate(timeout=HANG)[1], "")
                 self.assertEqual(server.tick(), 3)
             finally:
                 lua.kill()
@@ -197,8 +203,9 @@ class Ctl(unittest.TestCase):
                     stepping.wait()
                     server.ask("ctl", "step", "1")
                     before = server.tick()
-                    time.sleep(0.5)
-                    self.assertEqual(server.tick(), before, "it is paused")
+                    for ticks in range(1, 11):
+                        server.ask("ctl", "step", "1")
+                        self.assertEqual(server.tick(), before + ticks, "it is paused between steps")
 
     def test_a_reset_ends_steps_of_others(self):
         with Server(DROP, "--duration", "0") as server:
@@ -207,10 +214,11 @@ class Ctl(unittest.TestCase):
                 steps.append(subprocess.Popen([BIN / "ziggurat", "ctl", server.url, "step", "1000000000"],
                                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True))
                 server.wait_for_tick(1)
-            time.sleep(0.3)
+            wait_until(lambda: server.sessions() == 2 + 1, "both have a session, and who asks")
+            wait_until_idle(steps[1].pid)
             server.ask("ctl", "reset")
             for step in steps:
-                _, said = step.communicate(timeout=20)
+                _, said = step.communicate(timeout=HANG)
                 self.assertEqual(step.returncode, 1)
                 self.assertIn("OUT_OF_STATE: A reset or restore has ended these steps", said)
             self.assertEqual(server.tick(), 0)
@@ -228,7 +236,7 @@ class Ctl(unittest.TestCase):
                     self.assertEqual(reported, int(status["tick"]))
                     server.ask("ctl", "resume")
                 server.ask("ctl", "shutdown")
-                lua.wait(timeout=60)
+                lua.wait(timeout=HANG)
 
     def test_resuming_ends_a_step(self):
         with Server(DROP, "--duration", "0") as server:
@@ -236,7 +244,7 @@ class Ctl(unittest.TestCase):
                                         stderr=subprocess.PIPE, text=True)
             server.wait_for_tick(1)
             server.ask("ctl", "resume")
-            _, stderr = stepping.communicate(timeout=60)
+            _, stderr = stepping.communicate(timeout=HANG)
             self.assertEqual(1, stepping.returncode)
             self.assertIn("OUT_OF_STATE", stderr)
 
@@ -275,7 +283,7 @@ class Ctl(unittest.TestCase):
     def test_shuts_down(self):
         with Server(DROP) as server:
             server.ask("ctl", "shutdown")
-            self.assertEqual(130, server.process.wait(60))
+            self.assertEqual(130, server.process.wait(HANG))
 
     def test_a_planned_shutdown_is_no_interruption(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -284,7 +292,7 @@ class Ctl(unittest.TestCase):
                 refused = server.ask("ctl", "pause", "--reason", "why", check=False)
                 self.assertIn("--reason is for shutdown", refused.stderr)
                 server.ask("ctl", "shutdown", "--reason", "the robots are home")
-                self.assertEqual(0, server.process.wait(60))
+                self.assertEqual(0, server.process.wait(HANG))
             told = json.loads(summary.read_text())
             self.assertEqual(("shut_down", "the robots are home"),
                              (told["ending"], told["shutdown_reason"]))
@@ -298,11 +306,9 @@ class Metrics(unittest.TestCase):
                 if "metrics at " in line:
                     url = "http://" + line.split("metrics at http://")[1].split('"')[0].strip()
                     break
-            end, metrics = time.monotonic() + 60, ""
-            while not metrics and time.monotonic() < end:  # until the first copy is published
-                metrics = urllib.request.urlopen(url + "/metrics", timeout=60).read().decode()
-                time.sleep(0.01)
-            status = json.load(urllib.request.urlopen(url + "/status", timeout=60))
+            metrics = wait_until(lambda: urllib.request.urlopen(url + "/metrics", timeout=HANG).read().decode(),
+                                 "the first copy is published")
+            status = json.load(urllib.request.urlopen(url + "/status", timeout=HANG))
         self.assertEqual("GATHERING", status["phase"])
         self.assertIn("\nziggurat_free_robots 1\n", metrics)
 
@@ -313,7 +319,7 @@ class Hil(unittest.TestCase):
         return subprocess.run(
             [BIN / "ziggurat", "run", VEHICLE, "--hil", "--real-time", "2", "--ticks", "10",
              "--deadline", "hold:20000", *options],
-            capture_output=True, text=True, timeout=60)
+            capture_output=True, text=True, timeout=HANG)
 
     def test_a_report_card_and_a_gate(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -13,7 +13,8 @@ import sqlite3
 import time
 import unittest
 
-from harness import CONTROLLER_FAILED, FAULT, FINISHED, INTERRUPTED, SceneTest, main
+from harness import CONTROLLER_FAILED, FAULT, FINISHED, INTERRUPTED, LIMIT, SceneTest, main
+from waiting import wait_until
 
 KILLS = int(os.environ.get("ZIGGURAT_SWEEP_KILLS", 8))
 
@@ -187,10 +188,8 @@ class Failures(SweepTest):
         self.assertEqual(sorted(path.name for path in (self.out / "runs").iterdir()), kept)
 
     def test_a_run_that_takes_too_long_is_ended(self):
-        start = time.monotonic()
         outcome = self.sweep(self.scene, "--seeds", "1..2", "--duration", "100000000", "--timeout", "0.5",
                              code=CONTROLLER_FAILED)
-        self.assertLess(time.monotonic() - start, 30)
         self.assertIn("took longer than 0.5 s", outcome.err)
         self.assertEqual([row["outcome"] for row in self.rows()], ["timed_out"] * 2)
 
@@ -254,10 +253,9 @@ class Refusals(SweepTest):
 
     def test_a_folder_that_is_moved_away_is_named(self):
         process = self.start("sweep", self.scene, "--seeds", "1..500", "--ticks", "50", "--out", self.out)
-        while not (self.out / "runs").exists() and process.poll() is None:
-            time.sleep(0.01)
+        wait_until(lambda: (self.out / "runs").exists() or process.poll() is not None, "the first run")
         self.out.rename(self.folder / "elsewhere")
-        _, err = process.communicate(timeout=60)
+        _, err = process.communicate(timeout=LIMIT)
         self.assertEqual(process.returncode, FAULT, err)
         self.assertRegex(err, f"'{self.out}' was removed, moved or replaced while the sweep wrote to it.*sweep resume")
         self.assertFalse(self.out.exists(), "is made anew")
@@ -333,13 +331,13 @@ class Kills(SweepTest):
         killed = {"sweep": 0, "run": 0}
         while sum(killed.values()) < KILLS:
             sweep = self.start("sweep", *self.arguments, "--out", self.out, "--quiet")
-            time.sleep(chance.uniform(0.05, 0.5))
+            time.sleep(chance.uniform(0.05, 0.5))  # the moment is random
             runs = self.runs_of(sweep)
             whom = chance.choice(("sweep", "run"))
             if whom == "run" and runs:
                 os.kill(chance.choice(runs), signal.SIGKILL)
                 killed["run"] += 1
-                time.sleep(chance.uniform(0, 0.2))
+                time.sleep(chance.uniform(0, 0.2))  # so is this
             if sweep.poll() is not None:
                 self.assertEqual(sweep.returncode, FINISHED, self.logs())
                 shutil.rmtree(self.out)  # all done: once more
@@ -354,9 +352,13 @@ class Kills(SweepTest):
         print(f"killed: {killed}; {self.count} runs, each once")
         # A run that is killed between making its folder and locking it leaves it empty; the next run that is a
         # minute later removes it (private_folder.cpp). One with anything in it is a fault.
-        self.wait_for_guardian()
+        self.wait_for(self.left_in_runtime, lambda left: not left, "end of the guardians")
         for left in self.runtime.iterdir():
             left.rmdir()
+
+    def left_in_runtime(self):
+        """Files in its folders."""
+        return list(self.runtime.glob("*/*"))
 
     def logs(self):
         """Of the runs that failed."""
@@ -369,7 +371,7 @@ class Kills(SweepTest):
         start = time.monotonic()
         self.interrupt(sweep)
         outcome = self.finish(sweep)
-        self.assertLess(time.monotonic() - start, 2)
+        self.assertFalse(self.is_late(start, 2))
         self.assertEqual(outcome.code, INTERRUPTED)
         command = re.search(r"to go on: ziggurat (sweep resume .*)", outcome.err)[1]
         command = shlex.split(command)

@@ -6,7 +6,8 @@ import sys
 import threading
 import time
 
-from harness import INTERRUPTED, SceneTest, main
+from harness import INTERRUPTED, LIMIT, SceneTest, main
+from waiting import wait_until
 
 sys.path.insert(0, os.environ["ZIGGURAT_PYTHON_PACKAGE"])
 
@@ -23,7 +24,7 @@ class TakenOver(SceneTest):
 
     def take(self, endpoint, *robots):
         """Answers for them until the end, and counts its ticks."""
-        session = ziggurat.connect(endpoint, robots, takeover=True, connect_timeout=60)
+        session = ziggurat.connect(endpoint, robots, takeover=True, connect_timeout=LIMIT)
         self.addCleanup(session.close)
         self.ticks = 0
 
@@ -37,14 +38,12 @@ class TakenOver(SceneTest):
 
     def wait_for_end_of(self, *files):
         """The Lua processes of these robots' files have ended."""
-        while self.processes("ziggurat-lua", f"{self.runtime}/", *files):
-            time.sleep(0.05)
+        wait_until(lambda: not self.processes("ziggurat-lua", f"{self.runtime}/", *files), "their Lua processes have ended")
 
     def goes_on(self, process, ticks):
         end = self.ticks + ticks
-        while self.ticks < end:
-            self.assertIsNone(process.poll(), "the run has ended")
-            time.sleep(0.05)
+        wait_until(lambda: self.ticks >= end or process.poll() is not None, f"{ticks} more ticks")
+        self.assertIsNone(process.poll(), "the run has ended")
 
     def interrupted(self, process):
         self.interrupt(process)
@@ -69,7 +68,7 @@ class TakenOver(SceneTest):
         self.read_until(process.stderr, r"waiting for robot r2 ")
         self.take(endpoint, "r0", "r1")
         self.wait_for_end_of("/robots-")
-        time.sleep(1)  # the run would end within that
+        time.sleep(1)  # elapsed time is the subject: the run would end within that
         self.take(endpoint, "r2")
         self.goes_on(process, 20)
         self.interrupted(process)

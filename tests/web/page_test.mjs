@@ -132,7 +132,7 @@ pageTest("a paused world that begins again stays paused, and the page shows it",
     await waitFor(async () => (await countResets(page)) > resets, "reset");
     await waitFor(async () => (await liveTick(page)) === 0, "tick 0");
     await phaseIs(page, "paused");
-    await page.waitForTimeout(700);
+    await page.waitForTimeout(700); // elapsed time is the subject
     assert.equal(await liveTick(page), 0);
     assert.equal(await page.evaluate(() => window.ziggurat.app.parameters.get("phase")), "paused");
     await page.locator("#step").click(); // the page sees a world go back only from a later tick
@@ -170,7 +170,7 @@ pageTest("pause stops the server, a step is one tick, resume goes on", tags, "",
   await waitFor(async () => (await liveTick(page)) >= 3, "tick 3");
   await key(page, "Space");
   const tick = await standing(page);
-  await page.waitForTimeout(1000);
+  await page.waitForTimeout(1000); // elapsed time is the subject
   assert.equal(await liveTick(page), tick);
   await page.locator("#step").click();
   await waitFor(async () => (await liveTick(page)) === tick + 1, "next tick");

@@ -53,7 +53,7 @@ async function checkPlaying(page) {
   await page.locator("#play").click();
   await waitFor(() => page.evaluate(() => !window.ziggurat.app.playback.isPlaying), "pause");
   const tick = await shownTick(page);
-  await page.waitForTimeout(700);
+  await page.waitForTimeout(700); // elapsed time is the subject
   assert.equal(await shownTick(page), tick);
   await page.locator("#step").click();
   await waitFor(async () => (await shownTick(page)) === tick + 1, "next tick");
@@ -132,7 +132,7 @@ test("names of a recording are text", { timeout: 180_000 }, async () => {
   const page = await openFile(out, `selected=${encodeURIComponent(hostileName)}`);
   await waitFor(() => isShown(page), "first frame");
   await waitFor(async () => (await page.locator(".tree").textContent()).includes(hostileName), "its name");
-  await page.waitForTimeout(500);
+  await page.waitForTimeout(500); // elapsed time is the subject
   assert.equal(await page.locator("img").count(), 0);
   assert.notEqual(await page.title(), "666");
   assert.deepEqual(page.problems, []);

@@ -2,8 +2,8 @@
 
 from ..case import Case, Level
 from ..client_messages import BEGUN, LEFT, end, ticks, welcome
-from ..client_steps import CheckClient, Cut, Ends, HearFrom, HearResume, Listen, Mechanisms, Quiet
-from ..keys import LATE_SERVER, MISLED, PLAIN_SERVER, SPACED_FILE, UNLISTED, VARIANT, WRONG_FILE
+from ..client_steps import CheckClient, Cut, Ends, HearFrom, HearResume, Listen, Mechanisms, Quiet, Restart
+from ..keys import MISLED, PLAIN_SERVER, SPACED_FILE, UNLISTED, VARIANT, WRONG_FILE
 
 
 def _case(id: str, title: str, variant: str, *steps) -> Case:
@@ -33,8 +33,8 @@ CASES = [
           Quiet(1.0, should=True), Ends(good=False, should=True, within=20.0)),
     _case("K7.one-file", "Its public key follows from the secret one: it needs no other file", VARIANT,
           *BEGUN, CheckClient("key", _own_key)),
-    _case("K8.late-server", "It waits while no server listens yet: its keys are not refused", LATE_SERVER,
-          Quiet(4.0), Listen(), HearFrom("hello", should=True), CheckClient("key", _own_key)),
+    _case("K8.late-server", "It waits while no server listens yet: its keys are not refused", VARIANT,
+          Restart(), Quiet(4.0), Listen(), HearFrom("hello", should=True), CheckClient("key", _own_key)),
     _case("L12.same-key", "It resumes its session with the key that it began it with",
           VARIANT, *BEGUN, *ticks(1, 2), Cut(), HearResume(), welcome(), *ticks(2, 4)),
 ]

@@ -30,6 +30,7 @@ class Connection:
 
     def __init__(self, bug, to_client, to_server):
         self.bug, self.to_client, self.to_server = bug, to_client, to_server
+        self.telling = None  # the task that passes on what the server says
         self.hello = self.welcome = None
         self.tick = -1
         self.notes = {}  # of bugs
@@ -128,15 +129,17 @@ async def main(endpoint, scene, bug="", *options):
     async def serve(reader, writer):
         far_reader, far_writer = await asyncio.open_connection(*address)
         connection = Connection(bug, writer, far_writer)
-        await asyncio.gather(pump(reader, far_writer, connection.said), pump(far_reader, writer, connection.told))
+        connection.telling = asyncio.create_task(pump(far_reader, writer, connection.told))
+        await asyncio.gather(pump(reader, far_writer, connection.said), connection.telling)
         Connection.connections.remove(connection)
 
     loop = asyncio.get_running_loop()
     loop.add_signal_handler(signal.SIGINT, lambda: server.send_signal(signal.SIGINT))
     await asyncio.start_server(serve, host, int(port), limit=1 << 20)
-    while server.poll() is None:
-        await asyncio.sleep(0.02)
-    await asyncio.sleep(0.05)
+    await asyncio.to_thread(server.wait)
+    for connection in list(Connection.connections):  # what the server has said last is passed on
+        await connection.telling
+        await connection.to_client.wait_closed()
     os._exit(server.returncode)
 
 

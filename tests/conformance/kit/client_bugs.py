@@ -181,7 +181,7 @@ def _moved(by):
 
 def _sleeps(client, command):
     if client.tick % 10 == 7:
-        time.sleep(0.4)
+        time.sleep(0.4)  # longer than the deadline
 
 
 def _metrics(count=1, **fields):

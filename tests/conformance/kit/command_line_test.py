@@ -12,7 +12,6 @@ import subprocess
 import sys
 import tempfile
 import threading
-import time
 import unittest
 from pathlib import Path
 from types import SimpleNamespace
@@ -24,6 +23,10 @@ from ziggurat_conformance.case import Level, Verdict
 from ziggurat_conformance.peer import Peer, Transcript
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1]))
+
+from waiting import HANG  # noqa: E402
+
 TINY = [sys.executable, str(HERE / "tiny_server.py"), "{endpoint}", "{scene}"]
 
 
@@ -80,7 +83,7 @@ class Mistakes(unittest.TestCase):
                     "--json", "/dev/full", "--", *TINY)
 
     def test_a_pipe_without_reader(self):
-        with tempfile.TemporaryDirectory() as folder:
+        with tempfile.TemporaryDirectory() as folder, mock.patch("ziggurat_conformance.outputs._READER_STARTS", 0.1):
             os.mkfifo(f"{folder}/r.json")
             self.expect("--json is '.*r.json', a pipe without reader; start its reader first", "server", "--json",
                         f"{folder}/r.json", "--", *TINY)
@@ -98,8 +101,8 @@ class Mistakes(unittest.TestCase):
                 self.expect(sentence, "server", "--known-failing", str(path), "--", *TINY)
 
     def test_a_server_that_does_not_listen(self):
-        self.expect(r"nothing listens at tcp://\S+, which takes the place of \{endpoint\} .*after 30 s; "
-                    r"the server said nothing", "server", "--", "sleep", "1000")
+        self.expect(r"nothing listens at tcp://\S+, which takes the place of \{endpoint\} .*after 0.5 s; "
+                    r"the server said nothing", "server", "--start-patience", "0.5", "--", "sleep", "1000")
 
     def test_an_endpoint_without_server(self):
         self.expect("no server listens at tcp://127.0.0.1:1: Connection refused", "server",
@@ -127,7 +130,7 @@ class Stdout(unittest.TestCase):
         """Exit code, stderr. r.json is written to the folder."""
         words = shlex.join([sys.executable, "-B", "-m", "ziggurat_conformance", *arguments])
         ended = subprocess.run(["bash", "-o", "pipefail", "-c", f"{words} {redirection}"], stderr=subprocess.PIPE, text=True,
-                               stdout=subprocess.DEVNULL, env={**os.environ, **environment}, timeout=60)
+                               stdout=subprocess.DEVNULL, env={**os.environ, **environment}, timeout=HANG)
         return ended.returncode, ended.stderr
 
     def play_a_case(self, redirection, **environment):
@@ -175,8 +178,9 @@ class Ending(unittest.TestCase):
         def send(connection):
             with connection, contextlib.suppress(OSError):
                 connection.sendall(greeting + bytes([4, len(ready)]) + ready)
-                connection.recv(1)
-                time.sleep(0.1)  # until the other end has READY
+                heard = b""
+                while b"READY" not in heard:  # the other end's, behind its greeting
+                    heard += connection.recv(1024)
                 while True:
                     connection.sendall(frames)
 
@@ -192,7 +196,7 @@ class Ending(unittest.TestCase):
 
     def test_heartbeats_without_end_do_not_extend_a_wait(self):
         kit = self.start(self.flood(heartbeat={"sequence": 1}), "--patience", "0.3", "--only", "S9.stale")
-        out, err = kit.communicate(timeout=20)
+        out, err = kit.communicate(timeout=HANG)
         self.assertEqual((1, ""), (kit.returncode, err))
         self.assertIn("heard nothing; welcome is expected", out)
 
@@ -210,7 +214,7 @@ class Ending(unittest.TestCase):
         for _ in range(2):  # the first one is whether a server listens
             self.addCleanup(listener.accept()[0].close)
         kit.send_signal(signal.SIGINT)
-        _, err = kit.communicate(timeout=20)
+        _, err = kit.communicate(timeout=HANG)
         self.assertEqual((130, "ziggurat-conformance: interrupted; no report was written\n"), (kit.returncode, err))
 
 
@@ -239,7 +243,7 @@ class Reports(unittest.TestCase):
     def setUp(self):
         self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
-    def play(self, *arguments, patience="1"):
+    def play(self, *arguments, patience="10"):
         code, out, _ = run("server", "--patience", patience, "--form", "binary", *arguments, "--json",
                            str(self.folder / "r.json"), "--junit", str(self.folder / "r.xml"), "--html",
                            str(self.folder / "r.html"), "--", *self.server)
@@ -247,8 +251,7 @@ class Reports(unittest.TestCase):
 
     def test_of_a_server_that_is_right(self):
         self.server = TINY
-        code, out, report = self.play("--only", "S9.*", "--only", "L7.*", "--only", "K1.listed",
-                                      patience="10")
+        code, out, report = self.play("--only", "S9.*", "--only", "L7.*", "--only", "K1.listed")
         self.assertEqual(0, code, out)
         self.assertEqual({"Core": None, "Reconnect": None, "HIL": None, "Secure": None},
                          report["badges"], "some cases are no badge")

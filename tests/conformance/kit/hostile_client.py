@@ -1,6 +1,7 @@
 """usage: hostile_client.py HOW    A client that sends without end, or what no server takes, to ZIGGURAT_ENDPOINT."""
 
 import os
+import signal
 import socket
 import sys
 import time
@@ -34,7 +35,7 @@ def without_end(data):
 def once(data):
     connection = opened()
     connection.sendall(data)
-    time.sleep(60)
+    signal.pause()
 
 
 def halves():
@@ -61,7 +62,7 @@ def connections_with_a_part():
 def of_another_kind():
     host, port = os.environ["ZIGGURAT_ENDPOINT"].removeprefix("tcp://").split(":")
     socket.create_connection((host, int(port))).sendall(b"GET / HTTP/1.1\r\n\r\n")
-    time.sleep(60)
+    signal.pause()
 
 
 def dealer(most_waiting=1000):
@@ -79,7 +80,7 @@ def dealer(most_waiting=1000):
 def many_frames():
     """One message, which ends: encrypted, the server alone sees where."""
     dealer().send_multipart([b""] * 300_000)
-    time.sleep(60)
+    signal.pause()
 
 
 def long_heartbeats():
@@ -92,7 +93,7 @@ def long_heartbeats():
     for sequence in range(1, 100):
         content = protocol.Heartbeat.FromString(b"\x08" + bytes([sequence]) + unknown)
         client.send(protocol.ClientMessage(heartbeat=content).SerializeToString())
-    time.sleep(60)
+    signal.pause()
 
 
 def heartbeats():
@@ -103,7 +104,7 @@ def heartbeats():
     client.recv()
     for sequence in range(1_000_000):
         client.send(protocol.ClientMessage(heartbeat={"sequence": sequence}).SerializeToString())
-        time.sleep(0.005)
+        time.sleep(0.005)  # fewer than are too many
 
 
 HOWS = {

@@ -5,7 +5,6 @@ import resource
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 import unittest.mock
 from pathlib import Path
@@ -18,6 +17,10 @@ from ziggurat_conformance.keys import Keys
 from ziggurat_conformance.zmtp_frames import CLIENT, Frames
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1]))
+
+from waiting import HANG, wait_until  # noqa: E402
+
 ADDRESSES = 1 << 30  # [bytes] that the kit and the client may map, each
 MEMORY = 320 << 10  # [KiB] of the kit: 128 MiB, a frame of as much, and what Python takes
 LONGEST_RUN = 30.0  # [s]
@@ -92,7 +95,7 @@ class WholeMessages(unittest.TestCase):
             for message in messages:
                 client.send(message)
             for message in messages:
-                arrival = server.receive(20.0)
+                arrival = server.receive(HANG)
                 self.assertEqual([len(message)], [len(frame) for frame in arrival.frames])
                 self.assertTrue(arrival.frames[0].bytes == message)
             server.send(arrival.routing_id, bytes(1 << 20))
@@ -108,7 +111,7 @@ class WholeMessages(unittest.TestCase):
                 self.addCleanup(server.destroy)
                 client = self.dealer(server, of_client, most_read=1)
                 client.send(b"question")
-                routing_id = server.receive(20.0).routing_id
+                routing_id = server.receive(HANG).routing_id
                 sent = 0
                 with self.assertRaisesRegex(Failed, "the client has read nothing for 0.5 s"):
                     for _ in range(100):
@@ -122,8 +125,7 @@ class WholeMessages(unittest.TestCase):
                 for i in range(2000):
                     self.assertEqual(b"%d" % i, client.recv())
                 client.close(0)
-                while server.connections():
-                    time.sleep(0.01)
+                wait_until(lambda: not server.connections(), "the end of the connection is seen")
                 server.send(routing_id, b"to no client")
 
     def test_a_server_may_be_closed_and_opened_again(self):
@@ -132,7 +134,7 @@ class WholeMessages(unittest.TestCase):
         client = self.dealer(server)
         for _ in range(20):
             client.send(b"question")
-            arrival = server.receive(20.0)
+            arrival = server.receive(HANG)
             server.send(arrival.routing_id, b"answer")
             self.assertEqual(b"answer", client.recv())
             server.close()
@@ -143,8 +145,8 @@ class WholeMessages(unittest.TestCase):
         self.addCleanup(server.destroy)
         name = server._socket.getsockopt(zmq.LAST_ENDPOINT).rstrip(b"\0").decode().removeprefix("ipc://@")
         code = ("import socket, sys; s = socket.socket(socket.AF_UNIX); s.connect(chr(0) + sys.argv[1]);"
-                "s.settimeout(20); sys.exit(len(s.recv(1)))")
-        self.assertEqual(0, subprocess.run([sys.executable, "-c", code, name], timeout=30).returncode)
+                "s.settimeout(60); sys.exit(len(s.recv(1)))")
+        self.assertEqual(0, subprocess.run([sys.executable, "-c", code, name], timeout=HANG).returncode)
 
 
 class Sizes(unittest.TestCase):

@@ -3,12 +3,12 @@
 import contextlib
 import json
 import os
+import select
 import shlex
 import signal
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 from pathlib import Path
 
@@ -17,7 +17,9 @@ from ziggurat_conformance.program_output import KEPT
 
 HERE = Path(__file__).resolve().parent
 TINY = shlex.join([sys.executable, "-B", str(HERE / "tiny_client.py")])
-LONGEST = 20.0  # [s]
+sys.path.insert(0, str(HERE.parents[1]))
+
+from waiting import HANG, wait_until, wait_until_idle  # noqa: E402
 
 
 def runs(pid):
@@ -27,15 +29,14 @@ def runs(pid):
         return False
 
 
+def is_full(out):
+    """Whether a descriptor is a pipe that takes no more."""
+    return out != subprocess.DEVNULL and not select.select([], [out], [], 0)[1]
+
+
 class Programs(unittest.TestCase):
     def setUp(self):
         self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
-
-    def soon(self, condition, what):
-        deadline = time.monotonic() + LONGEST
-        while not condition():
-            self.assertLess(time.monotonic(), deadline, what)
-            time.sleep(0.01)
 
     def script(self, end):
         """Leaves a program behind, whose number it writes, and goes on as `end` says."""
@@ -48,24 +49,24 @@ class Programs(unittest.TestCase):
         return kit
 
     def left(self):
-        self.soon((self.folder / "pid").exists, "it has not started")
+        wait_until((self.folder / "pid").exists, "it has not started")
         return int((self.folder / "pid").read_text())
 
 
 class WhatTheyStart(Programs):
     def assert_ends(self, pid):
-        self.soon(lambda: not runs(pid), "a program that the program under test has started still runs")
+        wait_until(lambda: not runs(pid), "a program that the program under test has started still runs")
 
     def test_ends_with_a_client(self):
         kit = self.start("client", "--only", "H1.hello-first", "--", *self.script(TINY))
-        out, err = kit.communicate(timeout=LONGEST)
+        out, err = kit.communicate(timeout=HANG)
         self.assertEqual((0, ""), (kit.returncode, err), out)
         self.assert_ends(self.left())
 
     def test_ends_with_a_server(self):
         kit = self.start("server", "--only", "S9.stale", "--form", "binary", "--", *self.script(
             shlex.join([sys.executable, "-B", str(HERE / "tiny_server.py"), "{endpoint}", "{scene}"])))
-        kit.communicate(timeout=LONGEST)
+        kit.communicate(timeout=HANG)
         self.assert_ends(self.left())
 
     def test_ends_with_a_kit_that_a_signal_ends(self):
@@ -77,7 +78,7 @@ class WhatTheyStart(Programs):
                     kit = self.start(mode, "--patience", "60", "--", *self.script("sleep 1001"))
                     pid = self.left()
                     kit.send_signal(number)
-                    _, err = kit.communicate(timeout=LONGEST)
+                    _, err = kit.communicate(timeout=HANG)
                     self.assertEqual((128 + number, f"ziggurat-conformance: {how}; no report was written\n"),
                                      (kit.returncode, err))
                     self.assert_ends(pid)
@@ -108,13 +109,13 @@ class Signals(Programs):
         kit = subprocess.Popen([sys.executable, "-B", "-m", "ziggurat_conformance", "client", "-v", "--patience", "0.1", "--",
                                 *self.script("exit 0")], stdout=out, stderr=err, text=True)
         self.addCleanup(kit.kill)
-        self.left()
-        time.sleep(0.5)  # it prints its lines, or waits for their reader
-        begin = time.monotonic()
+        first = self.left()
+        wait_until(lambda: self.left() != first or is_full(out), "it prints its lines")
+        if is_full(out):
+            wait_until_idle(kit.pid)  # it waits for their reader
         for number in numbers:
             kit.send_signal(number)
-        _, words = kit.communicate(timeout=LONGEST)
-        self.assertLess(time.monotonic() - begin, 5.0)
+        _, words = kit.communicate(timeout=HANG)
         self.assertIn(kit.returncode, [128 + number for number in numbers])
         return words
 
@@ -140,13 +141,13 @@ class Signals(Programs):
     def test_end_it_while_its_modules_are_loaded(self):
         (self.folder / "google").mkdir()
         (self.folder / "google/protobuf.py").write_text(
-            f"import pathlib, time; pathlib.Path({str(self.folder / 'loads')!r}).touch(); time.sleep(60)")
+            f"import pathlib, signal; pathlib.Path({str(self.folder / 'loads')!r}).touch(); signal.pause()")
         kit = subprocess.Popen([os.environ["ZIGGURAT_KIT"], "--version"], stderr=subprocess.PIPE,
                                env={**os.environ, "PYTHONPATH": str(self.folder)})
         self.addCleanup(kit.kill)
-        self.soon((self.folder / "loads").exists, "it has not started")
+        wait_until((self.folder / "loads").exists, "it has not started")
         kit.send_signal(signal.SIGINT)
-        self.assertEqual(b"", kit.communicate(timeout=LONGEST)[1])
+        self.assertEqual(b"", kit.communicate(timeout=HANG)[1])
         self.assertEqual(-signal.SIGINT, kit.returncode)
 
 
@@ -155,7 +156,7 @@ class WhatTheyPrint(Programs):
         size = 64 << 20
         group = ProcessGroup(["sh", "-c", f"echo first; head -c {size} /dev/zero; echo last"])
         self.addCleanup(group.end)
-        self.assertEqual(0, group.wait(LONGEST))
+        self.assertEqual(0, group.wait(HANG))
         text = group.printed()
         self.assertTrue(text.startswith(b"first\n\0") and text.endswith(b"\0last\n"))
         self.assertLess(len(text), 2 * KEPT + 100_000)
@@ -164,31 +165,31 @@ class WhatTheyPrint(Programs):
     def test_takes_no_place_in_the_file_system(self):
         kit = self.start("client", "--only", "H1.hello-first", "--", "sh", "-c", f"head -c 99999999 /dev/zero; echo > "
                          f"{self.folder}/done; {TINY}")
-        self.soon((self.folder / "done").exists, "it waits for a reader")
+        wait_until((self.folder / "done").exists, "it waits for a reader")
         files = [os.stat(f"/proc/{kit.pid}/fd/{name}").st_size for name in os.listdir(f"/proc/{kit.pid}/fd")]
         self.assertLess(sum(files), 1 << 20)
-        out, err = kit.communicate(timeout=LONGEST)
+        out, err = kit.communicate(timeout=HANG)
         self.assertEqual((0, ""), (kit.returncode, err), out)
 
     def test_has_no_effect_on_a_terminal(self):
         words = r"printf '\033]52;c;eA==\007 \342\200\256 \303\251\n   0.001 s  client forged\n\377'; exit 3"
         report = self.folder / "report.json"
         kit = self.start("client", "--only", "H1.hello-first", "--json", str(report), "--", "sh", "-c", words)
-        out, _ = kit.communicate(timeout=LONGEST)
+        out, _ = kit.communicate(timeout=HANG)
         for text in (out, json.loads(report.read_text())["cases"][0]["transcript"]):
             self.assertIn("printed: \\u001b]52;c;eA==\\u0007 \\u202e é\n", text)
             self.assertIn("\n" + 25 * " " + "   0.001 s  client forged\n", text.replace("\n" + 15 * " ", "\n") if text is out else text)
             self.assertFalse(set("\x1b\x07\u202e") & set(text))
         kit = self.start("server", "--only", "S9.stale", "--", "sh", "-c", words)
-        _, err = kit.communicate(timeout=LONGEST)
+        _, err = kit.communicate(timeout=HANG)
         self.assertIn("\\u001b]52;c;eA==\\u0007 \\u202e é\n", err)
 
     def test_by_one_that_escapes_holds_nothing_up(self):
         group = ProcessGroup(["setsid", "-f", "sh", "-c", f"echo $$ > {self.folder}/pid; exec cat /dev/zero"])
-        self.soon(lambda: (self.folder / "pid").exists() and (self.folder / "pid").read_text(), "it has not started")
+        wait_until(lambda: (self.folder / "pid").exists() and (self.folder / "pid").read_text(), "it has not started")
         pid = int((self.folder / "pid").read_text())
         group.end()
-        self.soon(lambda: not runs(pid), "it does not see that the pipe has no reader")
+        wait_until(lambda: not runs(pid), "it does not see that the pipe has no reader")
 
 
 if __name__ == "__main__":

@@ -10,7 +10,6 @@ class Mutant:
     case: str  # that catches it
     form: str = "binary"
     program: str = "bent_server.py"
-    patience: float = 2.0  # [s]: to be late is as wrong as to say nothing
     is_must: bool = True
 
 
@@ -281,8 +280,19 @@ MUTANTS = [
     _bent("any-director-id", "R1.id"),
     _bent("later-directors", "R1.not-for-1.3"),
     _bent("commands-direct", "R2.command"),
-    _bent("order-counts", "S12.same-results", patience=10),
-    _bent("policy-counts", "W9.same-results", patience=10),
+    _bent("order-counts", "S12.same-results"),
+    _bent("policy-counts", "W9.same-results"),
     _bent("listens-anywhere", "T8.any-address"),
     _bent("supervisors-need-keys", "K4.any-role"),
 ]
+
+# They say nothing where something is expected: to wait for long shows no more.
+SILENT = {
+    "late-waits", "silent-on-garbage", "duplicate-silent", "plain-text", "garbage-is-silent", "too-large-is-silent",
+    "deaf-to-hello", "state-is-silent", "refused-for-ever", "late-gets-nothing", "displaced-not-told",
+    "stale-is-silent", "duplicate-is-silent", "packets-cut", "waits-always", "paused-not-told", "too-many-is-silent",
+    "any-reason", "leave-beyond-dropped", "leave-ignored", "end-not-told", "hello-after-end-is-silent",
+    "resumed-without-observation", "resume-not-done", "one-step-more", "step-of-none", "shutdown-not-done",
+    "removed-not-told", "reset-not-done", "paused-told-to-one", "lost-are-taken", "dead-is-waited-for",
+    "flood-is-served", "dropped-not-told", "spawned-not-told", "leaves-robots", "commands-direct",
+}

@@ -152,7 +152,7 @@ class Attacks(SceneTest):
     # --- HTTP -----------------------------------------------------------------------------------
 
     def ask_port(self, port, request):
-        with socket.create_connection(("127.0.0.1", port), timeout=20) as connection:
+        with socket.create_connection(("127.0.0.1", port), timeout=60) as connection:
             answer = b""
             try:
                 connection.sendall(request)

@@ -10,7 +10,6 @@ import multiprocessing
 import os
 import random
 import struct
-import time
 
 import ziggurat
 from ziggurat import protocol_pb2 as v1
@@ -165,4 +164,3 @@ def _command_slowly(session):
             if kind != expected:
                 raise AssertionError(f"expected {expected}, got {kind}")
         peer.send_half(command)
-        time.sleep(0.05)

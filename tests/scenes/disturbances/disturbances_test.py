@@ -20,6 +20,7 @@ import controller  # noqa: E402
 import hostile_peers  # noqa: E402
 from controller import FLOOD, GARBAGE, ROBOTS, RUDE, SLOW, Board  # noqa: E402
 from harness import FINISHED, SceneTest  # noqa: E402
+from waiting import wait_until, wait_until_stopped  # noqa: E402
 
 IS_FULL = "--full" in sys.argv
 TICKS = 10_000 if IS_FULL else 1000
@@ -115,11 +116,12 @@ class Run:
         self.controllers[i] = self.fork(controller.control, *self.arguments_of(i))
 
     def wait(self, is_true, what):
-        end = time.monotonic() + LIMIT
-        while not is_true():
-            if self.server.poll() is not None or time.monotonic() > end:
-                self.test.fail(f"no {what}\n{self.log()}")
-            time.sleep(0.002)
+        try:
+            wait_until(lambda: is_true() or self.server.poll() is not None, what, hang=LIMIT)
+        except AssertionError as error:
+            self.test.fail(f"{error}\n{self.log()}")
+        if not is_true():
+            self.test.fail(f"the run has ended, and no {what}\n{self.log()}")
 
     def wait_for_tick(self, tick, of):
         self.wait(lambda: self.board.ticks[of] >= tick, f"tick {tick}")
@@ -219,7 +221,8 @@ class Disturbances(SceneTest):
     def stop(self, run, i):
         """The world waits while a controller is stopped."""
         run.signal(i, signal.SIGSTOP)
-        time.sleep(0.2)
+        wait_until_stopped(run.controllers[i].pid)
+        time.sleep(0.2)  # elapsed time is the subject: the world could have many ticks
         # Its current tick may be answered already, but not the next one.
         self.assertLessEqual(max(run.board.ticks), run.board.ticks[i] + 1)
         run.signal(i, signal.SIGCONT)

@@ -164,7 +164,7 @@ class Endurance(SceneTest):
                     self.KINDS[sessions % len(self.KINDS)](self, peer)
                 sessions += 1
             else:
-                time.sleep(0.05)
+                time.sleep(0.05)  # so often it is asked
             if sessions % BETWEEN_RESETS == 0 and sessions < SESSIONS:
                 ticks += self.tick(watcher)
                 resets += 1

@@ -17,12 +17,14 @@ import threading
 import time
 import unittest
 import urllib.request
+from unittest import mock
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 import ziggurat  # noqa: E402
 from harness import INTERRUPTED, LUA, SceneTest  # noqa: E402
+from waiting import wait_until  # noqa: E402
 from websocket import MOVE, PAUSE, RawViewer, REMOVE, RESUME, SPAWN, SPEED, STEP  # noqa: E402
 from zmtp import free_port  # noqa: E402
 
@@ -52,7 +54,7 @@ class Everything(SceneTest):
                                                   self.ask_metrics])]
         for thread in threads:
             thread.start()
-        time.sleep(SECONDS)
+        time.sleep(SECONDS)  # elapsed time is the subject: all act at random
         self.wait_for(lambda: (dict(self.done), self.ticks()), lambda seen: len(seen[0]) == 4 and seen[1] > 10,
                       "act of each client")
         self.interrupt(process)
@@ -103,7 +105,7 @@ class Everything(SceneTest):
                 with contextlib.suppress(ziggurat.ProtocolError):
                     act()
                     self.done["supervise"] += 1
-                time.sleep(0.01)
+                time.sleep(0.01)  # so often it acts
 
     def direct(self, draw):
         with ziggurat.direct("d", self.endpoint, tell=("poses", "links", "joints", "contacts"), takeover=True,
@@ -120,7 +122,7 @@ class Everything(SceneTest):
         path = draw.choice(["metrics", "status"])
         urllib.request.urlopen(f"http://127.0.0.1:{self.metrics_port}/{path}", timeout=5).read()
         self.done["metrics"] += 1
-        time.sleep(0.05)
+        time.sleep(0.05)  # so often it asks
 
 
 class TwoSupervisors(SceneTest):
@@ -134,9 +136,10 @@ class TwoSupervisors(SceneTest):
             one.move("r1", (0.2, 1, 0.5))
             process.send_signal(signal.SIGSTOP)
             threads = [threading.Thread(target=act, args=("a",)) for act in (one.restore, other.snapshot)]
-            for thread in threads:
-                thread.start()
-                time.sleep(0.1)  # it sends
+            for client, thread in zip((one, other), threads):
+                with mock.patch.object(client._connection, "receive", side_effect=client._connection.receive) as receive:
+                    thread.start()
+                    wait_until(lambda: receive.called, "it has sent, and waits for the answer")
             process.send_signal(signal.SIGCONT)
             for thread in threads:
                 thread.join()

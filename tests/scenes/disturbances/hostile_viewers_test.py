@@ -172,7 +172,7 @@ class HostileViewers(SceneTest):
         self.assertEqual(taken, 47, "48 with the good viewer of this test")
         for each in lookers:
             each.socket.close()
-        half = [socket.create_connection(("127.0.0.1", self.port), timeout=20) for _ in range(200)]
+        half = [socket.create_connection(("127.0.0.1", self.port), timeout=60) for _ in range(200)]
         for each in half[-127:]:
             each.sendall(b"GET / HTTP/1.1\r\nHost: local")
         for each in half[:200 - 127]:
@@ -195,7 +195,7 @@ class HostileViewers(SceneTest):
         with RawViewer(self.port, self.token) as owner:
             self.assertEqual(owner.status, 101)
             self.assertEqual(owner.hear_operation("serverInfo")["metadata"]["may_steer"], "true")
-        with socket.create_connection(("127.0.0.1", self.port), timeout=20) as page:
+        with socket.create_connection(("127.0.0.1", self.port), timeout=60) as page:
             page.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n")
             self.assertRegex(page.recv(1000), b"^HTTP/1.1 200")
         for each in [looker.socket for looker in lookers] + half:
@@ -253,7 +253,7 @@ class HostileViewers(SceneTest):
                         handshake("/", f"localhost:{self.port}", f"Origin: http://localhost:{self.port}",
                                   f"Origin: {evil}").decode(),
                         handshake("/", f"localhost:{self.port}", "Content-Length: 5").decode()):
-            with self.subTest(request), socket.create_connection(("127.0.0.1", self.port), timeout=20) as client:
+            with self.subTest(request), socket.create_connection(("127.0.0.1", self.port), timeout=60) as client:
                 client.sendall(request.encode())
                 answer = b""
                 while part := client.recv(65536):

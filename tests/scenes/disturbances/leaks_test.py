@@ -7,13 +7,13 @@ import resource
 import socket
 import struct
 import sys
-import time
 import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 from harness import INTERRUPTED, SceneTest  # noqa: E402
+from waiting import wait_until_idle  # noqa: E402
 from zmtp import GREETING, RawPeer  # noqa: E402
 from ziggurat import protocol_pb2 as v1  # noqa: E402
 
@@ -98,7 +98,7 @@ def half_a_greeting(endpoint, number):
 
 def connect(endpoint):
     host, port = endpoint.removeprefix("tcp://").rsplit(":", 1)
-    return socket.create_connection((host, int(port)), timeout=20)
+    return socket.create_connection((host, int(port)), timeout=60)
 
 
 def status_request(number):
@@ -141,7 +141,7 @@ class Leaks(SceneTest):
                              limit=120, preexec_fn=disable_huge_pages)
         endpoint = process.stdout.readline().split()[1]
         polite(endpoint, 1)  # the scene is loaded
-        time.sleep(0.2)
+        wait_until_idle(process.pid)
         idle, _ = self.measure(process)
         self.connect_and_leave(endpoint, range(WARM_UP))
         _, memory = self.measure(process)
@@ -163,7 +163,7 @@ class Leaks(SceneTest):
         half_open = [connect(endpoint) for _ in range(2 * soft)]
         polite(endpoint, 1)
         for connection in half_open:  # each has sent nothing
-            connection.settimeout(20)
+            connection.settimeout(60)
             while connection.recv(100):  # the server's greeting, then the end
                 pass
             connection.close()

@@ -23,7 +23,8 @@ import zmq
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
-from harness import INTERRUPTED, LUA, SceneTest  # noqa: E402
+from harness import INTERRUPTED, LIMIT, LUA, SceneTest  # noqa: E402
+from waiting import wait_until, wait_until_idle  # noqa: E402
 from zmtp import RawPeer  # noqa: E402
 from ziggurat import protocol_pb2 as v1  # noqa: E402
 
@@ -225,7 +226,7 @@ class Uninvited(SceneTest):
         peers = [RawPeer(self.endpoint) for _ in range(512)]
         for peer in peers:
             peer.send_beginning(64 * 1024, 64 * 1024 - 1)
-        time.sleep(2)
+        wait_until_idle(process.pid)
         growth = self.most_memory(process) - before
         print(f"  512 unfinished messages: {growth / MEBIBYTE:.0f} MiB", flush=True)
         self.assertLess(growth, 48 * MEBIBYTE)
@@ -241,9 +242,8 @@ class Uninvited(SceneTest):
         connections = lambda: sum(os.readlink(f"/proc/{process.pid}/fd/{file}").startswith("socket:")
                                   for file in os.listdir(f"/proc/{process.pid}/fd"))
         self.wait_for(connections, lambda count: count > 512, "connections")
-        for _ in range(20):
-            self.assertLessEqual(connections(), 512 + 3)  # and what listens
-            time.sleep(0.05)
+        wait_until_idle(process.pid)
+        self.assertLessEqual(connections(), 512 + 3)  # and what listens
         for connection in idle:
             connection.close()
         self.end(process)
@@ -267,7 +267,7 @@ class Uninvited(SceneTest):
                     peer.socket.send(b"\x00" + bytes([len(read_request(number))]) + read_request(number))
                 except OSError:
                     pass  # full, or closed by the server
-            time.sleep(0.02)
+            time.sleep(0.02)  # so often each asks
         most = self.most_memory(process)
         for peer in peers:
             peer.socket.close()
@@ -337,12 +337,13 @@ class Uninvited(SceneTest):
         watcher = observer(self.endpoint)
         self.wait_for(lambda: self.tick(watcher), lambda tick: tick > 100, "ticks")
         alone = self.ticks_in(watcher, 3)
+        self.turns = 0  # of peers that flood
         for attack in (self.ask, self.send_garbage):
-            over = threading.Event()
+            over, before = threading.Event(), self.turns
             flood = [threading.Thread(target=attack, args=(over,)) for _ in range(4)]
             for thread in flood:
                 thread.start()
-            time.sleep(0.5)
+            wait_until(lambda: self.turns > before, "the flood comes")
             together = self.ticks_in(watcher, 3)
             over.set()
             for thread in flood:
@@ -350,7 +351,7 @@ class Uninvited(SceneTest):
             print(f"  {alone:.0f} ticks in 3 s alone, {together:.0f} with {attack.__name__}", flush=True)
             self.assertGreater(together, 0.1 * alone)  # they also take the processors; it was 0.007
         self.end(process)
-        client.wait(timeout=60)
+        client.wait(timeout=LIMIT)
 
     def start_lua(self):
         client = subprocess.Popen([str(LUA), "--connect", self.endpoint, "--quiet"], cwd=self.folder,
@@ -366,7 +367,7 @@ class Uninvited(SceneTest):
 
     def ticks_in(self, watcher, seconds):
         first, begun = self.tick(watcher), time.monotonic()
-        time.sleep(seconds)
+        time.sleep(seconds)  # elapsed time is the subject
         last, ended = self.tick(watcher), time.monotonic()
         return (last - first) * seconds / (ended - begun)
 
@@ -377,6 +378,7 @@ class Uninvited(SceneTest):
             try:
                 with RawPeer(self.endpoint) as peer:
                     peer.socket.settimeout(0.2)
+                    self.turns += 1
                     peer.socket.sendall(garbage)
             except OSError:
                 pass  # disconnected, or its turn has not come
@@ -395,7 +397,8 @@ class Uninvited(SceneTest):
                         pass
                 except OSError:
                     pass
-            time.sleep(0.02)
+            self.turns += 1
+            time.sleep(0.02)  # so often they ask
         for peer in peers:
             peer.socket.close()
 

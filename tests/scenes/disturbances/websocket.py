@@ -34,7 +34,7 @@ class RawViewer:
     """A connection behind its handshake. `status` is that of the answer; 101: it is open."""
 
     def __init__(self, port, token="", request=None):
-        self.socket = socket.create_connection(("127.0.0.1", port), timeout=20)
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout=60)
         self.buffer = b""
         self.status = None
         self.socket.sendall(request or handshake(f"/?token={token}" if token else "/"))

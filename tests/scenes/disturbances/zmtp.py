@@ -17,7 +17,7 @@ class RawPeer:
 
     def __init__(self, endpoint, drip=0.0, routing_id=b""):
         host, port = endpoint.removeprefix("tcp://").rsplit(":", 1)
-        self.socket = socket.create_connection((host, int(port)), timeout=20)
+        self.socket = socket.create_connection((host, int(port)), timeout=60)
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._drip = drip
         self._send_bytes(GREETING)
@@ -38,7 +38,7 @@ class RawPeer:
             return
         for byte in data:
             self.socket.sendall(bytes([byte]))
-            time.sleep(self._drip)
+            time.sleep(self._drip)  # elapsed time is the subject
 
     def send_message(self, message):
         self._send_bytes(_frame(0, message))

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "waiting.h"
 #include "ziggurat/error.h"
 #include "ziggurat/session.h"
 #include "ziggurat/v1/protocol.pb.h"
@@ -124,9 +125,7 @@ class FakeServer {
     zmq_setsockopt(router_, ZMQ_RCVTIMEO, &patience_ms, sizeof(patience_ms));
     zmq_setsockopt(router_, ZMQ_LINGER, &linger_ms, sizeof(linger_ms));
     // The port is free when the connections before are closed.
-    for (int tries = 0; zmq_bind(router_, address.c_str()) != 0 && tries < 500; ++tries) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
+    EXPECT_TRUE(comes_true([&] { return zmq_bind(router_, address.c_str()) == 0; }));
   }
 
   void* context_;

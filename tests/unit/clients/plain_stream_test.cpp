@@ -17,6 +17,7 @@
 #include <thread>
 #include <utility>
 
+#include "waiting.h"
 #include "ziggurat/error.h"
 
 namespace ziggurat {
@@ -150,7 +151,7 @@ TEST_P(PlainStreams, ExchangeMessages) {
   shake_hands(stream);
   EXPECT_EQ(read(7), frame("early"));
   write(frame("one") + frame("two"));
-  ASSERT_TRUE(stream.receive(5000ms));
+  ASSERT_TRUE(stream.receive(hang));
   EXPECT_EQ(stream.content(), "one");
   EXPECT_FALSE(stream.has_more());
   ASSERT_TRUE(stream.receive(0ms));
@@ -168,7 +169,7 @@ TEST_P(PlainStreams, TakeFramesThatArriveByteByByte) {
     ASSERT_FALSE(stream.receive(0ms)) << i;
     write(bytes.substr(i, 1));
   }
-  ASSERT_TRUE(stream.receive(5000ms));
+  ASSERT_TRUE(stream.receive(hang));
   EXPECT_EQ(stream.content(), text);
 }
 
@@ -218,7 +219,7 @@ TEST_P(PlainStreams, TryAgainUntilTheyAreOpen) {
   EXPECT_TRUE(stream.is_accepted());
   write(frame("last"));
   ::close(std::exchange(client_, -1));
-  ASSERT_TRUE(stream.receive(5000ms));
+  ASSERT_TRUE(stream.receive(hang));
   EXPECT_EQ(stream.content(), "last");
   EXPECT_FALSE(stream.receive(5000ms));
   EXPECT_TRUE(stream.was_closed());
@@ -282,15 +283,15 @@ TEST_P(PlainStreams, TakeOneFrameOfAMessageWithoutEnd) {
   std::size_t sent = 0;  // [bytes]
   std::string frames;
   while (frames.size() < 1 << 20) frames += std::string("\1\7", 2) + "a frame";
-  const auto end = std::chrono::steady_clock::now() + 10s;
+  const auto end = std::chrono::steady_clock::now() + hang;
   for (unsigned full = 0; full < 10 && std::chrono::steady_clock::now() < end;) {
     const ssize_t count = ::send(client_, frames.data(), frames.size() / 9 * 9, MSG_NOSIGNAL | MSG_DONTWAIT);
     if (count > 0) sent += static_cast<std::size_t>(count);
     if (count > 0) continue;
     ++full;
-    std::this_thread::sleep_for(10ms);
+    std::this_thread::sleep_for(10ms);  // it could read meanwhile
     if (full > 1) continue;
-    ASSERT_TRUE(stream.receive(5000ms));
+    ASSERT_TRUE(stream.receive(hang));
     EXPECT_EQ(stream.content(), "a frame");
     EXPECT_TRUE(stream.has_more());
   }
@@ -311,14 +312,12 @@ TEST_P(PlainStreams, SendingWaitsWhileTooMuchIsQueued) {
   });
   accept();
   write(greeting() + ready());
-  std::this_thread::sleep_for(200ms);
+  std::this_thread::sleep_for(200ms);  // elapsed time is the subject
   EXPECT_FALSE(is_sent);
   const std::string header = read(66);
   read(static_cast<unsigned char>(header.back()));
   EXPECT_TRUE(read(large.size() + 9) == frame(large));
-  const auto latest = std::chrono::steady_clock::now() + 10s;  // the other thread may not have run since
-  while (!is_sent && std::chrono::steady_clock::now() < latest) std::this_thread::sleep_for(1ms);
-  EXPECT_TRUE(is_sent);
+  EXPECT_TRUE(comes_true([&] { return is_sent.load(); }));  // the other thread may not have run since
   EXPECT_TRUE(read(large.size() + 9) == frame(large));
   is_read = true;
   client.join();
@@ -335,11 +334,10 @@ TEST_P(PlainStreams, TellTheSenderThatTheEndpointIsProtected) {
   accept();
   write(greeting().replace(12, 5, "CURVE"));
   const auto send_for_long = [&] {
-    const auto end = std::chrono::steady_clock::now() + 10s;
-    while (std::chrono::steady_clock::now() < end) {
+    comes_true([&] {
       send(stream, "x");
-      std::this_thread::sleep_for(10ms);
-    }
+      return false;
+    });
   };
   EXPECT_THROW(send_for_long(), ConnectionError);
 }

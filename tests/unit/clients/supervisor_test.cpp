@@ -64,7 +64,7 @@ TEST(Supervisor, HeartbeatsDoNotExtendTheTimeOut) {
     message.mutable_heartbeat()->set_sequence(1);
     for (int i = 0; i < 60; ++i) {  // 3 s
       self.send(message);
-      std::this_thread::sleep_for(std::chrono::milliseconds{50});
+      std::this_thread::sleep_for(std::chrono::milliseconds{50});  // elapsed time is the subject
     }
     v1::ClientMessage late;
     late.mutable_request()->set_id(1);

@@ -7,6 +7,7 @@
 #include "network/local_server.h"
 #include "network/one_peer.h"
 #include "network/small_run.h"
+#include "waiting.h"
 
 namespace ziggurat::network {
 namespace {
@@ -33,13 +34,6 @@ Config path_config() {
   Config config;
   config.endpoints = {"ipc://*"};
   return config;
-}
-
-/// @param done  becomes true
-template <class Done>
-void wait_until(Done done) {
-  for (int i = 0; i < 2000 && !done(); ++i) std::this_thread::sleep_for(milliseconds{5});
-  ASSERT_TRUE(done());
 }
 
 TEST(BetweenTicks, ASessionOfRobotsThatAResetHasTakenAwayIsOverWithoutThem) {
@@ -91,7 +85,7 @@ TEST(BetweenTicks, AWorldThatIsBeingPutBackSendsHeartbeatsAndLooksAtNoRobots) {
     return observer.hear().heartbeat().sequence();
   };
   const std::uint64_t first = heartbeat();
-  std::this_thread::sleep_for(milliseconds{20});
+  std::this_thread::sleep_for(milliseconds{20});  // longer than between heartbeats
   keep_alive(server);
   for (std::uint64_t heard = first; heard <= first + 1;) heard = heartbeat();
   EXPECT_TRUE(server.take_report().notices.empty()) << "the controller is told of later";
@@ -125,10 +119,10 @@ TEST(BetweenTicks, WhatDirectorsWantStaysWhileRobotsAreSpawned) {
     ASSERT_EQ(server.collect(commands, patience), Outcome::complete);
   }
   ASSERT_EQ(desk.directions().size(), 1U);
-  wait_until([&] {
+  ASSERT_TRUE(comes_true([&] {
     desk.warn("judge", {});
     return !desk.status()[0].is_held;
-  });
+  }));
   std::this_thread::sleep_for(milliseconds{1100});  // its deadline as one that is gone
   small.add_robot();
   const world::Observations theirs = small.observations(0);

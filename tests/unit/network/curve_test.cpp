@@ -181,7 +181,7 @@ struct Protected : Keys {
     for (;;) {
       const auto outcome = server.gather({milliseconds{20'000}, descriptors});
       if (outcome != Outcome::complete) break;
-      std::this_thread::sleep_for(milliseconds{5});
+      std::this_thread::sleep_for(milliseconds{5});  // it is complete at once
       if (is_done) break;
     }
     thread.join();

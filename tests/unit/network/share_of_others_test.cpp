@@ -66,7 +66,7 @@ TEST(ShareOfOthers, ObserversThatAskAsFastAsTheyCanTakeLittleOfTheThreadOfTheTic
     options.robots = {"*"};
     ziggurat::Session session(options);
     session.next();
-    while (!is_over) std::this_thread::sleep_for(milliseconds{10});
+    is_over.wait(false);
     ++ended;
   });
   while (server.gather(patience) != Outcome::complete) answer_calls(server);
@@ -92,6 +92,7 @@ TEST(ShareOfOthers, ObserversThatAskAsFastAsTheyCanTakeLittleOfTheThreadOfTheTic
   const double wall = seconds() - first;
   const int answered = answers - answers_before;
   is_over = true;
+  is_over.notify_all();
   serve([&] { return ended == 5; });
   for (std::thread& client : clients) client.join();
   std::printf("%.2f %% of the time for %d answers\n", 100 * used / wall, answered);

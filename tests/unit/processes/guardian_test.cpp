@@ -15,19 +15,12 @@
 
 #include "processes/child_process.h"
 #include "processes/private_folder.h"
+#include "waiting.h"
 
 namespace ziggurat::processes {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class Condition>
-bool eventually(Condition condition) {
-  for (int i = 0; i < 5000 && !condition(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return condition();
-}
 
 /// Runs this in a process of its own, which it must kill before it returns.
 template <class Work>
@@ -54,20 +47,20 @@ TEST(Guardian, EndsGroupsAndRemovesFilesOfAKilledProcess) {
     const ChildProcess child(
         {{"/bin/sh", "-c", "sh -c 'echo $$ >" + in + "/id; exec sleep 1000' & wait"}, {}},
         &guardian);
-    eventually([&] { return fs::exists(in + "/id") && fs::file_size(in + "/id") > 0; });
+    comes_true([&] { return fs::exists(in + "/id") && fs::file_size(in + "/id") > 0; });
     ::kill(::getpid(), SIGKILL);
   });
   pid_t grandchild = 0;
   std::ifstream(in + "/id") >> grandchild;
   ASSERT_GT(grandchild, 0);
   // Gone, or ended and not yet collected by its new parent.
-  EXPECT_TRUE(eventually([&] {
+  EXPECT_TRUE(comes_true([&] {
     std::string state;
     std::ifstream status("/proc/" + std::to_string(grandchild) + "/stat");
     status >> state >> state >> state;
     return !status || state == "Z";
   }));
-  EXPECT_TRUE(eventually([&] { return !fs::exists(in + "/private"); }));
+  EXPECT_TRUE(comes_true([&] { return !fs::exists(in + "/private"); }));
 }
 
 TEST(Guardian, DoesNothingAfterAnOrderlyEnd) {
@@ -86,7 +79,7 @@ TEST(Guardian, WorksAtOnceIfAsked) {
   Guardian guardian;
   guardian.remove_folder(folder.path() + "/private");
   guardian.end_now();
-  EXPECT_TRUE(eventually([&] { return !fs::exists(folder.path() + "/private"); }));
+  EXPECT_TRUE(comes_true([&] { return !fs::exists(folder.path() + "/private"); }));
 }
 
 TEST(Guardian, RemovesWhatIsMadeBetweenItsWorkAndTheEnd) {
@@ -103,13 +96,13 @@ TEST(Guardian, RemovesWhatIsMadeBetweenItsWorkAndTheEnd) {
         std::ofstream(in + "/robots-" + std::to_string(made)) << "x";
       }
     });
-    while (made < 100) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    comes_true([&] { return made >= 100; });
     guardian.end_now();
     const int before = made;
-    while (made < before + 100) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    comes_true([&] { return made >= before + 100; });
     ::kill(::getpid(), SIGKILL);
   });
-  EXPECT_TRUE(eventually([&] { return !fs::exists(in); }));
+  EXPECT_TRUE(comes_true([&] { return !fs::exists(in); }));
 }
 
 TEST(Guardian, OneThatIsSlowIsNotCutShort) {
@@ -125,7 +118,7 @@ TEST(Guardian, OneThatIsSlowIsNotCutShort) {
     guardian.end_now();
     ::kill(::getpid(), SIGKILL);
   });
-  EXPECT_TRUE(eventually([&] { return !fs::exists(folder.path() + "/private"); }));
+  EXPECT_TRUE(comes_true([&] { return !fs::exists(folder.path() + "/private"); }));
 }
 
 TEST(Guardian, OneThatIsKilledHasASecondThatTakesItsPlace) {
@@ -143,16 +136,16 @@ TEST(Guardian, OneThatIsKilledHasASecondThatTakesItsPlace) {
     };
     guardian.remove_folder(in + "/before");
     const pid_t first = child_of(::getpid());
-    eventually([&] { return child_of(first) != 0; });
+    comes_true([&] { return child_of(first) != 0; });
     const pid_t second = child_of(first);
     ::kill(first, SIGKILL);
     guardian.remove_folder(in + "/between");
-    eventually([&] { return child_of(second) != 0; });
+    comes_true([&] { return child_of(second) != 0; });
     guardian.remove_folder(in + "/after");
     ::kill(::getpid(), SIGKILL);
   });
   for (const char* name : {"before", "between", "after"}) {
-    EXPECT_TRUE(eventually([&] { return !fs::exists(in + "/" + name); })) << name;
+    EXPECT_TRUE(comes_true([&] { return !fs::exists(in + "/" + name); })) << name;
   }
 }
 
@@ -177,7 +170,7 @@ TEST(Guardian, RemovesADeadSocketAndNoOther) {
     listen(folder.path() + "/dead");
     ::kill(::getpid(), SIGKILL);
   });
-  EXPECT_TRUE(eventually([&] { return !fs::exists(folder.path() + "/dead"); }));
+  EXPECT_TRUE(comes_true([&] { return !fs::exists(folder.path() + "/dead"); }));
   EXPECT_TRUE(fs::exists(folder.path() + "/live"));
   EXPECT_TRUE(fs::exists(folder.path() + "/file"));
   ::close(live);
@@ -195,7 +188,7 @@ TEST(Guardian, RemovesNoSocketWhileAServerBeginsAtItsPath) {
     listen(dead);
     ::kill(::getpid(), SIGKILL);
   });
-  EXPECT_TRUE(eventually([&] { return !fs::exists(over); }));  // which is the last that it does
+  EXPECT_TRUE(comes_true([&] { return !fs::exists(over); }));  // which is the last that it does
   EXPECT_TRUE(fs::exists(dead));
   ::close(begins);
 }

@@ -12,6 +12,8 @@
 #include <fstream>
 #include <vector>
 
+#include "waiting.h"
+
 namespace ziggurat::processes {
 namespace {
 
@@ -116,12 +118,12 @@ std::ptrdiff_t left_after_kills(const PrivateFolder& parent, int kills) {
       for (int k = 0; k < 100; ++k) const PrivateFolder folder(&guardian);  // its pipe has room for so many
       for (;;) ::pause();
     }
-    ::usleep(static_cast<useconds_t>(1000 + 73 * i));
+    ::usleep(static_cast<useconds_t>(1000 + 73 * i));  // another moment each time
     ::kill(process, SIGKILL);
     ::waitpid(process, nullptr, 0);
   }
   const auto count = [&] { return std::distance(fs::directory_iterator(parent.path()), fs::directory_iterator()) - 1; };
-  for (int i = 0; i < 3000 && count() > 0; ++i) ::usleep(1000);
+  comes_true([&] { return count() == 0; });
   return count();
 }
 

@@ -44,7 +44,6 @@ TEST(Signals, ALimitOfProcessorTimeIsAnInterruption) {
 }
 
 TEST(Signals, EndAProgramThatDoesNotReact) {
-  const auto start = std::chrono::steady_clock::now();
   EXPECT_EXIT(
       {
         Signals signals;
@@ -52,7 +51,6 @@ TEST(Signals, EndAProgramThatDoesNotReact) {
         for (;;) ::pause();
       },
       testing::ExitedWithCode(130), "did not wait");
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(3));
 }
 
 TEST(Signals, TheEndOfAnInputIsAnInterruption) {

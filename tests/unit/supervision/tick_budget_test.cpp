@@ -30,7 +30,7 @@ TEST(PauseTimer, AddsUpThePauses) {
   for (int i = 0; i < 2; ++i) {
     timer.update(true);
     timer.update(true);  // the same pause
-    std::this_thread::sleep_for(2ms);
+    std::this_thread::sleep_for(2ms);  // elapsed time is the subject
     timer.update(false);
   }
   const auto total = timer.total();

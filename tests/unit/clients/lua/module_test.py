@@ -4,13 +4,17 @@ import os
 import pathlib
 import signal
 import subprocess
-import time
+import sys
 import unittest
 
 import ziggurat
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[3]
+sys.path.insert(0, str(ROOT / "tests"))
+
+from waiting import HANG, wait_until_idle  # noqa: E402
+
 PROGRAM = os.environ["ZIGGURAT"]
 VEHICLE = "scenes/dynamics3d_multi_body_test.argos"
 DEVICES = "scenes/devices_test.argos"
@@ -24,15 +28,15 @@ def serve(scene, *arguments):
 def run_script(scene):
     """What `ziggurat run` prints with the scene's own script."""
     return subprocess.run([PROGRAM, "run", scene, "--quiet", "--hash"], cwd=ROOT, check=True,
-                          text=True, stdout=subprocess.PIPE, timeout=60).stdout.splitlines()
+                          text=True, stdout=subprocess.PIPE, timeout=HANG).stdout.splitlines()
 
 
 def run_module(scene, script):
     """What a server prints whose robots a Lua program drives."""
     with serve(scene, "--hash") as server:
-        subprocess.run(["lua5.3", script, server.endpoint], check=True, timeout=60,
+        subprocess.run(["lua5.3", script, server.endpoint], check=True, timeout=HANG,
                        stdout=subprocess.DEVNULL)
-        output, _ = server.process.communicate(timeout=60)
+        output, _ = server.process.communicate(timeout=HANG)
         return [line for line in output.splitlines() if not line.startswith("{")]
 
 
@@ -53,19 +57,19 @@ class Module(unittest.TestCase):
         with serve(VEHICLE) as server:
             environment = {k: v for k, v in os.environ.items() if k != "ZIGGURAT_ENDPOINT"}
             subprocess.run(["lua5.3", HERE / "module_faults.lua", server.endpoint], check=True,
-                           timeout=60, env=environment)
-            _, errors = server.process.communicate(timeout=60)
+                           timeout=HANG, env=environment)
+            _, errors = server.process.communicate(timeout=HANG)
             self.assertEqual(server.process.returncode, 3)
             self.assertIn("that was enough", errors)
 
     def test_ctrl_c_ends_the_wait(self):
-        script = "require('ziggurat').connect{endpoint = 'ipc://@no-server', connect_timeout = 60}"
+        script = "require('ziggurat').connect{endpoint = 'ipc://@no-server', connect_timeout = 600}"
         lua = subprocess.Popen(["lua5.3", "-e", "print('begun') io.flush() " + script], text=True,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.assertEqual(lua.stdout.readline(), "begun\n")
-        time.sleep(0.3)
+        wait_until_idle(lua.pid)
         lua.send_signal(signal.SIGINT)
-        _, errors = lua.communicate(timeout=60)
+        _, errors = lua.communicate(timeout=HANG)
         self.assertEqual(lua.returncode, 1)
         self.assertIn("interrupted!", errors)
 

@@ -15,6 +15,7 @@
 #include "program/file_share.h"
 #include "script/interrupt.h"
 #include "script_fixture.h"
+#include "waiting.h"
 
 namespace ziggurat::lua {
 namespace {
@@ -211,10 +212,8 @@ TEST_F(RunnerTest, AnInterruptLeavesWithoutFailure) {
   std::signal(SIGUSR1, [](int) { interrupt_scripts(); });
   std::thread interrupter([this] {
     // At tick 1 the script of robot1 loops.
-    for (int i = 0; published_ < 2 && i < 3000; ++i) {
-      std::this_thread::sleep_for(milliseconds(20));
-    }
-    std::this_thread::sleep_for(milliseconds(20));
+    EXPECT_TRUE(comes_true([this] { return published_ >= 2; }));
+    std::this_thread::sleep_for(milliseconds(20));  // no event tells that it loops; it ends before, too
     ::pthread_kill(client_, SIGUSR1);  // as a signal: where the script runs
   });
   run("function init() end function step() while robot.id == 'robot1' do end end");

@@ -1,10 +1,15 @@
 """A server whose messages a test chooses, over a real socket."""
 
+import pathlib
+import sys
+
 import zmq
 
 from ziggurat import protocol_pb2 as v1
 
-PATIENCE_MS = 5000
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3]))
+
+from waiting import HANG  # noqa: E402
 
 
 class FakeServer:
@@ -17,11 +22,10 @@ class FakeServer:
         self.socket.setsockopt(zmq.ROUTER_MANDATORY, 1)
         self.endpoint = f"tcp://127.0.0.1:{self.socket.bind_to_random_port('tcp://127.0.0.1')}"
         self.peer = None
-        self.patience_ms = PATIENCE_MS  # for the client's next message
 
     def receive(self):
         """The content of the client's next message."""
-        if not self.socket.poll(self.patience_ms):
+        if not self.socket.poll(1000 * HANG):
             raise TimeoutError("no message from the client")
         self.peer, data = self.socket.recv_multipart()
         message = v1.ClientMessage.FromString(data)

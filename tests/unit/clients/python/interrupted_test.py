@@ -61,7 +61,6 @@ class Interrupted(SessionCase):
             self.assertEqual(program.returncode, -signal.SIGINT)
             self.assertLess(computed_by_children() - before - until_then, 1.0)
 
-        self.server.patience_ms = 60_000
         self.play(part, client)
 
     def test_a_robot_is_few_objects_that_are_freed_without_garbage_collection(self):
@@ -97,9 +96,7 @@ class Interrupted(SessionCase):
             session = self.connect()
             while session._connection.transport.send(bytes(1 << 20)):
                 pass  # until all queues are full for half a second
-            begin = time.monotonic()
             session.close("KeyboardInterrupt: ")
-            self.assertLess(time.monotonic() - begin, 5.0)  # half a second if nothing else computes
 
         self.play(open_with, client)
 

@@ -18,6 +18,10 @@ import zmq
 import ziggurat
 
 ROOT = pathlib.Path(__file__).resolve().parents[4]
+sys.path.insert(0, str(ROOT / "tests"))
+
+from waiting import HANG, wait_until  # noqa: E402
+
 PROGRAM = os.environ["ZIGGURAT"]
 ARMS = ROOT / "conformance" / "scene" / "conformance.argos"  # four robots with a motor each
 
@@ -33,7 +37,7 @@ def aside(function):
     thread.start()
 
     def result():
-        thread.join(60)
+        thread.join(HANG)
         return results[0]
 
     return result
@@ -48,26 +52,18 @@ def angle_between(first, second):
     return 2 * math.acos(min(1.0, abs(sum(a * b for a, b in zip(first, second)))))
 
 
-def until(is_true):
-    end = time.monotonic() + 60
-    while not is_true():
-        if time.monotonic() > end:
-            raise AssertionError("it did not come true")
-        time.sleep(0.01)
-
-
 class Lifetime(unittest.TestCase):
     def test_a_server_ends_with_a_program_that_is_killed(self):
-        program = ("import ziggurat, sys, time\n"
+        program = ("import ziggurat, signal\n"
                    f"server = ziggurat.Server({str(ARMS)!r}, command={PROGRAM!r}, arguments=('--duration', '0'))\n"
                    "print(server.process.pid, flush=True)\n"
-                   "time.sleep(60)\n")
+                   "signal.pause()\n")
         with subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True) as killed:
             server = int(killed.stdout.readline())
             descriptor = os.pidfd_open(server)
             killed.kill()
         try:
-            self.assertTrue(select.select([descriptor], [], [], 60)[0], "it is left")
+            self.assertTrue(select.select([descriptor], [], [], HANG)[0], "it is left")
         finally:
             os.close(descriptor)
 
@@ -106,7 +102,7 @@ class Supervising(unittest.TestCase):
 
             driver = threading.Thread(target=control, daemon=True)
             driver.start()
-            until(lambda: world.status().tick >= 3)
+            wait_until(lambda: world.status().tick >= 3, "three ticks")
             at = world.pause()
             status = world.status()
             self.assertEqual((status.phase, status.tick), ("paused", at))
@@ -131,13 +127,13 @@ class Supervising(unittest.TestCase):
             fresh = world.read("arm0")["arm0"]
             self.assertEqual(tuple(round(x, 9) for x in fresh.position), (0.3, 0.3, 0.0))
             world.resume()
-            until(lambda: world.status().tick >= 3)
+            wait_until(lambda: world.status().tick >= 3, "three ticks")
             self.assertEqual([event for number, event in ticks if number == 0],
                              [ziggurat.Event.INIT, ziggurat.Event.RESET])
             world.shutdown()
-            driver.join(60)
+            driver.join(HANG)
             self.assertEqual(ended, ["interrupted"])
-            self.assertEqual(server.wait(60), 130)
+            self.assertEqual(server.wait(HANG), 130)
 
     def test_a_paused_world_does_not_move(self):
         """Whenever the pause comes: with the last answer of a tick, and between the ticks of a pace."""
@@ -149,13 +145,13 @@ class Supervising(unittest.TestCase):
                     driver.start()
                     for _ in range(30 if pace else 200):
                         at = world.pause()
-                        time.sleep(0.003)
+                        time.sleep(0.003)  # elapsed time is the subject
                         status = world.status()
                         self.assertEqual((status.phase, status.tick), ("paused", at))
                         world.resume()
-                        until(lambda: world.status().tick > at)
+                        wait_until(lambda: world.status().tick > at, "it goes on")
                     world.shutdown()
-                    driver.join(60)
+                    driver.join(HANG)
 
     def test_refused_requests_have_a_reason(self):
         with serve() as server, ziggurat.supervise(server.endpoint) as world:
@@ -187,7 +183,6 @@ class Waiting(unittest.TestCase):
         took, text = waited()
         self.assertRegex(text, told)
         self.assertGreaterEqual(took, 2.5)
-        self.assertLess(took, 20)
 
     def test_who_waits_for_others_waits_for_wait_timeout(self):
         with serve("--allow-director") as server:
@@ -235,8 +230,8 @@ class Holding(unittest.TestCase):
                     break
             session.abandon()
             with ziggurat.supervise(server.endpoint) as world:
-                until(lambda: [s.state for s in world.status().sessions if s.role == "controller"]
-                      == ["lost"])
+                wait_until(lambda: [s.state for s in world.status().sessions if s.role == "controller"] == ["lost"],
+                           "its session is lost")
             with self.assertRaises(ziggurat.Refused) as caught:
                 ziggurat.connect(server.endpoint, "arm0")
             self.assertEqual((caught.exception.code, caught.exception.retryable),
@@ -264,7 +259,8 @@ class Deadlines(unittest.TestCase):
                 their_numbers = aside(lambda: numbers_of(rest, 6))
                 tick = next(late)
                 late.robots[0].joints["hinge"].target = 1.0
-                time.sleep(0.7)  # two deadlines
+                with ziggurat.supervise(server.endpoint, observer=True) as watcher:
+                    wait_until(lambda: watcher.status().tick >= 2, "two ticks without it")
                 self.assertEqual([tick.number, *numbers_of(late, 5)], list(range(6)))
                 self.assertEqual(their_numbers(), list(range(6)))
                 self.assertGreaterEqual(late.missed, 1)

@@ -5,7 +5,7 @@ import unittest
 
 import ziggurat
 
-from fake_server import FakeServer, equipped, welcome
+from fake_server import HANG, FakeServer, equipped, welcome
 
 
 class SessionCase(unittest.TestCase):
@@ -29,12 +29,12 @@ class SessionCase(unittest.TestCase):
         try:
             return client()
         finally:
-            thread.join(10)
+            thread.join(HANG)
             if faults:
                 raise faults[0]
 
     def connect(self, *robots, **options):
-        return ziggurat.connect(self.server.endpoint, *robots, wait_timeout=60, **options)
+        return ziggurat.connect(self.server.endpoint, *robots, wait_timeout=HANG, **options)
 
 
 def open_with(server, *robots, **fields):

@@ -1,6 +1,5 @@
 """The session: its beginning, refusals, ticks and events; against a fake server."""
 
-import time
 import unittest
 
 import zmq
@@ -10,6 +9,7 @@ from ziggurat import protocol_pb2 as v1
 from ziggurat.connection import Connection
 
 from fake_server import FakeServer, welcome
+from waiting import wait_until
 from session_case import SessionCase, open_with
 
 
@@ -21,12 +21,9 @@ class Refused(unittest.TestCase):
             port = server.bind_to_random_port("tcp://127.0.0.1")
             connection = Connection(f"tcp://127.0.0.1:{port}")
             self.addCleanup(connection.close)
-            end = time.monotonic() + 20
             # What is sent before the refusal is known is queued.
             with self.assertRaisesRegex(ziggurat.ConnectionLost, "refused key.*this client has no keys"):
-                while time.monotonic() < end:
-                    connection.send(v1.ClientMessage())
-                    time.sleep(0.01)
+                wait_until(lambda: connection.send(v1.ClientMessage()), "the refusal")
 
 
 class Beginning(SessionCase):

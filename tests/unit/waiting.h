@@ -1,0 +1,23 @@
+#pragma once
+
+#include <chrono>
+#include <thread>
+
+namespace ziggurat {
+
+/// What a wait for an event takes at most: only a hang takes longer, on a busy machine too.
+constexpr std::chrono::seconds hang{60};
+
+/// Waits until the condition is true.
+/// @return whether it is
+template <class Condition>
+bool comes_true(Condition condition) {
+  const auto end = std::chrono::steady_clock::now() + hang;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+}  // namespace ziggurat
