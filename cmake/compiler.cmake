@@ -13,14 +13,12 @@ endif()
 
 find_program(CCACHE ccache)
 if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  # Paths below the checkout are relative for it: it knows what another clone has compiled.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} ${CCACHE})
 endif()
 
 add_compile_options(-ffp-contract=off -fno-fast-math -Wall -Wextra -Wshadow -Wnon-virtual-dtor)
-# Most of the time of most sources is headers. A unity build (the presets release, sanitized and
-# tsan) compiles a dozen sources of a target as one, which takes less than half of it. So a name in an
-# anonymous namespace is not that of another one in the same target.
-if(CMAKE_UNITY_BUILD)
+if(ZIGGURAT_UNIT_SIZE)
   add_compile_options(-Wno-shadow)  # of names in another source
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)

@@ -111,7 +111,5 @@ inline constexpr std::tuple commanded{
     ByHand{&Commands::pushes, Hashed::no},
 };
 // clang-format on
-static_assert(lists_all_fields<Commands>(commanded),
-              "list each field of Commands once in the table `commanded`");
 
 }  // namespace ziggurat::world

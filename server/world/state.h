@@ -79,8 +79,6 @@ inline constexpr std::tuple state_fields{
     ByHand{&State::rays, Hashed::no},
     ByHand{&State::frusta, Hashed::no},
 };
-static_assert(lists_all_fields<State>(state_fields),
-              "list each field of State once in the table `state_fields`");
 
 /// X_WD of a device.
 math::Pose pose_of(const State& state, const Mount& mount);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "checkout/checkout.h"
 #include "network/peers.h"
 
 namespace ziggurat::network {
@@ -29,7 +30,7 @@ std::string content(const fs::path& path) {
 /// Paths without suffix of all recorded messages whose name has `part`, sorted.
 std::vector<fs::path> recorded(const std::string& part) {
   std::vector<fs::path> result;
-  for (const auto& entry : fs::recursive_directory_iterator(ZIGGURAT_RECORDED)) {
+  for (const auto& entry : fs::recursive_directory_iterator(checkout() / "protocol/recorded")) {
     const fs::path& path = entry.path();
     if (path.extension() != ".bin" || path.stem().string().find(part) == std::string::npos)
       continue;

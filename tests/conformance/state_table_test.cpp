@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "checkout/checkout.h"
 #include "network/peers.h"
 
 namespace ziggurat::network {
@@ -23,7 +24,7 @@ std::vector<std::string> cells_of(const std::string& line) {
 
 /// Rows of the table whose first header cell is `corner`, header first.
 std::vector<std::vector<std::string>> read_table(const std::string& corner) {
-  std::ifstream file(ZIGGURAT_PROTOCOL_DOCUMENT);
+  std::ifstream file(checkout() / "docs/protocol.md");
   std::vector<std::vector<std::string>> rows;
   for (std::string line; std::getline(file, line);) {
     const bool is_header = line.starts_with("| " + corner + " |");

@@ -20,7 +20,6 @@ using std::chrono::milliseconds;
 constexpr milliseconds between_tries{50}, between_tries_of_hosts{100};
 constexpr milliseconds between_looks{20};  // at whether an address was found
 constexpr milliseconds longest_handshake{30'000};
-constexpr milliseconds longest_linger{1000};
 constexpr std::size_t first_of_greeting = 11;  // its signature and major version [bytes]
 constexpr std::size_t least_free = 4096;    // of the input before a read [bytes]
 constexpr unsigned most_commands = 1000;    // or parts of a message, one after the other, before a look at the time

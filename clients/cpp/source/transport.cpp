@@ -17,7 +17,6 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds longest_linger{1000};
 constexpr milliseconds longest_wait_to_send{500};  // between checks of whether the connection was refused
 constexpr const char* monitor_address = "inproc://monitor";
 constexpr int monitored = ZMQ_EVENT_CONNECTED | ZMQ_EVENT_DISCONNECTED | ZMQ_EVENT_HANDSHAKE_SUCCEEDED |

@@ -12,6 +12,9 @@
 
 namespace ziggurat {
 
+/// What waits to be sent when a connection ends is tried for so long at most.
+constexpr std::chrono::milliseconds longest_linger{1000};
+
 class Transport {
  public:
   virtual ~Transport() = default;

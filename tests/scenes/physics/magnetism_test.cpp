@@ -10,8 +10,7 @@ namespace {
 using namespace testing;
 
 scene::Scene rows_scene(scene::Clock clock = scene::Clock::nominal) {
-  return read_scene(std::filesystem::path(ZIGGURAT_SCENES) / "dynamics3d_magnetism_test.argos",
-                    clock);
+  return read_scene(checkout() / "scenes/dynamics3d_magnetism_test.argos", clock);
 }
 
 constexpr std::size_t walls = 4, rows = 4, boxes = 5;

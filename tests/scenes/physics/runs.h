@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "checkout/checkout.h"
 #include "scene/reader.h"
 #include "simulation/simulation.h"
 
@@ -22,12 +23,12 @@ inline scene::Scene read_scene(const std::filesystem::path& path,
 }
 
 inline scene::Scene drop_scene(scene::Clock clock = scene::Clock::nominal) {
-  return read_scene(std::filesystem::path(ZIGGURAT_SCENES) / "dynamics3d_single_body_test.argos",
+  return read_scene(checkout() / "scenes/dynamics3d_single_body_test.argos",
                     clock);
 }
 
 inline scene::Scene vehicle_scene(scene::Clock clock = scene::Clock::nominal) {
-  return read_scene(std::filesystem::path(ZIGGURAT_SCENES) / "dynamics3d_multi_body_test.argos",
+  return read_scene(checkout() / "scenes/dynamics3d_multi_body_test.argos",
                     clock);
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "checkout/checkout.h"
 #include "recorded_run.h"
 #include "replay/recording_error.h"
 #include "scene/reader.h"
@@ -22,7 +23,7 @@ TEST(EmbeddedScene, IsReadWithItsIncludes) {
 TEST(EmbeddedScene, ReadsNothingFromTheDisk) {
   EmbeddedFiles embedded;
   v1::RunStart run = start();
-  run.set_scene(__FILE__);  // exists
+  run.set_scene((checkout() / "scenes/dynamics3d_single_body_test.argos").string());  // exists
   EXPECT_THROW(read_scene(run, embedded), scene::SceneError);
   embedded.add("scene.argos", R"(<argos><include file="/etc/hostname"/></argos>)");
   run.set_scene("scene.argos");

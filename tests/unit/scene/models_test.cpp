@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "checkout/checkout.h"
 #include "model_files.h"
 
 namespace ziggurat::scene {
@@ -203,7 +204,7 @@ TEST(Models, FortyBlocksAreReadAtOnce) {
 
 /// The blocks of XML in the section `Models` of docs/scene-format.md.
 std::vector<std::string> documented_files() {
-  std::ifstream file(ZIGGURAT_SCENE_FORMAT);
+  std::ifstream file(checkout() / "docs/scene-format.md");
   const std::string text(std::istreambuf_iterator<char>(file), {});
   std::vector<std::string> blocks;
   const std::size_t end = text.find("\n### ", text.find("\n### Models") + 1);

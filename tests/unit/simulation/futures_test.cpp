@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../long_runs.h"
+#include "checkout/checkout.h"
 #include "math/random.h"
 #include "scene/reader.h"
 #include "simulation/simulation.h"
@@ -66,7 +67,7 @@ class RandomCommands {
 
 std::vector<std::filesystem::path> scenes() {
   std::vector<std::filesystem::path> found;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(ZIGGURAT_SCENES)) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(checkout() / "scenes")) {
     const bool is_part = entry.path().parent_path().filename() == "models";  // of other scenes
     if (entry.path().extension() == ".argos" && !is_part) found.push_back(entry.path());
   }

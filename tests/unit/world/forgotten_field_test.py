@@ -13,10 +13,9 @@ struct, compiler, server, *folders = sys.argv[1:]
 
 
 def compiles(include):
-    command = [compiler, "-std=c++20", "-fsyntax-only", "-x", "c++", "-", "-I", include,
+    command = [compiler, "-std=c++20", "-fsyntax-only", f"{include}/world/complete.cpp", "-I", include,
                "-I", server] + [f"-I{folder}" for folder in folders]
-    done = subprocess.run(command, input='#include "world/state.h"\n#include "world/commands.h"\n',
-                          text=True, capture_output=True)
+    done = subprocess.run(command, text=True, capture_output=True)
     return done.returncode == 0, done.stderr
 
 
