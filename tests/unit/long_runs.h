@@ -31,15 +31,7 @@ inline unsigned runs(unsigned all, unsigned normal) {
   return takes_all() ? all : normal;
 }
 
-/// A duration of all runs, of the normal run, or one where the program is slow [s].
-inline double seconds(double all, double normal, double slow) {
-  if (is_slow) return slow;
-  return takes_all() ? all : normal;
-}
-
-/// A minute, ten seconds of it in the normal run, two where the program is slow; simulated [s].
-inline double a_minute() { return seconds(60, 10, 2); }
-
+constexpr double a_minute = is_slow ? 2 : 60;  ///< simulated [s]
 constexpr int links_of_a_chain = is_slow ? 5 : 20;
 
 /// All values, mostly rates. The normal run takes the first, which a fault was found at, and 50 and 1 000; in place of

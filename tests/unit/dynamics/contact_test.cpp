@@ -59,7 +59,7 @@ TEST(Contact, ABoxSlidesDownASlopeAtEveryStep) {
 
 TEST(Contact, ABoxSticksBelowTheAngleOfFriction) {
   for (const double hz : long_runs::some_of({50., 100., 1000.})) {
-    const Slide result = slide(hz, long_runs::a_minute(), std::atan(0.3) - 1e-3, 0.3);
+    const Slide result = slide(hz, long_runs::a_minute, std::atan(0.3) - 1e-3, 0.3);
     EXPECT_LT(std::abs(result.distance), 1e-6) << hz;
     std::printf("%5.0f Hz creeps %.2e m, iterations %d\n", hz, result.distance,
                 result.worst.most_iterations);
@@ -110,9 +110,9 @@ void tower(int count, double side, double seconds, double hz, double ratio = 1) 
 }
 
 TEST(Contact, TowersStand) {
-  tower(10, 0.01, long_runs::a_minute(), 100);
-  tower(20, 0.01, long_runs::a_minute(), 100);
-  tower(20, 0.05, long_runs::a_minute(), 100);
+  tower(10, 0.01, long_runs::a_minute, 100);
+  tower(20, 0.01, long_runs::a_minute, 100);
+  tower(20, 0.05, long_runs::a_minute, 100);
 }
 
 TEST(Contact, HeavyBoxesStandOnLightOnes) {

@@ -146,7 +146,8 @@ void Futures::compare(const scene::Scene& scene, const Extent& extent) const {
 TEST_P(Futures, AreThoseOfAWorldThatWasNeverInterrupted) {
   const scene::ReadResult read = scene::read_file(GetParam());
   ASSERT_TRUE(read.ok());
-  compare(read.scene, long_runs::is_slow ? Extent{2, 5, 20} : Extent{10, 50, 100});
+  const Extent all{10, 50, 100}, some{4, 20, 60}, few{2, 5, 20};
+  compare(read.scene, long_runs::is_slow ? few : long_runs::takes_all() ? all : some);
 }
 
 /// Bullet's state can't be copied: the run is repeated.
@@ -156,7 +157,8 @@ TEST_P(Futures, AreTheSameWithTheSolverThatSweeps) {
   const scene::ReadResult read = scene::read_file(GetParam(), options);
   ASSERT_TRUE(read.ok());
   ASSERT_EQ(read.scene.physics.solver, scene::Solver::sweeps);
-  compare(read.scene, long_runs::is_slow ? Extent{1, 2, 5} : Extent{3, 10, 40});
+  const Extent all{3, 10, 40}, some{2, 5, 20}, few{1, 2, 5};
+  compare(read.scene, long_runs::is_slow ? few : long_runs::takes_all() ? all : some);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Futures, ::testing::ValuesIn(scenes()), [](const auto& scene) {

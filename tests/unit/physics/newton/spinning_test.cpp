@@ -86,7 +86,7 @@ void expect_free_rotation(const Vector3& omega, double h) {
   bench.twist(0, momentum);
   double first = 0, last = 0, before = omega.y(), worst_energy = 0, worst_momentum = 0;
   int flips = 0;
-  for (int i = 1; i * h <= long_runs::a_minute(); ++i) {
+  for (int i = 1; i * h <= long_runs::a_minute; ++i) {
     bench.step();
     const math::Quaternion turned = bench.pose(0).orientation;
     const Vector3 now = turned.conjugate() * bench.spin(0);

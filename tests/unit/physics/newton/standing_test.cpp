@@ -19,7 +19,7 @@ using namespace testing;
 double tower_drift(int count, const scene::Geometry& geometry, double height, double mass) {
   World world(newton(true), 0.01);
   for (int i = 0; i < count; ++i) world.add(loose(at(0, 0, i * height), geometry, mass));
-  run(world, long_runs::a_minute(), 0.01);
+  run(world, long_runs::a_minute, 0.01);
   EXPECT_EQ(world.convergence().not_converged, 0u);
   return (origin(world, count - 1).position - Vector3(0, 0, (count - 1) * height)).norm();
 }
@@ -222,7 +222,7 @@ TEST(NewtonCards, AHouseOfThreeStoreysStands) {
   }
   std::vector<Vector3> start;
   for (int i = 0; i < cards; ++i) start.push_back(origin(world, i).position);
-  run(world, long_runs::a_minute(), 0.01);
+  run(world, long_runs::a_minute, 0.01);
   for (int i = 0; i < cards; ++i) {
     EXPECT_LT((origin(world, i).position - start[i]).norm(), 2e-3) << "card " << i;
   }
