@@ -67,6 +67,14 @@ Greeting check_greeting(Bytes input) {
   return input.size() < greeting_size ? Greeting::incomplete : Greeting::whole;
 }
 
+std::string_view older_version(Bytes input) {
+  if (check_greeting(input) != Greeting::wrong) return {};
+  const bool has_version = input.size() > signature_size && input[0] == 0xff;
+  if (has_version) return input[signature_size] == 0 ? "1.0" : "2.0";
+  // Before version 2 a connection begins with the frame of a routing id, mostly an empty one.
+  return input.size() >= 2 && input[0] == 1 && input[1] == 0 ? "1.0" : std::string_view();
+}
+
 std::string_view mechanism_of(Bytes greeting) {
   const std::string_view padded = text_of(greeting.subspan(mechanism_at, mechanism_size));
   return padded.substr(0, padded.find_last_not_of('\0') + 1);
@@ -131,7 +139,7 @@ Metadata read_metadata(Bytes data) {
 
 bool is_of_client(const Metadata& metadata) {
   const std::string& type = metadata.socket_type;
-  return metadata.is_valid && (type == "DEALER" || type == "REQ" || type == "ROUTER");
+  return metadata.is_valid && (type == "DEALER" || type == "ROUTER");
 }
 
 std::string metadata_of(std::string_view socket_type) {

@@ -15,6 +15,9 @@ using Bytes = std::span<const std::uint8_t>;
 
 // [bytes]
 inline constexpr std::size_t greeting_size = 64;
+/// Of its first part, the signature and the major version. Each end sends the rest when it has that part of the
+/// other's: libzmq closes a connection of another mechanism before it sends a greeting if it knows that at once.
+inline constexpr std::size_t first_of_greeting = 11;
 inline constexpr std::size_t longest_header = 9;
 inline constexpr std::size_t longest_command = 2048;  // that either end takes
 
@@ -26,6 +29,8 @@ enum class Greeting {
   whole,
 };
 Greeting check_greeting(Bytes input);
+/// The version before 3 that a wrong greeting is of, "2.0" for example; empty if it is none.
+std::string_view older_version(Bytes input);
 /// The mechanism of a whole greeting, without the zeros behind it.
 std::string_view mechanism_of(Bytes greeting);
 

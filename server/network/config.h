@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "network/allowance.h"
 #include "network/delays.h"
 #include "network/keys.h"
+#include "network/token_bucket.h"
 #include "scene/deadline.h"
 
 namespace ziggurat::network {

@@ -16,6 +16,12 @@ enum class Standing {
   controller,  ///< likewise, or a director: the tick path
 };
 
+/// Whether it is one of those who come behind controllers, directors and supervisors, which can hold a tick up or
+/// end the run. Each client may be one of these others.
+inline bool is_other(Standing standing) {
+  return standing != Standing::controller && standing != Standing::supervisor;
+}
+
 inline constexpr std::size_t kibibyte = std::size_t{1} << 10, mebibyte = std::size_t{1} << 20;
 
 inline constexpr std::size_t longest_without_session = 64 * kibibyte;
@@ -52,14 +58,25 @@ struct Shared {
   std::size_t waiting = 256 * mebibyte;     ///< those that wait for clients, as most_waiting counts
 };
 
-/// Share of the wall time that connections other than controllers' may take of the tick's thread
-/// while a tick runs. The system's work for them, and what they do themselves with the answers,
-/// costs about as much again on the same machine, and all controllers wait for a tick that waits.
+/// Share of the wall time by which others may delay ticks: only while an answer is owed, and work for them counts
+/// in full only if a message of a controller or supervisor is found waiting after it. The system's work for them,
+/// and what they do themselves with the answers, costs about as much again on the same machine.
 inline constexpr double share_of_others = 0.01;
 /// The same where clients need keys: a handshake takes ten times as long there, and who would come in waits
 /// behind those of unknown peers.
 inline constexpr double share_of_others_with_keys = 0.025;
-/// A message counts at least that much of it, because it wakes a process: 400 messages a second.
+/// Work after which no such message waits counts so much of its time: others have a fifth of the idle time of a
+/// tick, because controllers compute in it, perhaps on the same processors.
+inline constexpr double part_of_idle_time = 0.05;
+/// So much of the share may be saved up.
+inline constexpr std::chrono::microseconds saved_share{5000};
+/// What was used up begins again with so much.
+inline constexpr std::chrono::microseconds least_share{100};
+/// Work counts as at least that long, because it wakes a process: it delays 400 ticks a second at most.
 inline constexpr std::chrono::microseconds least_cost{25};
+/// The same after which nothing waits: 2000 a second.
+inline constexpr std::chrono::microseconds least_idle_cost{5};
+/// More is not owed for an answer of a very large world: others would wait for longer than 10 s.
+inline constexpr std::chrono::microseconds most_cost{100'000};
 
 }  // namespace ziggurat::network

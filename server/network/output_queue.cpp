@@ -2,6 +2,7 @@
 
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -9,6 +10,11 @@
 #include "network/limits.h"
 
 namespace ziggurat::network {
+namespace {
+
+constexpr std::size_t flushed_at_once = 256 * kibibyte;  // others are looked at after so much
+
+}  // namespace
 
 void Buffer::reserve(std::size_t size) {
   if (capacity >= size) return;
@@ -52,10 +58,14 @@ void OutputQueue::send(Buffer& frame, std::size_t size, bool is_observation) {
 }
 
 void OutputQueue::flush() {
-  while (!waiting_.empty() && !has_failed_) {
+  for (std::size_t left = flushed_at_once; left > 0 && !waiting_.empty() && !has_failed_;) {
     Parcel& first = waiting_.front();
-    first.sent += write({first.frame.bytes.get() + first.sent, first.size - first.sent});
-    if (first.sent < first.size) return;
+    const std::size_t wanted = std::min(left, first.size - first.sent);
+    const std::size_t sent = write({first.frame.bytes.get() + first.sent, wanted});
+    first.sent += sent;
+    left -= sent;
+    if (first.sent < first.size && sent < wanted) return;
+    if (first.sent < first.size) continue;
     if (!first.is_observation) {
       waiting_bytes_ -= first.memory();
       alone_ = 0;

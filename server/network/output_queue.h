@@ -27,7 +27,7 @@ class OutputQueue {
   /// that waits.
   /// @param frame  is taken if it has to wait
   void send(Buffer& frame, std::size_t size, bool is_observation);
-  /// Sends what waits, as far as that is possible.
+  /// Sends a part of what waits, as far as that is possible.
   void flush();
 
   /// Forgets what waits: nothing more is sent.

@@ -13,7 +13,9 @@ namespace {
 
 using Step = zmtp::Taken::Step;
 
-constexpr std::size_t least_space = 8 * kibibyte;  // for one read
+constexpr std::size_t least_space = 8 * kibibyte;   // for one read
+constexpr std::size_t read_at_once = 256 * kibibyte;  // others are looked at after so much,
+constexpr int frames_at_once = 16;                    // and after so many
 
 /// How much memory an idle connection keeps.
 std::size_t kept_when_idle(Standing standing) {
@@ -70,7 +72,8 @@ void PeerSocket::read() {
   } catch (const std::bad_alloc&) {
     return give_up();
   }
-  const ssize_t size = ::recv(number(), input_.bytes.get() + end_, input_.capacity - end_, 0);
+  const ssize_t size = ::recv(number(), input_.bytes.get() + end_,
+                              std::min(input_.capacity - end_, read_at_once), 0);
   if (size > 0) {
     end_ += static_cast<std::size_t>(size);
   } else if (size == 0 || (errno != EAGAIN && errno != EINTR)) {
@@ -78,59 +81,72 @@ void PeerSocket::read() {
   }
 }
 
-/// Passes over a frame that is too long. True if that was the end of its message.
-bool PeerSocket::skip(Received& received) {
-  const std::size_t here = std::min(to_skip_, end_ - begin_);
-  begin_ += here;
-  to_skip_ -= here;
-  return to_skip_ == 0 && end_message(more_to_skip_, received);
-}
-
 /// A frame of a message is over. True if the message is, too.
-bool PeerSocket::end_message(bool has_more, Received& received) {
-  const bool is_first = !std::exchange(has_frames_, has_more);
-  if (has_more) return false;
+bool PeerSocket::end_message(bool goes_on, Received& received) {
+  const bool is_first = !std::exchange(has_frames_, goes_on);
+  if (goes_on) return false;
   received.connection = name_;
   received.is_single_frame = is_first;
   received.several_frames = first_frame_;
   received.access = engine_.access();
   received.skipped = std::exchange(skipped_, 0);
-  if (received.skipped > 0) received.bytes = {};
   return true;
 }
 
-bool PeerSocket::next(std::size_t limit, Received& received) {
-  while (!is_over_) {
-    if (to_skip_ > 0) {
-      if (skip(received)) return true;
-      if (to_skip_ > 0) break;
-      continue;
-    }
-    const std::span input(input_.bytes.get() + begin_, end_ - begin_);
-    const zmtp::Taken taken = engine_.take(input, limit, reply_);
-    if (!reply_.empty()) send_reply();
-    needed_ = taken.size;
-    if (taken.step == Step::incomplete) {
-      if (begin_ == end_) let_go();
+std::string PeerSocket::fault() const {
+  const std::string& why = too_long_.empty() ? engine_.refusal() : too_long_;
+  if (why.empty()) return {};
+  return (is_open() ? "A client was disconnected: " : "A client was refused: ") + why + ".";
+}
+
+/// True if a message is complete. What is answered waits in reply_.
+bool PeerSocket::take_frame(std::size_t limit, Received& received) {
+  if (to_skip_ > 0) {
+    const std::size_t here = std::min(to_skip_, end_ - begin_);
+    begin_ += here;
+    to_skip_ -= here;
+    has_more = to_skip_ == 0;
+    received.bytes = {};
+    return has_more && end_message(more_to_skip_, received);
+  }
+  const std::span input(input_.bytes.get() + begin_, end_ - begin_);
+  const zmtp::Taken taken = engine_.take(input, limit, reply_);
+  needed_ = taken.size;
+  has_more = taken.step != Step::incomplete;
+  if (taken.step == Step::failed) {
+    has_failed_ = true;
+  } else if (taken.step == Step::too_long) {
+    // It is passed over and told, or the connection is over.
+    if (standing_ == Standing::none || taken.size / 2 > limit) {
+      has_failed_ = true;
+      too_long_ = "a message of its has about " + std::to_string(taken.size) + " bytes, and " + std::to_string(limit) + " are allowed";
       return false;
     }
-    if (taken.step == Step::failed) {
-      is_over_ = true;
-    } else if (taken.step == Step::too_long) {
-      // It is passed over and told, or the connection is over.
-      is_over_ = standing_ == Standing::none || taken.size / 2 > limit;
-      to_skip_ = skipped_ = taken.size;
-      more_to_skip_ = taken.has_more;
-    } else {
-      begin_ += taken.size;
-      needed_ = 0;
-      if (taken.step == Step::passed) continue;
-      received.bytes = zmtp::text_of(taken.content);
-      if (!has_frames_) first_frame_ = wire::encoding_of(received.bytes);
-      if (end_message(taken.has_more, received)) return true;
-    }
+    to_skip_ = taken.size;
+    skipped_ += taken.size;
+    more_to_skip_ = taken.has_more;
+  } else if (has_more) {
+    begin_ += taken.size;
+    needed_ = 0;
+    if (taken.step == Step::passed) return false;
+    received.bytes = zmtp::text_of(taken.content);
+    if (!has_frames_) first_frame_ = wire::encoding_of(received.bytes);
+    if (taken.has_more) skipped_ += taken.content.size();
+    return end_message(taken.has_more, received);
   }
-  let_go();
+  return false;
+}
+
+bool PeerSocket::next(std::size_t limit, Received& received) {
+  bool has_message = false;
+  has_more = true;
+  for (int frame = 0; frame < frames_at_once && !has_message && has_more && !has_failed_ && !is_over_; ++frame) {
+    has_message = take_frame(limit, received);
+  }
+  if (!reply_.empty()) send_reply();
+  is_over_ |= has_failed_;
+  if (has_message) return true;
+  if (begin_ == end_ || is_over_) let_go();
   return false;
 }
 

@@ -19,6 +19,8 @@ class PeerSocket {
  public:
   /// It stands in the order in which connections are asked for messages.
   bool has_turn = false;
+  /// next() has looked at a part of what has arrived only.
+  bool has_more = false;
 
   /// Sends the first bytes of the handshake.
   /// @param name  of the connection
@@ -41,12 +43,13 @@ class PeerSocket {
   bool is_over() const { return is_over_; }
   /// What waits is not sent any more.
   void give_up();
-  /// Why its keys were refused, for people; empty if they were not.
-  const std::string& refusal() const { return engine_.refusal(); }
+  /// Why it was closed for what the client sent, for people; empty if it was not.
+  std::string fault() const;
 
-  /// Reads once. What next() gave is not valid any more.
+  /// Reads once, a part of what is there. What next() gave is not valid any more.
   void read();
-  /// The next message that has arrived completely, if there is one. Its access and bytes are set.
+  /// The next message that has arrived completely, if there is one among the next few frames. Its access and
+  /// bytes are set.
   /// @param limit  of its size [bytes]
   bool next(std::size_t limit, Received& received);
 
@@ -65,8 +68,8 @@ class PeerSocket {
  private:
   void enlarge();
   void let_go();
-  bool skip(Received& received);
-  bool end_message(bool has_more, Received& received);
+  bool take_frame(std::size_t limit, Received& received);
+  bool end_message(bool goes_on, Received& received);
   void send_bytes(Buffer& frame, std::size_t size, bool is_observation);
   void send_reply();
 
@@ -86,6 +89,8 @@ class PeerSocket {
   wire::Encoding first_frame_ = wire::Encoding::binary;  // its form, for the answer
   std::size_t to_skip_ = 0;                              // of a frame that is too long
   std::size_t skipped_ = 0;                              // bytes of the message that were not kept
+  bool has_failed_ = false;  // the connection is over when its last reply is sent
+  std::string too_long_;  // the sentence on the message that ended the connection
   bool more_to_skip_ = false;                            // the message goes on behind that frame
   std::string reply_;
   OutputQueue output_;

@@ -8,8 +8,6 @@
 namespace ziggurat::network {
 namespace {
 
-constexpr std::chrono::seconds between_notices{10};  // peers could cause any number
-
 /// Names are numbers, 8 bytes each.
 std::string name_of(std::uint64_t id) { return {reinterpret_cast<const char*>(&id), sizeof id}; }
 std::uint64_t id_of(const std::string& name) {
@@ -20,8 +18,7 @@ std::uint64_t id_of(const std::string& name) {
 
 }  // namespace
 
-PeerTable::PeerTable(const Shared& most)
-    : most_(most), next_notice_(std::chrono::steady_clock::now()) {}
+PeerTable::PeerTable(const Shared& most) : most_(most) {}
 
 void PeerTable::add(posix::Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_trusted, Time now) {
   const std::uint64_t id = ++last_id_;
@@ -48,10 +45,9 @@ void PeerTable::settle(PeerSocket& peer, const Account& before) {
   unfinished_ += after.unfinished - before.unfinished;
   waiting_ += after.waiting - before.waiting;
   if (peer.is_over()) {
-    if (!peer.refusal().empty()) refusals_.add("A client was refused: " + peer.refusal());
     return end(peer, peer.output().is_congested()
                          ? "A client was disconnected because it does not read what it is sent."
-                         : nullptr);
+                         : peer.fault());
   }
   if (after.has_waiting != before.has_waiting) {
     list_of(peer).change(peer.number(), id_of(peer.name()), true, after.has_waiting);
@@ -77,7 +73,7 @@ PeerSocket* PeerTable::most_waiting_peer() const {
 }
 
 ReadyList& PeerTable::list_of(const PeerSocket& peer) {
-  return peer.standing() == Standing::controller ? controllers_ : others_;
+  return is_other(peer.standing()) ? others_ : members_;
 }
 
 void PeerTable::set_standing(const std::string& name, Standing standing, std::size_t longest,
@@ -97,17 +93,14 @@ void PeerTable::set_standing(const std::string& name, Standing standing, std::si
 /// The connection is over. What waits for it goes at once, because many can end before the next
 /// remove_ended(); what it has sent stays until then.
 /// @param why  a sentence for people, if there is something to tell
-void PeerTable::end(PeerSocket& peer, const char* why) {
+void PeerTable::end(PeerSocket& peer, std::string why) {
   waiting_ -= peer.output().waiting_bytes();
   has_let_go_ |= peer.unfinished_bytes() + peer.output().waiting_bytes() > mebibyte;
   peer.give_up();
   unfinished_ -= peer.unfinished_bytes();
   list_of(peer).remove(peer.number());
   over_.push_back(id_of(peer.name()));
-  const Time now = std::chrono::steady_clock::now();
-  if (why == nullptr || now < next_notice_) return;
-  next_notice_ = now + between_notices;
-  notices_.emplace_back(why);
+  if (!why.empty()) notices_.add(std::move(why), std::chrono::steady_clock::now());
 }
 
 void PeerTable::remove_ended() {
@@ -159,12 +152,9 @@ std::vector<int> PeerTable::flush() {
   return waiting;
 }
 
-std::vector<std::string> PeerTable::take_notices() {
-  std::vector<std::string> notices = std::exchange(notices_, {});
-  if (auto refused = refusals_.take(std::chrono::steady_clock::now())) {
-    notices.push_back(std::move(*refused));
-  }
-  return notices;
+std::vector<std::string> PeerTable::take_notices(Time now) {
+  notices_.tell_last(now);
+  return notices_.take();
 }
 
 }  // namespace ziggurat::network

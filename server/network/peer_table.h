@@ -10,8 +10,8 @@
 
 #include "network/limits.h"
 #include "network/link.h"
+#include "network/notices.h"
 #include "network/peer_socket.h"
-#include "network/rare_notice.h"
 #include "network/ready_list.h"
 
 namespace ziggurat::network {
@@ -54,9 +54,9 @@ class PeerTable {
 
   std::size_t size() const { return peers_.size(); }
   std::size_t without_session() const { return without_session_; }  ///< connections without session
-  ReadyList& controllers() { return controllers_; }
-  ReadyList& others() { return others_; }
-  std::vector<std::string> take_notices();
+  ReadyList& members() { return members_; }
+  ReadyList& others() { return others_; }  ///< see is_other()
+  std::vector<std::string> take_notices(Time now);
 
  private:
   struct Account {
@@ -66,20 +66,18 @@ class PeerTable {
   static Account account_of(const PeerSocket& peer);
   void settle(PeerSocket& peer, const Account& before);
   ReadyList& list_of(const PeerSocket& peer);
-  void end(PeerSocket& peer, const char* why = nullptr);
+  void end(PeerSocket& peer, std::string why = {});
   PeerSocket* most_waiting_peer() const;
 
   const Shared most_;
-  ReadyList controllers_, others_;
+  ReadyList members_, others_;
   std::unordered_map<std::uint64_t, std::unique_ptr<PeerSocket>> peers_;
   std::uint64_t last_id_ = first_id;
   std::vector<std::uint64_t> over_;  // not forgotten yet
   std::vector<std::string> gone_;
   std::size_t without_session_ = 0, unfinished_ = 0, waiting_ = 0;
   bool has_let_go_ = false;  // much memory, since give_back_memory()
-  std::vector<std::string> notices_;
-  Time next_notice_;
-  RareNotice refusals_{std::chrono::seconds{1}};  // of clients' keys
+  Notices notices_;
 };
 
 }  // namespace ziggurat::network

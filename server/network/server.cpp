@@ -23,9 +23,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-// Between looks at descriptors and the time, so that no flood keeps us from either.
-constexpr int messages_at_once = 1000;
-constexpr milliseconds noticeable{1};  // to deadlines
+constexpr milliseconds noticeable{1};  // to deadlines: messages are taken for that long between looks at them
 
 std::vector<DisturbedLink::Target> targets_of(const Config& config, const wire::Run& run) {
   std::vector<DisturbedLink::Target> targets;
@@ -98,20 +96,24 @@ Server::~Server() { refuse_waiting(state_->barrier); }
 template <class Done>
 bool Server::State::take_messages(Done done, world::Commands* into) {
   if (std::exchange(is_opened, false)) admit_waiting(barrier);
-  while (const auto held = link ? link->next(barrier.now) : std::nullopt) {
-    receive(barrier, *held, into);
-    ++changes;
-  }
-  for (int i = 0; i < messages_at_once && socket.receive(received); ++i) {
+  const Time end = barrier.now + noticeable;
+  do {
+    if (const auto held = link ? link->next(barrier.now) : std::nullopt) {
+      receive(barrier, *held, into);
+      ++changes;
+      continue;
+    }
+    if (!socket.receive(received)) break;
     if (!link || link->arrives(received, barrier.now)) receive(barrier, received, into);
-    socket.handled();
     if (barrier.inbox.is_answer()) {
       ++commands;
     } else {
       changes += barrier.inbox.is_question() ? 0 : 1;
     }
-    if (done()) return true;
-  }
+    const bool is_done = done();
+    if (is_done || !barrier.calls.has_news()) socket.handled();  // or when the caller has answered
+    if (is_done) return true;
+  } while (!barrier.calls.has_news() && Clock::now() < end);
   for (const std::string& connection : socket.take_gone()) {
     // What such a link still holds back arrives first; a heartbeat then finds that it is gone.
     if (!link || !link->holds(connection)) disconnect(barrier, connection);
@@ -140,15 +142,12 @@ Outcome Server::State::wait_until(Done done, const Wait& wait, world::Commands* 
   socket.handled();
   for (;;) {
     barrier.now = Clock::now();
-    socket.set_ticking(commands != nullptr && !waits_for_newcomer(barrier));
+    socket.set_ticking(commands != nullptr && barrier.gate.is_owed() && !waits_for_newcomer(barrier));
     socket.tend();
     if (take_messages(done, commands)) return Outcome::complete;
     advance(looked);
     if (done()) return Outcome::complete;
-    if (barrier.calls.has_news()) {
-      socket.begin_charge();  // the caller answers them
-      return Outcome::woken;
-    }
+    if (barrier.calls.has_news()) return Outcome::woken;  // the caller answers
     looked = Clock::now();
     const auto rest = std::chrono::ceil<milliseconds>(std::min(end, next_event()) - looked);
     const auto ready = socket.poll(std::max(rest, milliseconds{0}), wait.descriptors);
@@ -294,10 +293,13 @@ Performance Server::performance() const {
 }
 
 Report Server::take_report() {
-  Report report = state_->barrier.journal.take();
-  std::ranges::move(state_->socket.take_notices(), std::back_inserter(report.notices));
-  if (state_->link)
-    std::ranges::move(state_->link->take_notices(), std::back_inserter(report.notices));
+  const Time now = Clock::now();
+  Journal& journal = state_->barrier.journal;
+  if (state_->link) {
+    for (const std::string& notice : state_->link->take_notices()) journal.note(notice, now);
+  }
+  Report report = journal.take(now);
+  std::ranges::move(state_->socket.take_notices(now), std::back_inserter(report.notices));
   return report;
 }
 

@@ -15,14 +15,13 @@
 namespace ziggurat::network {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
+using Seconds = std::chrono::duration<double>;
 
 constexpr milliseconds linger{1000};  // what waits at the end may take this long
 constexpr milliseconds tending{500};
-constexpr milliseconds saved_share{5};  // of the time for others
-constexpr int accepted_at_once = 16;
-constexpr int looks_at_once = 64;  // at connections that may send without end and no message
+constexpr int looks_at_once = 64;     // at what may be no message, until the caller looks at the time
+constexpr int members_at_once = 64;   // until others have a look, if these never end
 
 /// How many descriptors connections may have: an eighth is for files and processes.
 std::size_t descriptors_for_peers() {
@@ -41,7 +40,8 @@ Socket::Socket(const Config& config)
       most_peers_(descriptors_for_peers()),
       most_without_session_(std::clamp(most_peers_ / 2, std::size_t{1}, most_without_session)),
       next_tending_(Clock::now()),
-      share_(config.curve ? share_of_others_with_keys : share_of_others, saved_share) {
+      share_{config.curve ? share_of_others_with_keys : share_of_others, Seconds(saved_share).count()},
+      others_time_(share_, next_tending_) {
   if (config.curve) keys_.emplace(*config.curve);
   const bool allows_any = config.insecure || config.curve;
   for (const std::string& endpoint : config.endpoints) listen(endpoint, false, allows_any);
@@ -96,61 +96,67 @@ Delivery Socket::send(const std::string& connection, std::string_view bytes, boo
 void Socket::set_standing(const std::string& connection, Standing standing,
                           std::size_t longest) {
   peers_.set_standing(connection, standing, longest, Clock::now());
+  if (!is_other(standing)) other_since_.reset();  // it is none any more
   PeerSocket* peer = peers_.find(connection);
   if (peer == nullptr || !peer->has_turn) return;
-  for (Group* group : {&controllers_, &others_}) std::erase(group->turns, connection);
+  for (Group* group : {&members_, &others_}) std::erase(group->turns, connection);
   group_of(*peer).give_turn(*peer);
 }
 
 Socket::Group& Socket::group_of(const PeerSocket& peer) {
-  return peer.standing() == Standing::controller ? controllers_ : others_;
-}
-
-bool Socket::may_serve_others() { return !is_ticking_ || share_.has_some(Clock::now()); }
-
-void Socket::begin_charge() {
-  if (!charged_since_) charged_since_ = ThreadClock::now();
+  return is_other(peer.standing()) ? others_ : members_;
 }
 
 void Socket::handled() {
-  if (!charged_since_) return;
-  const TimeShare::Seconds used = ThreadClock::now() - *charged_since_;
-  if (is_ticking_) share_.charge(std::max<TimeShare::Seconds>(used, least_cost));
-  charged_since_.reset();
+  if (!other_since_) return;
+  const Seconds used = ThreadClock::now() - *std::exchange(other_since_, {});
+  if (!is_ticking_) return;
+  const Time now = Clock::now();
+  const double time = std::min(used.count(), Seconds(most_cost).count());
+  const double cost = members_.is_ready() ? std::max(time, Seconds(least_cost).count())
+                                          : std::max(part_of_idle_time * time, Seconds(least_idle_cost).count());
+  const double left = others_time_.refill(share_, now) - cost;
+  others_time_.charge(cost);
+  if (left > 0) return;
+  const Seconds rest((Seconds(least_share).count() - left) / share_.per_second);
+  others_wait_until_ = now + std::chrono::ceil<Time::duration>(rest);
 }
 
 bool Socket::receive(Received& received) {
-  peers_.remove_ended();
-  const bool has_one = receive_from(controllers_, received);
-  handled();  // the look at controllers was between two messages of others
-  if (has_one) return true;
-  if (!may_serve_others() || others_.is_idle()) return false;
-  begin_charge();
-  if (receive_from(others_, received)) return true;
-  peers_.remove_ended();  // to close them takes time, too
-  handled();
-  return false;
-}
-
-bool Socket::receive_from(Group& group, Received& received) {
   for (int look = 0; look < looks_at_once; ++look) {
-    if (group.until_look > 0) {
-      --group.until_look;
-    } else if (const auto ready = group.list.next()) {
-      read_from(*ready);
-      if (group.list.has_more()) continue;
-      group.until_look = group.turns.size();
-    } else {
-      if (group.turns.empty()) return false;
-      group.until_look = group.turns.size();
-    }
-    if (take_message(group, received)) return true;
+    peers_.remove_ended();  // which takes time, too
+    handled();
+    Group* const group = next_group();
+    if (group == nullptr) return false;
+    if (group == &others_) other_since_ = ThreadClock::now();
+    if (look_at(*group, received)) return true;
   }
   return false;
 }
 
-/// The next message of the connection whose turn it is. It gets another turn after all others, so
-/// that one that sends much does not keep them waiting.
+/// Whose turn it is; null if there is nothing to do.
+Socket::Group* Socket::next_group() {
+  const bool has_members = members_.is_ready();
+  if (has_members && ++members_in_a_row_ < members_at_once) return &members_;
+  members_in_a_row_ = 0;
+  if (may_serve_others() && others_.is_ready()) return &others_;
+  return has_members ? &members_ : nullptr;
+}
+
+/// Reads from one connection, or takes the next few frames of one. True if they were a message.
+bool Socket::look_at(Group& group, Received& received) {
+  if (group.until_look == 0) {
+    const auto ready = group.list.next();
+    if (ready) read_from(*ready);
+    group.until_look = group.list.has_more() ? 0 : group.turns.size();
+    if (ready) return false;
+  }
+  if (group.until_look > 0) --group.until_look;
+  return take_message(group, received);
+}
+
+/// The next message of the connection whose turn it is, or some of its other frames. It gets another turn after
+/// all others, so that one that sends much does not keep them waiting.
 bool Socket::take_message(Group& group, Received& received) {
   if (group.turns.empty()) return false;
   PeerSocket* peer = peers_.find(group.turns.front());
@@ -160,7 +166,7 @@ bool Socket::take_message(Group& group, Received& received) {
   bool has_message = false;
   peers_.act(*peer, [&](PeerSocket& from) { has_message = from.next(longest, received); });
   peer->has_turn = false;
-  if (has_message) group.give_turn(*peer);
+  if (peer->has_more && !peer->is_over()) group.give_turn(*peer);
   return has_message;
 }
 
@@ -184,26 +190,21 @@ void Socket::read_from(const ReadyList::Ready& ready) {
   if (!peer->is_over() && !peer->has_turn) group_of(*peer).give_turn(*peer);
 }
 
-/// Connections without session take no places of those over the private entrance.
+/// Accepts one connection. Those without session take no places of those over the private entrance.
 void Socket::accept(Entrance& entrance) {
-  for (int i = 0; i < accepted_at_once; ++i) {
-    const Time now = Clock::now();
-    const bool are_many =
-        !entrance.is_private && peers_.without_session() >= most_without_session_;
-    const bool is_full = are_many || peers_.size() >= most_peers_;
-    if (is_full && !peers_.make_place(now)) return entrance.set_accepting(peers_.others(), false);
-    peers_.remove_ended();
-    posix::Descriptor client = entrance.listener.accept();
-    if (!client.is_open()) {
-      const bool lacks_descriptors = errno == EMFILE || errno == ENFILE;
-      if (lacks_descriptors && !peers_.make_place(now)) {
-        entrance.set_accepting(peers_.others(), false);
-      }
-      return;
-    }
-    peers_.add(std::move(client), keys_ && !entrance.is_private ? &*keys_ : nullptr,
-               entrance.is_private, now);
+  const Time now = Clock::now();
+  const bool are_many =
+      !entrance.is_private && peers_.without_session() >= most_without_session_;
+  const bool is_full = are_many || peers_.size() >= most_peers_;
+  if (is_full && !peers_.make_place(now)) return entrance.set_accepting(peers_.others(), false);
+  peers_.remove_ended();
+  posix::Descriptor client = entrance.listener.accept();
+  if (client.is_open()) {
+    const bool has_keys = keys_ && !entrance.is_private;
+    return peers_.add(std::move(client), has_keys ? &*keys_ : nullptr, entrance.is_private, now);
   }
+  const bool lacks_descriptors = errno == EMFILE || errno == ENFILE;
+  if (lacks_descriptors && !peers_.make_place(now)) entrance.set_accepting(peers_.others(), false);
 }
 
 void Socket::Entrance::set_accepting(ReadyList& list, bool accepts) {
@@ -228,11 +229,12 @@ Socket::Ready Socket::poll(milliseconds timeout, std::span<const int> descriptor
   const auto has_more = [](const Group& group) {
     return !group.turns.empty() || group.list.has_more();
   };
-  const bool has_message = has_more(controllers_) || (serves_others && has_more(others_));
+  const bool has_message = has_more(members_) || (serves_others && has_more(others_));
   if (has_message) {
     timeout = milliseconds{0};  // but the other descriptors are looked at
   } else if (!serves_others) {
-    timeout = std::min(timeout, std::chrono::ceil<milliseconds>(share_.time_until_some()));
+    timeout = std::min(timeout, std::chrono::ceil<milliseconds>(others_wait_until_ - Clock::now()));
+    timeout = std::max(timeout, milliseconds{0});
   }
   const bool is_closed = std::ranges::any_of(
       entrances_, [](const Entrance& entrance) { return !entrance.is_accepting; });
@@ -240,7 +242,7 @@ Socket::Ready Socket::poll(milliseconds timeout, std::span<const int> descriptor
     const auto rest = std::chrono::ceil<milliseconds>(next_tending_ - Clock::now());
     timeout = std::clamp(rest, milliseconds{0}, std::max(timeout, milliseconds{0}));
   }
-  polled_.assign({{controllers_.list.number(), POLLIN, 0},
+  polled_.assign({{members_.list.number(), POLLIN, 0},
                   {serves_others ? others_.list.number() : -1, POLLIN, 0}});
   const std::size_t ours = polled_.size();
   for (const int descriptor : descriptors) polled_.push_back({descriptor, POLLIN, 0});

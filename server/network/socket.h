@@ -1,7 +1,8 @@
 #pragma once
 // The server's end of all connections: it listens at every endpoint and speaks ZMTP as a ROUTER
-// does, but takes no routing ids from clients. Controllers come first: while a tick runs, all
-// others together have a small share of the wall time.
+// does, but takes no routing ids from clients. It looks at one thing at a time: a connection that begins, what one
+// has sent, some frames of it. Between two looks are those who come first, controllers and supervisors. All
+// others have time in which nothing of these waits, and a small share of the rest.
 
 #include <poll.h>
 
@@ -20,7 +21,8 @@
 #include "network/link.h"
 #include "network/listener.h"
 #include "network/peer_table.h"
-#include "network/time_share.h"
+#include "network/thread_clock.h"
+#include "network/token_bucket.h"
 #include "wire/outbox.h"
 
 namespace ziggurat::network {
@@ -51,14 +53,13 @@ class Socket {
   /// A message that arrived, if any. Valid until the next call. It is false, too, if clients send
   /// much that is no message: the caller looks at the time and calls again.
   bool receive(Received& received);
-  /// What follows is for others than controllers, until handled().
-  void begin_charge();
-  /// The last message, or what else was charged, is handled: its time is over.
+  /// The last message is handled, with what was to be done for it. That is charged if it was one of others: in full
+  /// if a message of a controller or supervisor waits now.
   void handled();
   /// Connections that have ended since the last call.
   std::vector<std::string> take_gone() { return peers_.take_gone(); }
 
-  /// A tick runs, or does not: whether the share of others than controllers is limited.
+  /// Whether a tick waits for an answer of a controller: only then others are charged.
   void set_ticking(bool is_ticking) { is_ticking_ = is_ticking; }
   /// Disconnects those that have been without session for too long.
   void tend();
@@ -68,9 +69,11 @@ class Socket {
   Ready poll(std::chrono::milliseconds timeout, std::span<const int> descriptors);
 
   /// Sentences for people since the last call.
-  std::vector<std::string> take_notices() { return peers_.take_notices(); }
+  std::vector<std::string> take_notices(Time now) { return peers_.take_notices(now); }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   /// An endpoint that listens.
   struct Entrance {
     Listener listener;
@@ -87,15 +90,16 @@ class Socket {
     std::deque<std::string> turns;   ///< those that may have messages: one each, in turn
     std::size_t until_look = 0;      ///< so many turns until the list is asked for others
 
-    bool is_idle() const { return turns.empty() && !list.look(); }
+    bool is_ready() const { return !turns.empty() || list.look(); }
     void give_turn(PeerSocket& peer);
   };
 
   void listen(const std::string& endpoint, bool is_private, bool allows_any);
   Delivery send(const std::string& connection, std::size_t size, bool is_observation,
                 const auto& write);
-  bool may_serve_others();
-  bool receive_from(Group& group, Received& received);
+  bool may_serve_others() const { return !is_ticking_ || Clock::now() >= others_wait_until_; }
+  Group* next_group();
+  bool look_at(Group& group, Received& received);
   bool take_message(Group& group, Received& received);
   void read_from(const ReadyList::Ready& ready);
   Group& group_of(const PeerSocket& peer);
@@ -107,12 +111,15 @@ class Socket {
   std::vector<Entrance> entrances_;
   std::vector<std::string> endpoints_;
   PeerTable peers_;
-  Group controllers_{peers_.controllers(), {}}, others_{peers_.others(), {}};
+  Group members_{peers_.members(), {}}, others_{peers_.others(), {}};
   Time next_tending_;
 
   bool is_ticking_ = false;
-  TimeShare share_;
-  std::optional<ThreadClock::time_point> charged_since_;
+  const Rate share_;  // of the wall time, in seconds
+  TokenBucket others_time_;
+  Time others_wait_until_;
+  std::optional<ThreadClock::time_point> other_since_;  // when what is done for one began
+  int members_in_a_row_ = 0;                               // looks at them
   Buffer frame_;
   std::vector<pollfd> polled_;
 };

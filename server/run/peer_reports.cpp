@@ -22,20 +22,10 @@ void PeerReports::notice(const std::string& text) {
   tell_(channels::Severity::warning, "ziggurat", text);
 }
 
-void PeerReports::notice_of_peer(const std::string& text, network::Allowance::Time now) {
-  if (!notices_.take(notices_rate, now)) {
-    ++unprinted_;
-    return;
-  }
-  notice(text);
-  if (unprinted_ == 0) return;
-  notice(fmt::format("before that, {} notices on peers were not printed", std::exchange(unprinted_, 0)));
-}
-
-void PeerReports::take(network::Report report, std::uint64_t tick, network::Allowance::Time now) {
+void PeerReports::take(network::Report report, std::uint64_t tick, network::Notices::Time now) {
   for (const auto& text : report.dropped) notice(text);
   take_departures(report.departures, now);
-  for (const auto& text : report.notices) notice_of_peer(text, now);
+  for (const auto& text : report.notices) notice(text);
   const auto& robots = world_.simulation.layout().robots;
   for (wire::LogLine& line : report.log) log_.push_back({std::move(line), robots[line.robot].id});
   for (network::DirectorLine& line : report.log_of_directors) {
@@ -64,7 +54,7 @@ void PeerReports::take(network::Report report, std::uint64_t tick, network::Allo
   }
 }
 
-void PeerReports::take_departures(const std::vector<network::Departure>& departures, network::Allowance::Time now) {
+void PeerReports::take_departures(const std::vector<network::Departure>& departures, network::Notices::Time now) {
   const world::Layout& layout = world_.simulation.layout();
   std::map<std::pair<std::size_t, std::uint64_t>, std::vector<std::size_t>> groups;  // by controller and tick
   for (const network::Departure& each : departures) {
@@ -73,12 +63,14 @@ void PeerReports::take_departures(const std::vector<network::Departure>& departu
     departures_.push_back({robot.id, world_.scene.controllers[robot.controller].id, each.tick});
   }
   for (const auto& [group, robots] : groups) {
-    notice_of_peer(
+    of_departures_.add(
         fmt::format("{} (controller '{}') left at tick {}: {} controller ended, and the run goes on without it",
                     processes::names_of(robots, layout), world_.scene.controllers[group.first].id, group.second,
                     robots.size() == 1 ? "its" : "their"),
         now);
   }
+  of_departures_.tell_last(now);
+  for (const auto& text : of_departures_.take()) notice(text);
 }
 
 void PeerReports::print_log(std::uint64_t tick) {

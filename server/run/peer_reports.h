@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "channels/channels.h"
-#include "network/allowance.h"
+#include "network/notices.h"
 #include "network/server.h"
 #include "reports/console.h"
 #include "reports/summary.h"
@@ -34,10 +34,10 @@ class PeerReports {
       : world_(world), console_(console), tell_(std::move(tell)) {}
 
   /// Prints failures and notices at once. Log lines wait for print_log(), so that their order does
-  /// not depend on which controller is faster. Peers can cause any number of notices: a thousand are
-  /// printed at once, then one a second, with the number of those that were not.
+  /// not depend on which controller is faster. Departures can be any number, over resets, and are told as
+  /// Notices are.
   void take(network::Report report, std::uint64_t tick,
-            network::Allowance::Time now = std::chrono::steady_clock::now());
+            network::Notices::Time now = std::chrono::steady_clock::now());
 
   /// Prints the log lines of a tick, in the order of the robots.
   void print_log(std::uint64_t tick);
@@ -64,10 +64,8 @@ class PeerReports {
     std::string robot;  ///< its id
   };
 
-  static constexpr network::Rate notices_rate{1, 1000};
   void notice(const std::string& text);
-  void notice_of_peer(const std::string& text, network::Allowance::Time now);
-  void take_departures(const std::vector<network::Departure>& departures, network::Allowance::Time now);
+  void take_departures(const std::vector<network::Departure>& departures, network::Notices::Time now);
 
   const supervision::World& world_;
   reports::Console& console_;
@@ -75,8 +73,7 @@ class PeerReports {
   std::vector<Line> log_;
   /// With the robot: none if a reset took it, or of a director.
   std::vector<std::pair<std::optional<std::size_t>, reports::Summary::Failure>> failures_;
-  network::Allowance notices_{notices_rate, std::chrono::steady_clock::now()};
-  std::uint64_t unprinted_ = 0;  ///< since the last notice that was
+  network::Notices of_departures_;
   std::vector<reports::Summary::Departure> departures_;
 };
 

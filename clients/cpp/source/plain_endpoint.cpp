@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <cstring>
@@ -102,6 +103,19 @@ void check_endpoint(const std::string& endpoint) {
   if (colon <= tcp.size()) refuse("not a host and a port; write tcp://host:port");
   const std::string port = endpoint.substr(colon + 1);
   if (!is_port(port)) refuse("the port is '" + port + "'; it must be a number from 1 to 65535");
+}
+
+bool has_unknown_host(const std::string& endpoint) {
+  SessionOptions options;
+  options.endpoint = endpoint;
+  const auto found = PlainEndpoint::of(options);
+  if (!found || found->is_path()) return false;
+  std::future<SocketAddress> address = found->address();
+  try {
+    return address.wait_for(std::chrono::seconds{1}) == std::future_status::ready && address.get().size == 0;
+  } catch (const std::future_error&) {
+    return false;  // there was no thread to look it up
+  }
 }
 
 PlainEndpoint::PlainEndpoint(std::string text, std::string host, std::string port)

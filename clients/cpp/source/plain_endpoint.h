@@ -20,6 +20,9 @@ struct SocketAddress {
 /// @throws std::invalid_argument that says what an endpoint is
 void check_endpoint(const std::string& endpoint);
 
+/// Whether the host of an endpoint has a name without address. Asks for a second at most.
+bool has_unknown_host(const std::string& endpoint);
+
 class PlainEndpoint {
  public:
   /// None for what only libzmq connects to: with keys, and what is neither ipc:///path nor tcp://host:port.

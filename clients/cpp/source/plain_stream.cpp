@@ -20,7 +20,6 @@ using std::chrono::milliseconds;
 constexpr milliseconds between_tries{50}, between_tries_of_hosts{100};
 constexpr milliseconds between_looks{20};  // at whether an address was found
 constexpr milliseconds longest_handshake{30'000};
-constexpr std::size_t first_of_greeting = 11;  // its signature and major version [bytes]
 constexpr std::size_t least_free = 4096;    // of the input before a read [bytes]
 constexpr unsigned most_commands = 1000;    // or parts of a message, one after the other, before a look at the time
 constexpr std::size_t most_kept = 1 << 20;  // of a buffer that is empty [bytes]
@@ -88,8 +87,7 @@ void PlainStream::greet() {
   filled_ = taken_ = frame_ = 0;
   is_broken_ = false;
   handshake_end_ = Clock::now() + longest_handshake;
-  // The rest when an answer begins: libzmq closes a connection of another mechanism without one if it knows that at once.
-  handshake_ = zmtp::greeting("NULL", false).substr(0, first_of_greeting);
+  handshake_ = zmtp::greeting("NULL", false).substr(0, zmtp::first_of_greeting);
   has_greeted_ = false;
   flush();
 }
@@ -195,14 +193,14 @@ bool PlainStream::was_closed() {
 
 void PlainStream::end_greeting() {
   if (std::exchange(has_greeted_, true)) return;
-  handshake_ += zmtp::greeting("NULL", false).substr(first_of_greeting);
+  handshake_ += zmtp::greeting("NULL", false).substr(zmtp::first_of_greeting);
   flush();
 }
 
 PlainStream::Step PlainStream::take_greeting(zmtp::Bytes input) {
   const zmtp::Greeting found = zmtp::check_greeting(input);
   if (found == zmtp::Greeting::incomplete) {
-    if (input.size() >= first_of_greeting) end_greeting();
+    if (input.size() >= zmtp::first_of_greeting) end_greeting();
     return Step::incomplete;
   }
   const bool is_whole = found == zmtp::Greeting::whole;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "plain_endpoint.h"
 #include "session_core.h"
 #include "ziggurat/v1/envelope.h"
 #include "ziggurat/v1/extent.h"
@@ -47,6 +48,9 @@ void SessionCore::open() {
     const auto kind = connection.receive(options.connect_timeout, options.is_interrupted);
     if (!kind && is_interrupted()) {
       throw ConnectionError("interrupted while waiting for a welcome at " + options.endpoint);
+    }
+    if (!kind && has_unknown_host(options.endpoint)) {
+      throw ConnectionError(options.endpoint + ": no host of that name is known");
     }
     if (!kind) {
       throw ConnectionError("no welcome from a server at " + options.endpoint + " within " +

@@ -12,6 +12,7 @@ from .cost import excess, excess_of_robots
 from .curve import Curve
 from .errors import ConnectionLost, Malformed, ProtocolError, Refused, Timeout, printable
 from .find_server import find_server
+from .plain_stream import has_unknown_host
 from .transport import LINGER, SLICE, make_transport
 
 VERSION = v1.Version(major=1, minor=4)
@@ -145,6 +146,8 @@ class Connection:
             except Timeout:
                 if is_patient and self.is_accepted:
                     continue
+                if has_unknown_host(self.endpoint):
+                    raise ConnectionLost(f"{self.endpoint}: no host of that name is known") from None
                 raise ConnectionLost(
                     f"no welcome at {self.endpoint} within {connect_timeout:g} s") from None
             kind = message.WhichOneof("message")

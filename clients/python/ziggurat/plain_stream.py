@@ -87,6 +87,18 @@ def check_endpoint(endpoint: str) -> None:
         raise ValueError(f"endpoint {endpoint!r}: the port is {parts[2]!r}; it must be a number from 1 to 65535")
 
 
+def has_unknown_host(endpoint: str) -> bool:
+    """Whether the host has a name without address. Asks for a second at most."""
+    address = None if endpoint.startswith("ipc://") else address_of(endpoint)
+    if address is None:
+        return False
+    found = address.find()
+    end = time.monotonic() + 1.0
+    while found.answer is None and time.monotonic() < end:
+        time.sleep(_BETWEEN_LOOKS)
+    return found.answer == []
+
+
 def address_of(endpoint: str) -> Optional[Address]:
     """None for what only libzmq connects to: what is neither ipc:///path nor tcp://host:port."""
     if endpoint.startswith("ipc://"):

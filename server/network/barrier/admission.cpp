@@ -191,8 +191,8 @@ void refuse(Barrier& barrier, const std::string& connection, const wire::Hello& 
   refusal.client_version = hello.version;
   barrier.outbox.refusal(refusal);
   send(barrier, connection);
-  note_answer(barrier, fmt::format("{} was refused with {}: {}", label_of(hello), to_string(refusal.fault.code),
-                                   refusal.fault.message));
+  note(barrier, nullptr, fmt::format("{} was refused with {}: {}", label_of(hello), to_string(refusal.fault.code),
+                                     refusal.fault.message));
 }
 
 void admit(Barrier& barrier, const std::string& connection, const Access& access,

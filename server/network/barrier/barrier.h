@@ -14,7 +14,6 @@
 #include "network/barrier/connections.h"
 #include "network/barrier/deadlines.h"
 #include "network/barrier/directors.h"
-#include "network/barrier/few_notices.h"
 #include "network/barrier/journal.h"
 #include "network/barrier/metrics.h"
 #include "network/barrier/seats.h"
@@ -74,7 +73,6 @@ struct Barrier {
   TickGate gate{seats, directors.seats};
   Calls calls;
   Journal journal;
-  FewNotices answered;  // on wrong messages and refused sessions, into the journal
   Metrics metrics;
   Reactions reactions;
   std::vector<AnswerTimes> answer_times;  ///< per controller of the scene

@@ -10,7 +10,7 @@ Connection& Connections::receive_from(const std::string& id, Time now) {
   if (connections_.size() >= forget_at_) forget(now);
   return connections_
       .try_emplace(
-          id, Connection{SessionId::none, wire::Encoding::binary, Allowance(rate_, now), false})
+          id, Connection{SessionId::none, wire::Encoding::binary, TokenBucket(rate_, now), false})
       .first->second;
 }
 
@@ -19,7 +19,8 @@ void Connections::forget(Time now) {
     return entry.second.session == SessionId::none;
   };
   std::erase_if(connections_, [&](const auto& entry) {
-    return has_no_session(entry) && entry.second.allowance.is_full(rate_, now);
+    TokenBucket allowance = entry.second.allowance;
+    return has_no_session(entry) && allowance.refill(rate_, now) >= rate_.at_once;
   });
   if (connections_.size() >= limit_) std::erase_if(connections_, has_no_session);
   forget_at_ = std::min(limit_, std::max(fewest_, 2 * connections_.size()));

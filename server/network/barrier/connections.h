@@ -6,8 +6,8 @@
 #include <string>
 #include <unordered_map>
 
-#include "network/allowance.h"
 #include "network/barrier/session.h"
+#include "network/token_bucket.h"
 #include "wire/messages.h"
 
 namespace ziggurat::network {
@@ -16,7 +16,7 @@ struct Connection {
   SessionId session = SessionId::none;
   /// Of its messages, both ways: the session's, or of the last message without a session.
   wire::Encoding encoding = wire::Encoding::binary;
-  Allowance allowance;
+  TokenBucket allowance;  ///< of messages
   bool is_warned = false;  ///< it was told that it sends too much
 };
 

@@ -54,7 +54,7 @@ void displace(Barrier& barrier, Session& session, const std::string& by) {
     const std::string robots = robots_of(barrier, session);
     barrier.outbox.displaced(by, fmt::format("{} has taken over {}.", by, robots));
     send(barrier, session);
-    barrier.journal.note(fmt::format("{} ({}) was displaced by {}", session.client, robots, by));
+    note(barrier, &session, fmt::format("{} ({}) was displaced by {}", session.client, robots, by));
   }
   erase(barrier, session);
 }
@@ -81,9 +81,8 @@ void take(Barrier& barrier, Session& session, std::span<const std::size_t> robot
     is_held ? release(barrier, session, robot, false) : barrier.seats.drop_claim(robot);
     session.roster.hand_over(position_of(session, robot));
   }
-  barrier.journal.note(fmt::format("{} has taken over {} from {}, which keeps {}", by,
-                                   names_of(barrier, robots), session.client,
-                                   robots_of(barrier, session)));
+  note(barrier, &session, fmt::format("{} has taken over {} from {}, which keeps {}", by, names_of(barrier, robots),
+                                      session.client, robots_of(barrier, session)));
   if (session.state == SessionState::lost) return;
   update_patience(barrier, session);
   for (const std::size_t robot : robots) {
@@ -128,8 +127,7 @@ void handle_leave(Barrier& barrier, Session& session) {
 void lose(Barrier& barrier, Session& session, std::string_view why) {
   if (session.state == SessionState::lost) return;
   if (session.state != SessionState::draining && session.state != SessionState::hello) {
-    barrier.journal.note(
-        fmt::format("{} ({}) is lost: {}", session.client, robots_of(barrier, session), why));
+    note(barrier, &session, fmt::format("{} ({}) is lost: {}", session.client, robots_of(barrier, session), why));
   }
   const bool may_resume = session.state != SessionState::draining && session.has_ticks();
   if (!may_resume) return erase(barrier, session);

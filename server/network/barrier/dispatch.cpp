@@ -38,11 +38,12 @@ void handle_request(Barrier& barrier, Session& session) {
   session.contact.faults = 0;
 }
 
+std::size_t size_of(const Received& received) { return received.bytes.size() + received.skipped; }
+
 /// Why a message can't be looked into, if it can't.
 std::optional<wire::Fault> check_size(const Barrier& barrier, const Received& received,
                                       const Session* session) {
-  const std::size_t size = received.bytes.size() + received.skipped;
-  const std::size_t allowed = longest_message(barrier, session);
+  const std::size_t size = size_of(received), allowed = longest_message(barrier, session);
   // A Hello of this user's own processes may be longer than those of others: the socket knows.
   const bool is_too_long = received.skipped > 0 || size > barrier.config.max_message_bytes ||
                            (session != nullptr && size > allowed);
@@ -63,8 +64,7 @@ bool may_send(Barrier& barrier, const std::string& id, Connection& connection, S
   if (session != nullptr) {
     lose(barrier, *session, "it was closed because it sends too many messages");
   } else {
-    barrier.journal.note(
-        "A peer without a session sends too many messages and is not answered any more.");
+    note(barrier, nullptr, "A peer without a session sends too many messages and is not answered any more.");
   }
   return false;
 }
@@ -106,8 +106,8 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
   if (session == nullptr) connection.encoding = encoding;
   if (!may_send(barrier, id, connection, session)) return;
   const bool is_controller = standing_of(session) == Standing::controller;
-  const std::size_t charge = received.bytes.size() / (is_controller ? bytes_per_message_of_controller
-                                                                    : bytes_per_message);
+  const std::size_t charge =
+      size_of(received) / (is_controller ? bytes_per_message_of_controller : bytes_per_message);
   Connections::charge(connection, charge);
   if (!received.is_single_frame) return answer_malformed(barrier, id, session, {});
   if (auto fault = check_size(barrier, received, session)) {

@@ -1,14 +1,21 @@
 #include "network/barrier/journal.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace ziggurat::network {
 namespace {
 
-constexpr std::size_t max_notices = 100;
 constexpr std::size_t max_notice = 1000;    // bytes
 constexpr std::size_t max_failure = 16384;  // bytes of a failure's message
+
+std::string line_of(std::string_view text) {
+  std::string line(text.substr(0, max_notice));
+  while (line.ends_with('\n')) line.pop_back();
+  std::ranges::replace(line, '\n', ' ');
+  return printable(line);
+}
 
 }  // namespace
 
@@ -21,13 +28,9 @@ std::string printable(std::string_view text) {
   return result;
 }
 
-void Journal::note(std::string_view text) {
-  if (report_.notices.size() == max_notices) report_.notices.erase(report_.notices.begin());
-  std::string line(text.substr(0, max_notice));
-  while (line.ends_with('\n')) line.pop_back();
-  std::ranges::replace(line, '\n', ' ');
-  report_.notices.push_back(printable(line));
-}
+void Journal::note(std::string_view text, Time now) { notices_.add(line_of(text), now); }
+
+void Journal::note_other(std::string_view text, Time now) { of_others_.add(line_of(text), now); }
 
 void Journal::fail(std::size_t robot, std::string_view message, std::uint64_t tick) {
   report_.failures.push_back({robot, std::string(message.substr(0, max_failure)), tick});
@@ -54,7 +57,15 @@ Report Journal::take() {
   std::stable_sort(report_.log.begin(), report_.log.end(), by_robot);
   std::stable_sort(report_.failures.begin(), report_.failures.end(), by_robot);
   std::stable_sort(report_.departures.begin(), report_.departures.end(), by_robot);
+  report_.notices = notices_.take();
+  std::ranges::move(of_others_.take(), std::back_inserter(report_.notices));
   return std::exchange(report_, {});
+}
+
+Report Journal::take(Time now) {
+  notices_.tell_last(now);
+  of_others_.tell_last(now);
+  return take();
 }
 
 }  // namespace ziggurat::network

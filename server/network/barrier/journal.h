@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "network/notices.h"
 #include "network/report.h"
 #include "wire/messages.h"
 
@@ -17,8 +18,11 @@ std::string printable(std::string_view text);
 
 class Journal {
  public:
-  /// A sentence on a peer. Long ones are cut, and the oldest dropped if there are too many.
-  void note(std::string_view text);
+  using Time = Notices::Time;
+  /// A sentence on a session. Long ones are cut.
+  void note(std::string_view text, Time now);
+  /// The same on what peers without part in the ticks do: their noise does not hide the others.
+  void note_other(std::string_view text, Time now);
   /// A robot's controller has failed.
   /// @param tick  of the observation that it failed on
   void fail(std::size_t robot, std::string_view message, std::uint64_t tick);
@@ -39,9 +43,12 @@ class Journal {
 
   /// All of it since the last time.
   Report take();
+  /// The same, with the last sentences that were not told, if it is their time.
+  Report take(Time now);
 
  private:
   Report report_;
+  Notices notices_, of_others_;
 };
 
 }  // namespace ziggurat::network

@@ -36,8 +36,10 @@ std::string_view lost_by(Delivery delivery, const Session& session) {
   return "its connection is gone, or it does not read";
 }
 
-void note_answer(Barrier& barrier, std::string sentence) {
-  if (const auto told = barrier.answered.add(std::move(sentence), barrier.now)) barrier.journal.note(*told);
+void note(Barrier& barrier, const Session* session, std::string_view sentence) {
+  const bool has_part_in_ticks = standing_of(session) == Standing::controller;
+  has_part_in_ticks ? barrier.journal.note(sentence, barrier.now)
+                    : barrier.journal.note_other(sentence, barrier.now);
 }
 
 void answer_fault(Barrier& barrier, const std::string& connection, Session* session,
@@ -61,7 +63,7 @@ void answer_fault(Barrier& barrier, const std::string& connection, Session* sess
                                                        : session->client;
   const bool ends_with_it = session != nullptr && session->role == wire::Role::director;  // and says why
   if (!ends_with_it || is_last) {
-    note_answer(barrier, fmt::format("{} was answered {}: {}", client, to_string(fault.code), fault.message));
+    note(barrier, session, fmt::format("{} was answered {}: {}", client, to_string(fault.code), fault.message));
   }
   if (session == nullptr) return;
   if (is_last) return lose(barrier, *session, "it was closed for its bad messages");

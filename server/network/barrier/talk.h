@@ -18,8 +18,9 @@ Delivery send(Barrier& barrier, Session& session);
 /// Why a session is lost that its tick reached so; empty: it is not.
 std::string_view lost_by(Delivery delivery, const Session& session);
 
-/// Tells of a wrong message or a refused session, unless there were too many a moment ago.
-void note_answer(Barrier& barrier, std::string sentence);
+/// Tells people what a client did, unless there was too much of that a moment ago.
+/// @param session  null: it has none
+void note(Barrier& barrier, const Session* session, std::string_view sentence);
 /// Answers a bad message. A session that sends nothing else is closed.
 /// @param session  of the connection; null: none
 /// @param request  the number of the request that the message was, if it was one

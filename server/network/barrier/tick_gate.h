@@ -47,9 +47,11 @@ class TickGate {
   void set_standing(bool is_standing) { is_standing_ = is_standing; }
   bool is_standing() const { return is_standing_; }
 
+  /// A session owes an answer.
+  bool is_owed() const { return owing_ > 0; }
   /// No session owes an answer, and no free robot or director is waited for.
   bool is_answered() const {
-    return owing_ == 0 && !seats_.is_awaited() && !directors_.is_awaited();
+    return !is_owed() && !seats_.is_awaited() && !directors_.is_awaited();
   }
   bool is_complete() const {
     return is_answered() && !is_held(Hold::paused) && !is_held(Hold::stopped);

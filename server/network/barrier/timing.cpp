@@ -124,8 +124,8 @@ void note_miss(Barrier& barrier, Session& session, milliseconds deadline) {
       untold.misses == 1 ? fmt::format("at tick {}", session.turn.tick)
                          : fmt::format("at {} of the ticks {} to {}", untold.misses,
                                        untold.first_tick, session.turn.tick);
-  barrier.journal.note(fmt::format("{} ({}) missed its deadline of {} ms {}", session.client,
-                                   robots_of(barrier, session), deadline.count(), ticks));
+  note(barrier, &session, fmt::format("{} ({}) missed its deadline of {} ms {}", session.client,
+                                      robots_of(barrier, session), deadline.count(), ticks));
   untold = {0, 0, barrier.now + between_notices};
 }
 

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 namespace ziggurat::network::zmtp {
 namespace {
@@ -152,7 +153,11 @@ bool CurvePeer::initiate(Bytes body, std::string& reply) {
     return false;
   }
   client_ = *client;
-  if (!is_of_client(read_metadata(Bytes(*content).subspan(least)))) return false;
+  Metadata metadata = read_metadata(Bytes(*content).subspan(least));
+  if (!is_of_client(metadata)) {
+    refused_metadata_ = std::move(metadata);
+    return false;
+  }
   shared_ = *shared;
   const auto our_number = bytes_of_number(++sent_);
   const std::string ours = metadata_of("ROUTER");

@@ -51,6 +51,8 @@ class CurvePeer {
   bool initiate(Bytes body, std::string& reply);
   /// The client's key if that is why initiate() has failed, in Z85; otherwise empty.
   const std::string& unlisted_key() const { return unlisted_key_; }
+  /// The client's metadata if those are why; otherwise none.
+  const std::optional<Metadata>& refused_metadata() const { return refused_metadata_; }
   /// After initiate(): whose key it is, as an index into Curve::clients.
   std::size_t client() const { return client_; }
 
@@ -77,6 +79,7 @@ class CurvePeer {
   std::uint64_t received_ = 0;
   std::size_t client_ = 0;
   std::string unlisted_key_;
+  std::optional<Metadata> refused_metadata_;
 };
 
 }  // namespace ziggurat::network::zmtp

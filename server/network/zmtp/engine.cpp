@@ -1,15 +1,24 @@
 #include "network/zmtp/engine.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace ziggurat::network::zmtp {
 namespace {
 
 using Step = Taken::Step;
 
+constexpr const char* not_a_frame = "a frame of its is none of ZMTP 3";
+
 std::string_view mechanism_for(const CurveKeys* keys) { return keys == nullptr ? "NULL" : "CURVE"; }
 
-Taken failed() { return {Step::failed, 0, false, {}}; }
+/// What a client is told to be instead of what its metadata say.
+std::string refusal_of(const Metadata& metadata) {
+  constexpr std::size_t longest_type = 16;
+  if (!metadata.is_valid) return "its metadata are none of ZMTP 3";
+  const std::string type = metadata.socket_type.substr(0, longest_type);
+  return "it is a socket of type " + (type.empty() ? "none" : type) + ", and the server talks with a DEALER";
+}
 
 }  // namespace
 
@@ -17,7 +26,14 @@ Engine::Engine(const CurveKeys* keys) : keys_(keys) {
   if (keys != nullptr) curve_.emplace(*keys);
 }
 
-std::string Engine::greeting() const { return zmtp::greeting(mechanism_for(keys_), true); }
+std::string Engine::greeting() const {
+  return zmtp::greeting(mechanism_for(keys_), true).substr(0, first_of_greeting);
+}
+
+Taken Engine::fail(std::string why) {
+  refusal_ = std::move(why);
+  return {Step::failed, 0, false, {}};
+}
 
 Access Engine::access() const {
   if (!curve_) return {};
@@ -27,49 +43,60 @@ Access Engine::access() const {
 /// Refuses early what begins otherwise, such as HTTP.
 Taken Engine::take_greeting(Bytes input, std::string& reply) {
   const Greeting found = check_greeting(input);
-  if (found == Greeting::wrong) return failed();
-  if (found == Greeting::incomplete) return {Step::incomplete, greeting_size, false, {}};
-  if (mechanism_of(input) != mechanism_for(keys_)) {
-    refusal_ = curve_ ? "it has no key, and the endpoint is protected (--curve-clients)"
-                      : "it has keys, and the endpoint is not protected";
-    return failed();
+  if (found == Greeting::wrong) {
+    const std::string version(older_version(input));
+    return fail(version.empty() ? "what it sends is not ZMTP 3, ZeroMQ's wire protocol"
+                                : "it speaks ZMTP " + version + ", and ZMTP 3 is needed (libzmq 4)");
   }
-  stage_ = curve_ ? Stage::hello : Stage::ready;
-  if (!curve_) append_command(reply, "READY", metadata_of("ROUTER"));
-  return {Step::passed, greeting_size, false, {}};
+  if (input.size() >= first_of_greeting && !std::exchange(has_greeted_, true)) {
+    reply += zmtp::greeting(mechanism_for(keys_), true).substr(first_of_greeting);
+  }
+  if (found == Greeting::incomplete) return {Step::incomplete, greeting_size, false, {}};
+  const std::string mechanism(mechanism_of(input));
+  if (mechanism == mechanism_for(keys_)) {
+    stage_ = curve_ ? Stage::hello : Stage::ready;
+    return {Step::passed, greeting_size, false, {}};
+  }
+  if (mechanism == "NULL") return fail("it has no key, and the endpoint is protected (--curve-clients)");
+  if (mechanism == "CURVE") return fail("it has keys, and the endpoint is not protected");
+  return fail("its mechanism is " + mechanism + ", and the endpoint's is " + std::string(mechanism_for(keys_)));
 }
 
-bool Engine::take_handshake(Bytes body, std::string& reply) {
+/// @return  why it has failed; empty if it has not
+std::string Engine::take_handshake(Bytes body, std::string& reply) {
   if (stage_ == Stage::hello) {
-    const bool is_ours = curve_->hello(body, reply);
-    if (is_ours) stage_ = Stage::ready;
-    if (!is_ours) refusal_ = "it expects another server key";
-    return is_ours;
+    if (!curve_->hello(body, reply)) return "it expects another server key";
+    stage_ = Stage::ready;
+    return {};
   }
-  if (!curve_) {
-    const auto data = command_data(body, "READY");
-    if (!data || !is_of_client(read_metadata(*data))) return false;
-  } else if (!curve_->initiate(body, reply)) {
-    if (const auto& key = curve_->unlisted_key(); !key.empty()) {
-      refusal_ = "its key " + key + " is not in --curve-clients";
+  if (curve_) {
+    if (curve_->initiate(body, reply)) {
+      stage_ = Stage::open;
+      return {};
     }
-    return false;
+    if (const auto& key = curve_->unlisted_key(); !key.empty()) return "its key " + key + " is not in --curve-clients";
+    return curve_->refused_metadata() ? refusal_of(*curve_->refused_metadata()) : "its handshake is none of CURVE";
   }
+  const auto data = command_data(body, "READY");
+  const Metadata metadata = data ? read_metadata(*data) : Metadata{};
+  if (!is_of_client(metadata)) return refusal_of(metadata);
+  // Not earlier: a socket of another type closes the connection when it has ours, before it tells its own.
+  append_command(reply, "READY", metadata_of("ROUTER"));
   stage_ = Stage::open;
-  return true;
+  return {};
 }
 
 Taken Engine::take(std::span<std::uint8_t> input, std::size_t limit, std::string& reply) {
   if (stage_ == Stage::greeting) return take_greeting(input, reply);
   const auto header = read_header(input);
   if (!header) return {Step::incomplete, longest_header, false, {}};
-  if (!header->is_valid) return failed();
+  if (!header->is_valid) return fail(not_a_frame);
   const std::size_t around = curve_ ? CurvePeer::overhead : 0;
   const bool is_traffic = is_open() && !header->is_command;
   const std::size_t most = is_traffic ? limit + around : longest_command;
   if (header->body > most) {
     const bool fits = header->body < SIZE_MAX / 2;
-    if (!is_traffic || !fits) return failed();
+    if (!is_traffic || !fits) return fail(not_a_frame);
     return {Step::too_long,
             header->length + static_cast<std::size_t>(header->body),
             header->has_more,
@@ -79,7 +106,7 @@ Taken Engine::take(std::span<std::uint8_t> input, std::size_t limit, std::string
   if (input.size() < size) return {Step::incomplete, size, false, {}};
   const auto body = input.subspan(header->length, static_cast<std::size_t>(header->body));
   if (is_open()) return take_traffic(*header, body, size, reply);
-  if (!take_handshake(body, reply)) return failed();
+  if (std::string why = take_handshake(body, reply); !why.empty()) return fail(std::move(why));
   return {Step::passed, size, false, {}};
 }
 
@@ -88,7 +115,7 @@ Taken Engine::take_traffic(const Header& header, std::span<std::uint8_t> body, s
   CurvePeer::Opened opened{body, header.has_more, header.is_command};
   if (curve_) {
     const auto box = curve_->open(body);
-    if (!box) return failed();
+    if (!box) return fail("a box of its can't be opened");
     opened = *box;
   }
   if (!opened.is_command) return {Step::frame, size, opened.has_more, opened.content};

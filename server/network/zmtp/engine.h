@@ -38,7 +38,7 @@ class Engine {
   /// @param keys  must outlive the engine; null: no encryption
   explicit Engine(const CurveKeys* keys);
 
-  /// The first bytes that the client must be sent.
+  /// The first bytes that the client must be sent: first_of_greeting.
   std::string greeting() const;
   /// Looks at the front of what has arrived. A frame in a box is opened in place.
   /// @param limit  of a frame's content [bytes]
@@ -47,7 +47,7 @@ class Engine {
 
   /// The handshake is over: messages can be sent.
   bool is_open() const { return stage_ == Stage::open; }
-  /// Why the client's keys were refused, for people; empty if they were not.
+  /// Why the last step has failed, for people; empty if none has.
   const std::string& refusal() const { return refusal_; }
   /// What the client may do. @pre is_open()
   Access access() const;
@@ -60,15 +60,17 @@ class Engine {
  private:
   enum class Stage { greeting, hello, ready, open };
   Taken take_greeting(Bytes input, std::string& reply);
-  bool take_handshake(Bytes body, std::string& reply);
+  std::string take_handshake(Bytes body, std::string& reply);
   Taken take_traffic(const Header& header, std::span<std::uint8_t> body, std::size_t size,
                      std::string& reply);
   void take_command(Bytes body, std::string& reply);
+  Taken fail(std::string why);
 
   Stage stage_ = Stage::greeting;
   const CurveKeys* keys_;
   std::optional<CurvePeer> curve_;
   std::string refusal_;
+  bool has_greeted_ = false;  // with the whole greeting
 };
 
 }  // namespace ziggurat::network::zmtp

@@ -17,6 +17,7 @@
 
 #include "waiting.h"
 #include "ziggurat/error.h"
+#include "ziggurat/ziggurat.h"
 #include "zmtp/frame.h"
 
 namespace ziggurat {
@@ -43,6 +44,20 @@ TEST(Transport, AConnectionThatIsRefusedTellsTheSender) {
     });
   };
   EXPECT_THROW(send_for_long(), ConnectionError) << "without a queue ZeroMQ alone would wait without end";
+}
+
+/// RFC 6761: no name that ends with .invalid has an address.
+TEST(Endpoints, OfAnUnknownHostAreToldAsSuch) {
+  Options options;
+  options.endpoint = "tcp://nowhere.invalid:5555";
+  options.robots = {"*"};
+  options.connect_timeout = std::chrono::milliseconds{200};
+  try {
+    Session session(options);
+    FAIL() << "connected";
+  } catch (const ConnectionError& error) {
+    EXPECT_STREQ(error.what(), "tcp://nowhere.invalid:5555: no host of that name is known");
+  }
 }
 
 TEST(Endpoints, ThatNoServerCanListenAtAreToldAtOnce) {

@@ -262,9 +262,11 @@ TEST_F(Protected, ARefusedKeyIsToldOnBothSides) {
   EXPECT_NE(other.find("refused key? The server breaks off"), std::string::npos) << other;
   EXPECT_NE(none.find("refused key? The endpoint is protected"), std::string::npos) << none;
   const auto notices = server.take_report().notices;
-  ASSERT_EQ(notices.size(), 1U) << "one line a second, with the number of the others";
-  EXPECT_NE(notices[0].find("A client was refused: "), std::string::npos) << notices[0];
-  EXPECT_NE(notices[0].find(" more like this."), std::string::npos) << notices[0];
+  for (const char* why : {" is not in --curve-clients", "it expects another server key", "it has no key"}) {
+    EXPECT_TRUE(std::ranges::any_of(notices, [&](const std::string& notice) {
+      return notice.starts_with("A client was refused: ") && notice.find(why) != std::string::npos;
+    })) << why;
+  }
 }
 
 TEST_F(Protected, TheLineOnARefusedKeyHasTheKey) {

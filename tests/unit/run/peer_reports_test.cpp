@@ -89,22 +89,23 @@ TEST_F(Spawning, AFailureIsNotThatOfARobotOfASnapshotAtItsPlace) {
   testing::internal::GetCapturedStderr();
 }
 
-TEST_F(Spawning, NoticesOnPeersAreAThousandAtOnceThenOneASecond) {
+TEST_F(Spawning, DeparturesAreToldTwentyAtOnceThenOneASecond) {
   std::vector<std::string> told;
   PeerReports telling{world, console, [&](auto, auto, std::string_view text) { told.emplace_back(text); }};
+  std::uint64_t tick = 0;
   const auto take = [&](int count, auto now) {
     network::Report report;
-    for (int i = 0; i < count; ++i) report.notices.emplace_back("a peer");
+    for (int i = 0; i < count; ++i) report.departures.push_back({0, tick++});
     telling.take(std::move(report), 7, now);
   };
   testing::internal::CaptureStderr();
   const auto now = std::chrono::steady_clock::now();
-  take(1500, now);
-  EXPECT_EQ(told.size(), 1000U);
-  take(1, now + std::chrono::milliseconds{1100});
+  take(500, now);
+  EXPECT_EQ(told.size(), 20U);
+  take(0, now + std::chrono::milliseconds{1100});
   testing::internal::GetCapturedStderr();
-  ASSERT_EQ(told.size(), 1002U);
-  EXPECT_EQ(told.back(), "before that, 500 notices on peers were not printed");
+  ASSERT_EQ(told.size(), 21U);
+  EXPECT_TRUE(told.back().ends_with("(479 more before it.)")) << told.back();
 }
 
 TEST(PeerReports, LinesOfARobotThatAResetTookAreStillItsOwn) {

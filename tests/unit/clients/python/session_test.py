@@ -91,6 +91,11 @@ class Beginning(SessionCase):
         with self.assertRaises(ValueError):
             ziggurat.connect("nonsense")
 
+    def test_an_unknown_host_is_told_as_such(self):
+        """RFC 6761: no name that ends with .invalid has an address."""
+        with self.assertRaisesRegex(ziggurat.ConnectionLost, "^tcp://nowhere.invalid:5555: no host of that name is known$"):
+            ziggurat.connect("tcp://nowhere.invalid:5555", "*", connect_timeout=0.2)
+
     def test_an_endpoint_that_no_server_can_listen_at(self):
         keys = ziggurat.Curve(*(key.decode() for key in (*zmq.curve_keypair(), zmq.curve_keypair()[0])))
         for curve in (None, keys):

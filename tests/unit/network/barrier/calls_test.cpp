@@ -79,12 +79,14 @@ TEST(Calls, UnansweredOnesOfASessionTakeBoundedMemory) {
 
 TEST(Journal, NoticesArePrintableAndBounded) {
   Journal journal;
-  for (int i = 0; i < 150; ++i) journal.note("\x1b[31m" + std::to_string(i) + "\n");
-  journal.note(std::string(5000, 'x'));
+  journal.note(std::string(5000, 'x'), {});
+  for (int i = 0; i < 150; ++i) journal.note("\x1b[31m" + std::to_string(i) + "\n", {});
+  journal.note_other("not hidden by the others", {});
   const Report report = journal.take();
-  ASSERT_EQ(report.notices.size(), 100U);
-  EXPECT_EQ(report.notices[0], "?[31m51");
-  EXPECT_EQ(report.notices.back().size(), 1000U);
+  ASSERT_EQ(report.notices.size(), 21U);
+  EXPECT_EQ(report.notices[0].size(), 1000U);
+  EXPECT_EQ(report.notices[1], "?[31m0");
+  EXPECT_EQ(report.notices.back(), "not hidden by the others");
   EXPECT_TRUE(journal.take().notices.empty());
 }
 
