@@ -68,10 +68,10 @@ class Server:
             raise RuntimeError(f"ziggurat serve did not start: {line}{_readable(errors)}") from None
 
     def session(self, **options: Any) -> Session:
-        """As connect(). Without one the server is ended; if it has ended itself, because of a fault in the scene
-        for example, RuntimeError has what it printed."""
+        """As connect(), but with nothing from the environment: that may be of another server. Without one this server is
+        ended; if it has ended itself, because of a fault in the scene for example, RuntimeError has what it printed."""
         try:
-            return connect(self.endpoint, **options)
+            return connect(self.endpoint, environment={}, **options)
         except BaseException as error:
             if isinstance(error, ConnectionLost) or getattr(error, "code", "") == "OUT_OF_STATE":
                 self._explain(error)

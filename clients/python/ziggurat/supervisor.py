@@ -87,7 +87,8 @@ class States:
 
 def supervise(endpoint: str = "", **options: Any) -> "Supervisor":
     """A Supervisor of the server at this endpoint, otherwise at that of find_server(); options are
-    those of the class."""
+    those of the class. Without curve the keys are those of Curve.from_environment()."""
+    options["curve"] = options.get("curve") or Curve.from_environment()
     return Supervisor(endpoint, **options)
 
 
