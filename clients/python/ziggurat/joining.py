@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import MutableMapping, Optional, Sequence, Union
+from typing import Callable, MutableMapping, Optional, Sequence, Union
 
 from . import protocol_pb2 as v1
 from .curve import Curve
@@ -32,7 +32,8 @@ def connect(endpoint: str = "", robots: Union[str, Sequence[str]] = (), *, contr
             takeover: bool = False, can_restore: bool = False, curve: Optional[Curve] = None,
             connect_timeout: float = 10.0, wait_timeout: Optional[float] = None,
             resume_timeout: Optional[float] = None,
-            environment: MutableMapping[str, str] = os.environ) -> Session:
+            environment: MutableMapping[str, str] = os.environ,
+            has_ended: Callable[[], bool] = lambda: False) -> Session:
     """A session with all robots that match both `robots` (ids, or globs with * ? [a-z]) and
     `controller` (its id in the scene); with neither, all robots.
 
@@ -48,6 +49,7 @@ def connect(endpoint: str = "", robots: Union[str, Sequence[str]] = (), *, contr
     resume_timeout   wall time for which a session whose connection was lost is tried to resume [s]; None: as
                      long as the server reserves the robots, at least 10 s; 0: never
     environment      {}: nothing but the endpoint is taken from there
+    has_ended        whether the server is known to have ended: then it is not waited for
 
     Raises ConnectionLost if no server answers, and Refused if the server refuses the session.
     """
@@ -62,7 +64,7 @@ def connect(endpoint: str = "", robots: Union[str, Sequence[str]] = (), *, contr
                      session_token=token, can_restore=can_restore)
     if deadline is not None:
         hello.deadline_policy.CopyFrom(deadline._message())
-    return Session(endpoint, hello, curve, connect_timeout, wait_timeout, resume_timeout)
+    return Session(endpoint, hello, curve, connect_timeout, wait_timeout, resume_timeout, has_ended)
 
 
 def take_token(endpoint: str, environment: MutableMapping[str, str] = os.environ) -> bytes:

@@ -62,6 +62,7 @@ struct ServerStatus {
   std::vector<SessionStatus> sessions;
   std::vector<std::string> free_robots;  ///< ids: without a session; the world waits for them
   std::vector<std::string> gone_robots;  ///< ids: they left the run forever
+  std::vector<std::string> free_directors;  ///< ids: likewise without a session
   struct Phase {
     std::string name;  ///< "exchange", "physics", "recording" or "pacing"
     Latency wall;
@@ -132,6 +133,8 @@ class Supervisor {
   /// present one.
   std::uint64_t move(std::string_view entity, const std::array<double, 3>& position,
                      const std::optional<std::array<double, 4>>& orientation = std::nullopt);
+  /// A revolute or prismatic joint is put there, from its initial position [m or rad], and moves so [m/s or rad/s].
+  std::uint64_t set_joint(std::string_view entity, std::string_view joint, double position, double velocity = 0);
   /// @param entities  ids or globs; none = all
   WorldStates read(std::span<const std::string> entities = {});
   /// Ends the run, as Ctrl-C does. With a reason that was planned: the run's exit code is 0.
