@@ -3,7 +3,6 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 #include "devices/kind.h"
@@ -32,12 +31,9 @@ class Joints final : public Kind {
                world::Layout& layout) const override {
     using scene::JointMode;
     const scene::JointsUse& joints = carrier.enabled.joints;
-    std::unordered_set<std::string_view> listed;
-    robot.joint_sensors = append(joints.sensors, layout.joint_sensors, [&](const auto& sensor) {
-      const bool is_velocity = sensor.mode == JointMode::velocity;
-      const bool is_first = listed.insert(sensor.joint).second;
-      return world::JointSensorLayout{sensor.joint, is_velocity, sensor.mode == JointMode::disabled,
-                                      is_first ? "" : sensor.joint + (is_velocity ? " velocity" : " position")};
+    robot.joint_sensors = append(joints.sensors, layout.joint_sensors, [](const auto& sensor) {
+      return world::JointSensorLayout{sensor.joint, sensor.mode == JointMode::velocity,
+                                      sensor.mode == JointMode::disabled};
     });
     robot.joint_actuators =
         append(joints.actuators, layout.joint_actuators, [&](const auto& actuator) {

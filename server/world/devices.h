@@ -34,9 +34,7 @@ struct JointSensorLayout {
   std::string id;
   bool velocity = false;  ///< reads q' [m/s, rad/s] instead of q [m, rad]
   bool disabled = false;  ///< always reads 0
-  std::string name = {};  ///< in recordings, if the joint's id names another sensor already
 };
-
 
 /// A joint with a motor: an entry of Commands::joint_targets.
 struct JointActuatorLayout {
@@ -268,11 +266,6 @@ struct Image {
   std::vector<std::uint8_t> rgb;
 };
 
-inline const std::string& recorded_name(const DeviceLists& lists, std::size_t joint_sensor) {
-  const JointSensorLayout& sensor = lists.joint_sensors[joint_sensor];
-  return sensor.name.empty() ? sensor.id : sensor.name;
-}
-
 /// What all robots sense at one tick.
 struct Observations {
   std::uint64_t tick = 0;
@@ -300,7 +293,7 @@ inline constexpr std::tuple sensed{
     ByHand{&Observations::tick, Hashed::no},
     ByHand{&Observations::time_ns, Hashed::no},
     Sensed<double>{&Observations::joint_readings, "joint_encoders", all<&Ranges::joint_sensors>,
-                   recorded_name, Hashed::first},
+                   id<&Lists::joint_sensors>, Hashed::first},
     ByHand{&Observations::radio_messages, Hashed::second},
     Sensed<double>{&Observations::proximity, "proximity", all<&Ranges::proximity>},
     ByHand{&Observations::range_and_bearing, Hashed::second},
