@@ -26,19 +26,16 @@ struct Request {
     shutdown,
     snapshot,
     restore,
-    set_joint = 28,
   };
   std::uint64_t id = 0;  ///< the client's own
   Kind kind = Kind::none;
   std::uint64_t ticks = 0;            ///< step
   std::optional<std::uint64_t> seed;  ///< reset
-  /// spawn: XML; remove, move, set_joint: id of an entity; snapshot, restore: its name; shutdown: the reason, or
+  /// spawn: XML; remove, move: id of an entity; snapshot, restore: its name; shutdown: the reason, or
   /// nothing
   std::string text;
   std::vector<std::string> entities;  ///< read: ids or globs
   std::vector<std::string> held_up;   ///< ids of robots or directors whose sessions can't answer before the Response
-  std::string joint;                  ///< set_joint: its id
-  double joint_position = 0, joint_velocity = 0;  ///< set_joint: as given [m, rad], [m/s, rad/s]
   std::vector<double> position;       ///< move: as given; x, y, z [m] if it is right
   std::vector<double> orientation;    ///< move: as given; w, x, y, z or nothing
 };

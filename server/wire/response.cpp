@@ -53,12 +53,6 @@ Request read(const v1::Request& from) {
   if (from.has_shutdown()) request.text = from.shutdown().reason();
   if (from.has_remove()) request.text = from.remove().entity();
   if (from.has_move()) request.text = from.move().entity();
-  if (from.has_set_joint()) {
-    request.text = from.set_joint().entity();
-    request.joint = from.set_joint().joint();
-    request.joint_position = from.set_joint().position();
-    request.joint_velocity = from.set_joint().velocity();
-  }
   if (from.has_snapshot()) request.text = from.snapshot().name();
   if (from.has_restore()) request.text = from.restore().name();
   request.entities.assign(from.read().entities().begin(), from.read().entities().end());

@@ -261,15 +261,6 @@ std::uint64_t Supervisor::move(std::string_view entity, const std::array<double,
   return state_->ask().tick();
 }
 
-std::uint64_t Supervisor::set_joint(std::string_view entity, std::string_view joint, double position, double velocity) {
-  v1::SetJointRequest& set = *state_->request().mutable_set_joint();
-  set.set_entity(v1::valid_utf8(std::string(entity)));
-  set.set_joint(v1::valid_utf8(std::string(joint)));
-  set.set_position(position);
-  set.set_velocity(velocity);
-  return state_->ask().tick();
-}
-
 WorldStates Supervisor::read(std::span<const std::string> entities) {
   v1::ReadRequest& read = *state_->request().mutable_read();
   for (const std::string& entity : entities) read.add_entities(v1::valid_utf8(entity));

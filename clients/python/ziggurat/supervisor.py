@@ -185,11 +185,6 @@ class Supervisor:
         return self._ask(move=v1.MoveRequest(entity=entity, position=position,
                                              orientation=orientation)).tick
 
-    def set_joint(self, entity: str, joint: str, position: float, velocity: float = 0.0) -> int:
-        """A revolute or prismatic joint is put there, from its assembled pose [m or rad], and moves so [m/s or rad/s]; the
-        entity's other joints and its first link stay as they are."""
-        return self._ask(set_joint=v1.SetJointRequest(entity=entity, joint=joint, position=position, velocity=velocity)).tick
-
     def read(self, entities: Union[str, Sequence[str]] = ()) -> States:
         """States of the entities that match these ids or globs; without any, of all."""
         wanted = [entities] if isinstance(entities, str) else list(entities)

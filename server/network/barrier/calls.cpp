@@ -36,7 +36,7 @@ std::optional<wire::Fault> check_entities(const std::vector<std::string>& entiti
 
 /// What keeping it takes, about.
 std::size_t bytes_of(const wire::Request& request) {
-  std::size_t bytes = sizeof request + request.text.size() + request.joint.size() +
+  std::size_t bytes = sizeof request + request.text.size() +
                       sizeof(double) * (request.position.size() + request.orientation.size());
   for (const std::string& each : request.entities) bytes += sizeof each + each.size();
   for (const std::string& each : request.held_up) bytes += sizeof each + each.size();

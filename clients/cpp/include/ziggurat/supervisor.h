@@ -133,8 +133,6 @@ class Supervisor {
   /// present one.
   std::uint64_t move(std::string_view entity, const std::array<double, 3>& position,
                      const std::optional<std::array<double, 4>>& orientation = std::nullopt);
-  /// A revolute or prismatic joint is put there, from its initial position [m or rad], and moves so [m/s or rad/s].
-  std::uint64_t set_joint(std::string_view entity, std::string_view joint, double position, double velocity = 0);
   /// @param entities  ids or globs; none = all
   WorldStates read(std::span<const std::string> entities = {});
   /// Ends the run, as Ctrl-C does. With a reason that was planned: the run's exit code is 0.
