@@ -4,8 +4,8 @@
 It sets every velocity motor to 1 rad/s (or 1 m/s) and logs the first encoder. If its connection is lost, it
 resumes its session; with ZIGGURAT_SERVER_KEY and ZIGGURAT_CURVE_SECRET it is encrypted.
 
-    ziggurat serve scenes/dynamics3d_multi_body_test.argos &
-    controller.py ENDPOINT        as the server prints it
+    ziggurat serve scenes/dynamics3d_multi_body_test.argos
+    controller.py ENDPOINT        in a second terminal; as the server prints it
 """
 
 import base64

@@ -47,6 +47,9 @@ std::string waited_for(const ServerStatus& status) {
   if (!status.free_robots.empty()) {
     text += fmt::format("\nwaiting for a client to connect for {}", some_of(status.free_robots));
   }
+  for (const std::string& director : status.free_directors) {
+    text += fmt::format("\nwaiting for a client to connect for director '{}'", director);
+  }
   return text;
 }
 

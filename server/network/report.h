@@ -36,6 +36,13 @@ struct RobotStatus {
   bool can_restore = true;  ///< held, or of a lost session: its controller can go back to a snapshot
 };
 
+/// What the world needs of a session before it can stand, or move on, if no deadline ends the wait.
+enum class Need {
+  nothing,
+  answers,  ///< to each tick; the one in hand is answered
+  answer,   ///< now: to the tick in hand
+};
+
 /// Whether a director is there, and whether the tick waits for it.
 struct DirectorStatus {
   std::string id;

@@ -279,6 +279,10 @@ void Server::fill(wire::Status& status) const {
   network::fill(state_->barrier, Clock::now(), status);
 }
 
+Need need_of(const Server& server, const std::vector<std::string>& ids) {
+  return need_of(server.state_->barrier, ids);
+}
+
 std::vector<RobotStatus> Server::status() const { return robot_status(state_->barrier); }
 
 Performance Server::performance() const {

@@ -157,6 +157,7 @@ class Server {
  private:
   friend class DirectorsDesk;
   friend void keep_alive(Server& server);
+  friend Need need_of(const Server& server, const std::vector<std::string>& ids);
   struct State;
   std::unique_ptr<State> state_;
 };
@@ -164,6 +165,9 @@ class Server {
 /// While the world is put back, when its layout may be another already: sends heartbeats as usual, and takes
 /// no message.
 void keep_alive(Server& server);
+
+/// What the world needs most of the sessions that have these robots or directors.
+Need need_of(const Server& server, const std::vector<std::string>& ids);
 
 /// The directors of a server.
 class DirectorsDesk {

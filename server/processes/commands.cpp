@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
+#include "processes/command_words.h"
 #include "processes/places.h"
 #include "scene/additions.h"
 #include "scene/values.h"
@@ -19,8 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view white = " \t\r\n";
-
 /// What /bin/sh runs itself.
 constexpr std::array<std::string_view, 33> shell_words{
     "!",    ".",      ":",     "[",    "alias", "bg",    "break", "case",   "cd",
@@ -29,17 +29,6 @@ constexpr std::array<std::string_view, 33> shell_words{
     "type", "ulimit", "umask", "until", "wait", "while"};
 constexpr std::array<std::string_view, 8> script_endings{".py", ".lua", ".js", ".rb",
                                                          ".pl", ".sh",  ".jar", ".m"};
-
-struct Word {
-  std::size_t begin = 0, size = 0;
-};
-
-/// The word at or behind a place of a command; of size 0 if it has none.
-Word word_at(std::string_view command, std::size_t place) {
-  const std::size_t begin = std::min(command.find_first_not_of(white, place), command.size());
-  const std::size_t end = std::min(command.find_first_of(white, begin), command.size());
-  return {begin, end - begin};
-}
 
 bool is_in_path(const std::string& program) {
   const char* variable = std::getenv("PATH");
@@ -53,27 +42,33 @@ bool is_in_path(const std::string& program) {
   return false;
 }
 
+constexpr std::array<std::string_view, 16> interpreters{"python", "pypy", "lua", "node", "ruby", "perl", "bash", "sh",
+                                                       "dash", "zsh", "java", "julia", "octave", "deno", "php", "Rscript"};
+
+bool is_interpreter(const std::string& program) {
+  const std::string name = fs::path(program).filename().string();
+  return std::ranges::any_of(interpreters, [&](std::string_view each) { return name.starts_with(each); });
+}
+
+/// Whether behind this option stands no script, but program text or a module: `-c`, `-lc`, `-m`.
+bool is_for_text(const std::string& option) {
+  return !option.starts_with("--") && (option.ends_with('c') || option.ends_with('m'));
+}
+
 struct Finder {
   const std::string& command;
   const fs::path& naming_file;
   const fs::path& scene_file;
-
-  std::string text(const Word& word) const { return command.substr(word.begin, word.size); }
-
-  std::string replaced(const Word& word, const fs::path& by) const {
-    return command.substr(0, word.begin) + text::shell_word(by.string()) +
-           command.substr(word.begin + word.size);
-  }
-
-  /// The first word, or the one behind exec.
-  Word program_word() const {
-    const Word first = word_at(command, 0);
-    return text(first) == "exec" ? word_at(command, first.begin + first.size) : first;
-  }
+  std::optional<std::string> scene_folder;  ///< none: only a shell knows it
 
   /// Whether only a shell can read the word, or runs it itself.
-  bool is_of_shell(const Word& word) const {
-    return !text::is_plain_word(text(word)) || std::ranges::find(shell_words, text(word)) != shell_words.end();
+  static bool is_of_shell(const Word& word) {
+    const bool is_shell_word = !word.is_quoted && std::ranges::find(shell_words, word.text) != shell_words.end();
+    return word.size == 0 || !word.is_literal || is_shell_word;
+  }
+
+  std::string not_there(const std::string& name) const {
+    return fmt::format("'{}' is not there{}", name, looked_for(name, naming_file, scene_file));
   }
 
   /// A sentence if no shell finds a program of this name.
@@ -85,34 +80,45 @@ struct Finder {
                                  : "install it, or write its path");
   }
 
-  FoundCommand program(const Word& word) const {
-    const std::string name = text(word);
-    const auto found = find_file(name, naming_file, scene_file);
-    if (!found) {
-      return {command, fmt::format("'{}' is not there{}", name,
-                                   looked_for(name, naming_file, scene_file))};
+  /// The first argument that is no option, if it is a script; of size 0 if it is not.
+  Word script_behind(const Word& program) const {
+    Word word = word_at(command, program.end(), scene_folder);
+    while (word.is_literal && word.text.starts_with('-')) {
+      if (is_for_text(word.text)) return {};
+      word = word_at(command, word.end(), scene_folder);
     }
-    if (::access(found->c_str(), X_OK) != 0) {
-      return {replaced(word, *found),
-              fmt::format("{0} can't be executed; write chmod +x {0}", found->string())};
-    }
-    return {replaced(word, *found), {}};
+    const auto ends_name = [&](std::string_view ending) { return word.text.ends_with(ending); };
+    return word.is_literal && std::ranges::any_of(script_endings, ends_name) ? word : Word{};
   }
 
-  /// The first argument that is no option, if it is a script.
-  FoundCommand script(std::size_t behind_program) const {
-    Word word = word_at(command, behind_program);
-    while (word.size > 0 && command[word.begin] == '-') {
-      word = word_at(command, word.begin + word.size);
+  FoundCommand find() const {
+    const Word program = program_word(command, scene_folder);
+    if (is_of_shell(program)) return {command, {}};
+    FoundCommand found{command, {}};
+    const bool has_path = program.text.find('/') != std::string::npos;
+    // From the end, so that places in front stay as they are.
+    if (!has_path || is_interpreter(program.text)) replace(script_behind(program), found);
+    if (has_path) {
+      const auto file = replace(program, found);
+      if (file && ::access(file->c_str(), X_OK) != 0) {
+        found.missing = fmt::format("{0} can't be executed; write chmod +x {0}", file->string());
+      }
+    } else if (std::string missing = missing_in_path(program.text); !missing.empty()) {
+      found = {command, missing};
     }
-    const std::string name = text(word);
-    const auto ends_name = [&](std::string_view ending) { return name.ends_with(ending); };
-    if (!text::is_plain_word(name) || std::ranges::none_of(script_endings, ends_name)) return {command, {}};
-    if (const auto found = find_file(name, naming_file, scene_file)) {
-      return {replaced(word, *found), {}};
+    return found;
+  }
+
+  /// Puts the file that the word names in its place.
+  std::optional<fs::path> replace(const Word& word, FoundCommand& found) const {
+    if (word.size == 0) return std::nullopt;
+    const auto file = find_file(word.text, naming_file, scene_file);
+    if (file) {
+      found.text.replace(word.begin, word.size, text::shell_word(file->string()));
+    } else {
+      found.missing = not_there(word.text);
     }
-    return {command, fmt::format("'{}' is not there{}", name,
-                                 looked_for(name, naming_file, scene_file))};
+    return file;
   }
 };
 
@@ -120,13 +126,11 @@ struct Finder {
 
 FoundCommand find_command(const std::string& command, const fs::path& naming_file,
                           const fs::path& scene_file) {
-  const Finder finder{command, naming_file, scene_file};
-  const Word first = finder.program_word();
-  const std::string program = finder.text(first);
-  if (finder.is_of_shell(first)) return {command, {}};
-  if (program.find('/') != std::string::npos) return finder.program(first);
-  if (std::string missing = finder.missing_in_path(program); !missing.empty()) return {command, missing};
-  return finder.script(first.begin + first.size);
+  return Finder{command, naming_file, scene_file, scene_folder(scene_file)}.find();
+}
+
+std::string scene_folder(const fs::path& scene_file) {
+  return fs::absolute(scene_file).lexically_normal().parent_path().string();
 }
 
 std::vector<scene::Problem> find_commands(scene::Scene& scene, const fs::path& scene_file) {
@@ -149,10 +153,11 @@ std::vector<scene::Problem> find_commands(scene::Scene& scene, const fs::path& s
 
 std::string why_not_started(const std::string& command) {
   const fs::path here = fs::current_path() / "-";
-  const Finder finder{command, here, here};
-  const std::string program = finder.text(finder.program_word());
-  if (program.empty() || program == "''" || program == "\"\"") return "it names no program: its first word is empty";
-  if (finder.is_of_shell(finder.program_word())) return {};
+  const Finder finder{command, here, here, std::nullopt};
+  const Word word = program_word(command, std::nullopt);
+  const std::string& program = word.text;
+  if (word.is_literal && program.empty()) return "it names no program: its first word is empty";
+  if (Finder::is_of_shell(word)) return {};
   if (program.find('/') == std::string::npos) return finder.missing_in_path(program);
   const fs::path file = fs::absolute(program).lexically_normal();
   std::error_code error;

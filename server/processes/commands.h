@@ -15,8 +15,11 @@ struct FoundCommand {
   std::string missing;  ///< a sentence on the file that is not there; empty if all are
 };
 
-/// Finds the program of a command, if its name has a slash, otherwise the script that is its first
-/// argument (`python3 drive.py`). Words that only a shell can read are left to it.
+/// What programs of a scene find in ZIGGURAT_SCENE_FOLDER.
+std::string scene_folder(const std::filesystem::path& scene_file);
+
+/// Finds the program that a command starts at last, if its name has a slash, and the script that is its first argument
+/// (`python3 drive.py`, `nice /usr/bin/python3 'my drive.py'`). Words that only a shell can read are left to it.
 FoundCommand find_command(const std::string& command, const std::filesystem::path& naming_file,
                           const std::filesystem::path& scene_file);
 

@@ -75,6 +75,16 @@ std::vector<Launch> plan_lua(const std::vector<std::size_t>& robots,
   return launches;
 }
 
+/// What a command's program finds in its environment.
+/// @param name, id  of the variable that says what it is to drive
+void add_environment(const LaunchSettings& settings, const char* name, const std::string& id, Program& program) {
+  program.environment = no_keys;
+  program.environment.insert(program.environment.end(), {{"ZIGGURAT_ENDPOINT", settings.endpoint},
+                                                         {name, id},
+                                                         {"ZIGGURAT_SCENE_FOLDER", settings.scene_folder}});
+  if (!settings.python_path.empty()) program.environment.emplace_back("PYTHONPATH", settings.python_path);
+}
+
 Launch plan_director(const scene::Director& director, const LaunchSettings& settings) {
   Launch launch;
   launch.name = fmt::format("director '{}'", director.id);
@@ -88,9 +98,7 @@ Launch plan_director(const scene::Director& director, const LaunchSettings& sett
     return launch;
   }
   launch.program.arguments = {"/bin/sh", "-c", director.command};
-  launch.program.environment.insert(
-      launch.program.environment.end(),
-      {{"ZIGGURAT_ENDPOINT", settings.endpoint}, {"ZIGGURAT_DIRECTOR", director.id}});
+  add_environment(settings, "ZIGGURAT_DIRECTOR", director.id, launch.program);
   return launch;
 }
 
@@ -149,10 +157,7 @@ std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Lay
     launch.name = fmt::format("the command of controller '{}'", controller.id);
     launch.robots = others[c];
     launch.program.arguments = {"/bin/sh", "-c", controller.command};
-    launch.program.environment = {{"ZIGGURAT_ENDPOINT", settings.endpoint},
-                                  {"ZIGGURAT_CONTROLLER", controller.id}};
-    launch.program.environment.insert(launch.program.environment.end(), no_keys.begin(),
-                                      no_keys.end());
+    add_environment(settings, "ZIGGURAT_CONTROLLER", controller.id, launch.program);
     launches.push_back(std::move(launch));
   }
   for (const scene::Director& director : settings.directors) {
@@ -260,14 +265,13 @@ const ControllerProcess& Controllers::restart(const ControllerProcess& ended,
   return processes_[position];
 }
 
-const ControllerProcess* Controllers::first_ended(
-    const std::function<bool(const ControllerProcess&)>& is_needed) {
-  const ControllerProcess* first = nullptr;
+std::vector<ControllerProcess*> Controllers::ended(const std::function<bool(const ControllerProcess&)>& is_needed) {
+  std::vector<ControllerProcess*> ended;
   for (ControllerProcess& each : processes_) {
     const bool has_ended = each.process.poll();  // of all: it collects what each leaves behind
-    if (has_ended && first == nullptr && !each.is_replaced && is_needed(each)) first = &each;
+    if (has_ended && !each.is_settled && is_needed(each)) ended.push_back(&each);
   }
-  return first;
+  return ended;
 }
 
 bool Controllers::are_running() {

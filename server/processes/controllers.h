@@ -1,6 +1,7 @@
 #pragma once
 // The controller processes of a run: which program controls which robots, and starting them.
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -35,7 +36,8 @@ struct ControllerProcess {
   Program program;                ///< that it runs
   unsigned restarts = 0;          ///< how often it was started again
   std::string director = {};      ///< as Launch::director
-  bool is_replaced = false;       ///< it has ended, and clients of others have its robots
+  bool is_settled = false;        ///< it has ended, and its robots need it no more
+  std::optional<std::chrono::steady_clock::time_point> missed_since = {};  ///< it has ended; its last messages may come
 };
 
 /// A script that runs now.
@@ -56,6 +58,8 @@ struct LaunchSettings {
   std::vector<std::string> lua_arguments;  ///< more arguments for ziggurat-lua
   const Guardian* guardian = nullptr;      ///< ends them if this program is killed; null: none
   std::vector<scene::Director> directors = {};  ///< to start, too; their scripts are resolved paths
+  std::string scene_folder = {};  ///< ZIGGURAT_SCENE_FOLDER of commands
+  std::string python_path = {};   ///< PYTHONPATH of commands; empty: that of this program
 };
 
 /// The processes that control the scene's robots. Lua robots that have a script are shared among
@@ -106,21 +110,16 @@ class Controllers {
   bool have_director(const std::string& id) const;
 
   /// Starts an ended process again, with the same robots, in the place of the one that ended.
-  /// @param ended  as first_ended() returns it; not valid afterwards. Not one for spawned robots
+  /// @param ended  as ended() returns it; not valid afterwards. Not one for spawned robots
   /// @param token  of its session, which the new process resumes (ZIGGURAT_SESSION_TOKEN, in hexadecimal);
   ///               empty: it had none
   /// @returns the new process
   /// @throws std::runtime_error, see start_all
   const ControllerProcess& restart(const ControllerProcess& ended, const std::string& token);
 
-  /// first_ended() returns this process no more: others have its robots.
-  void replace(const ControllerProcess& ended) {
-    processes_[static_cast<std::size_t>(&ended - processes_.data())].is_replaced = true;
-  }
-
-  /// The first process, in the order of their start, that has ended and for which `is_needed`.
-  const ControllerProcess* first_ended(
-      const std::function<bool(const ControllerProcess&)>& is_needed);
+  /// The processes, in the order of their start, that have ended, are not settled, and for which `is_needed`. Valid
+  /// until one is started.
+  std::vector<ControllerProcess*> ended(const std::function<bool(const ControllerProcess&)>& is_needed);
 
   bool are_running();  ///< one or more
   void kill();  ///< SIGKILL to all that still run

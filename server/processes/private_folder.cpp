@@ -41,7 +41,7 @@ int lock(const std::string& folder, int flags) {
 /// Whether what is in a folder has names that runs give; also if nothing is.
 bool has_only_ours(const std::string& folder) {
   const auto is_ours = [](const std::string& name) {
-    constexpr std::array<std::string_view, 4> whole{"run", "socket", "files", "gnuplot.log"};
+    constexpr std::array<std::string_view, 5> whole{"run", "socket", "files", "gnuplot.log", "python"};
     return name.starts_with("robots-") || name.starts_with("spawned-") || std::ranges::find(whole, name) != whole.end();
   };
   std::error_code error;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "processes/python_package.h"
 #include "processes/scripts.h"
 #include "replay/recording_error.h"
 #include "replay/scene.h"
@@ -149,6 +150,8 @@ processes::Controllers Rehearsal::start() {
   processes::LaunchSettings settings{server_.endpoints().front(), folder_.path(),
                                      processes::find_lua_runner(), 1, options_.lua_arguments,
                                      signals_.guardian()};
+  settings.scene_folder = folder_.path() + "/files";
+  settings.python_path = processes::python_path(folder_.path());
   std::vector<std::string> folders{folder_.path() + "/files"};
   if (!options_.script.empty()) {
     folders.push_back(std::filesystem::absolute(options_.script).parent_path().string());

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "network/listener.h"
+#include "processes/commands.h"
+#include "processes/python_package.h"
 #include "processes/scripts.h"
 #include "processes/spawned_scripts.h"
 #include "run/askers.h"
@@ -146,6 +148,7 @@ std::unique_ptr<supervision::World> Run::load_world() {
     if (news.is_done) {
       auto world = loading.take();
       past_ ? past_->prepare(*world) : check_outputs(options_, world->scene, files_.names());
+      if (service_ == Service::serve) tell_how_to_connect(options_, server_.endpoints().front(), *world, console_);
       return world;
     }
     server_.attend({news.progress, news.message}, {std::chrono::milliseconds{-1}, descriptors});
@@ -219,6 +222,8 @@ processes::LaunchSettings Run::launch_settings(std::vector<scene::Director> dire
                                      processes::find_lua_runner(), options_.lua_processes,
                                      options_.lua_arguments,       signals_.guardian(),
                                      std::move(directors)};
+  settings.scene_folder = past_ ? folder_.path() + "/files" : processes::scene_folder(path_);
+  settings.python_path = processes::python_path(folder_.path());
   const auto allow = [&](const std::string& folder) {
     settings.lua_arguments.insert(settings.lua_arguments.end(), {"--script-folder", folder});
   };

@@ -18,6 +18,7 @@
 #include "run/loading.h"
 #include "run/version.h"
 #include "text/numbers.h"
+#include "text/quoting.h"
 
 namespace ziggurat::run {
 namespace {
@@ -85,10 +86,37 @@ void announce(const Options& options, const std::vector<std::string>& endpoints,
     for (const auto& endpoint : endpoints) console.result("endpoint " + endpoint);
   }
   console.offer();
+}
+
+void tell_how_to_connect(const Options& options, const std::string& endpoint, const supervision::World& world,
+                         reports::Console& console) {
   const bool is_protected = !options.curve_secret.empty();
-  const std::string keys =
-      is_protected ? " --server-key \"$(cat SERVER.public)\" --curve-secret FILE" : "";
-  console.notice(fmt::format("connect with: ziggurat-lua --connect {}{}", endpoints.front(), keys));
+  const std::string lua = fmt::format("connect with: ziggurat-lua --connect {}{}", endpoint,
+                                      is_protected ? " --server-key \"$(cat SERVER.public)\" --curve-secret FILE" : "");
+  const std::string place = fmt::format("{}ZIGGURAT_ENDPOINT={}",
+                                        is_protected ? "ZIGGURAT_SERVER_KEY=\"$(cat SERVER.public)\" ZIGGURAT_CURVE_SECRET=FILE " : "",
+                                        endpoint);
+  const auto program = [&](const char* name, const std::string& id, const std::string& command) {
+    return fmt::format("connect with: {} {}={} {}", place, name, text::shell_word(id), command.empty() ? "PROGRAM" : command);
+  };
+  std::vector<std::string> hints;
+  const auto add = [&](std::string hint) {
+    if (std::ranges::find(hints, hint) == hints.end()) hints.push_back(std::move(hint));
+  };
+  std::vector<bool> has_robots(world.scene.controllers.size());
+  for (const auto& robot : world.simulation.layout().robots) has_robots[robot.controller] = true;
+  for (std::size_t c = 0; c < has_robots.size(); ++c) {
+    const scene::Controller& controller = world.scene.controllers[c];
+    if (!has_robots[c]) continue;
+    add(processes::runs_script(controller) ? lua : program("ZIGGURAT_CONTROLLER", controller.id, controller.command));
+  }
+  for (const scene::Director& director : world.scene.directors) {
+    add(director.script.empty() ? program("ZIGGURAT_DIRECTOR", director.id, director.command)
+                                : lua + " --director " + text::shell_word(director.id));
+  }
+  constexpr std::size_t most = 8;
+  for (std::size_t i = 0; i < std::min(most, hints.size()); ++i) console.notice(hints[i]);
+  if (hints.size() > most) console.notice(fmt::format("and {} more", hints.size() - most));
 }
 
 wire::Run description_of(const supervision::World& world, const std::vector<std::string>& scripts) {

@@ -36,6 +36,10 @@ void add_controllers(const Options& options, const scene::Scene& scene, network:
 void announce(const Options& options, const std::vector<std::string>& endpoints,
               reports::Console& console);
 
+/// A line on each kind of program that the world waits for: scripts, and the programs of controllers and directors.
+void tell_how_to_connect(const Options& options, const std::string& endpoint, const supervision::World& world,
+                         reports::Console& console);
+
 /// What clients are told of a run. Refers to both.
 /// @param scripts  per robot of the scene; empty = none
 wire::Run description_of(const supervision::World& world, const std::vector<std::string>& scripts);

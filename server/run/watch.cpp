@@ -62,6 +62,34 @@ std::string by_controller(const supervision::World& world, const std::vector<std
   return text;
 }
 
+/// Whether this process is one to start again. Lua processes have robots of several controllers: the most
+/// that one of these may counts. Robots that came later have sessions of their own, and are not resumed.
+/// @param restarts  per controller; empty: none
+bool may_restart(const processes::ControllerProcess& process, const std::vector<unsigned>& restarts,
+                 const world::Layout& layout) {
+  if (process.pipe || restarts.empty()) return false;
+  return std::ranges::any_of(process.robots, [&](std::size_t robot) {
+    return process.restarts < restarts[layout.robots[robot].controller];
+  });
+}
+
+/// Whether the run cannot continue without the robot's controller: before the first tick always,
+/// later if its deadline policy is to wait.
+bool is_required(const network::RobotStatus& robot, bool gathered) {
+  return !gathered || robot.deadline.action == scene::DeadlineAction::wait;
+}
+
+/// The robots of a program that has driven them and ended with exit code 0, without a Leave: they leave as if it had
+/// sent one. Empty if it is none.
+std::vector<std::size_t> left_by(const processes::ControllerProcess& ended, const std::vector<network::RobotStatus>& status) {
+  std::vector<std::size_t> robots;
+  const bool has_begun = std::ranges::all_of(ended.robots, [&](std::size_t robot) { return status[robot].was_held; });
+  if (!ended.process.ended_well() || !has_begun) return robots;
+  std::ranges::copy_if(ended.robots, std::back_inserter(robots),
+                       [&](std::size_t robot) { return status[robot].membership == Membership::free; });
+  return robots;
+}
+
 /// Whether all robots of a process that has ended are driven by others, who took them over.
 bool is_replaced(const processes::ControllerProcess& ended,
                  const std::vector<network::RobotStatus>& status) {
@@ -148,14 +176,14 @@ void Watch::show_end() {
 std::optional<Ending> Watch::until(const Step& step) {
   waiting_since_ = clock::now();
   for (;;) {
-    const auto outcome = step({missed_since_ ? short_wait : usual_wait, descriptors_});
+    const auto outcome = step({missed_since_ || is_early_ ? short_wait : usual_wait, descriptors_});
     serve();
     take_report();
     auto ending = interruption();
     if (!ending) ending = stopped_;
     if (!ending) ending = supervisor_request();
     const bool complete = outcome == network::Outcome::complete;
-    const bool may_have_lost = !complete || child_ended_ || missed_since_ || !restarted_.empty();
+    const bool may_have_lost = !complete || child_ended_ || missed_since_ || is_early_ || !restarted_.empty();
     if (!ending && may_have_lost) ending = lost_controller();
     if (ending || complete) {
       peers_.print_log(tick_);
@@ -189,25 +217,30 @@ std::optional<Ending> Watch::supervisor_request() {
   return std::nullopt;
 }
 
-// Waits a little before it decides: the last messages of a process that ended, which may release
-// its robots, may still arrive; and a lost connection may be that of a process whose end is not
-// known yet.
+/// Whether an ended process leaves something undone: robots that the run can't go on without, or that it would have if
+/// it was started again.
+bool Watch::is_missed(const processes::ControllerProcess& process, const std::vector<network::RobotStatus>& status,
+                      const std::vector<std::string>& free_directors) const {
+  if (std::ranges::find(free_directors, process.director) != free_directors.end()) return true;
+  // One that was ended from outside took leave perhaps; its own failures are reported already.
+  const bool was_ended = !process.process.ended_well() && !peers_.has_failure(process.robots);
+  return std::ranges::any_of(process.robots, [&](std::size_t robot) {
+    const bool is_held = status[robot].membership != Membership::gone;
+    return (is_held || was_ended) && (is_required(status[robot], gathered_) ||
+                                    (is_held && may_restart(process, restarts_, world_.simulation.layout())));
+  });
+}
+
+// Waits a little before it decides, for each process by itself: the last messages of one that ended, which may release
+// its robots, may still arrive; and a lost connection may be that of a process whose end is not known yet.
 std::optional<Ending> Watch::lost_controller() {
   child_ended_ = false;
   if (waits_for_clients_) return std::nullopt;
+  const auto now = clock::now();
   const auto status = server_.status();
   const auto directors = directors_.status();
   auto free_directors = lost_directors(directors, gathered_);
-  const auto is_needed = [&](const processes::ControllerProcess& process) {
-    if (std::ranges::find(free_directors, process.director) != free_directors.end()) return true;
-    // One that was ended from outside took leave perhaps; its own failures are reported already.
-    const bool was_ended = !process.process.ended_well() && !peers_.has_failure(process.robots);
-    return std::ranges::any_of(process.robots, [&](std::size_t robot) {
-      const bool is_held = status[robot].membership != Membership::gone;
-      return (is_held || was_ended) && (is_required(status[robot]) || (is_held && may_restart(process)));
-    });
-  };
-  const auto* ended = controllers_.first_ended(is_needed);
+  const auto ended = controllers_.ended([&](const auto& process) { return is_missed(process, status, free_directors); });
   auto lost = gathered_ ? unheld_robots() : std::vector<std::size_t>();
   std::erase_if(restarted_, [&](std::size_t robot) {
     return status[robot].membership != Membership::free;
@@ -218,42 +251,48 @@ std::optional<Ending> Watch::lost_controller() {
   std::erase_if(free_directors, [&](const std::string& id) {  // those that are still to come
     return !std::ranges::find(directors, id, &network::DirectorStatus::id)->was_held;
   });
-  if (!ended && lost.empty() && free_directors.empty()) {
+  is_early_ = false;
+  for (processes::ControllerProcess* each : ended) {
+    if (!each->missed_since) each->missed_since = now;
+    if (now - *each->missed_since >= last_messages) return settle(*each, status);
+    is_early_ = true;
+    std::erase_if(lost, [&](std::size_t robot) { return std::ranges::find(each->robots, robot) != each->robots.end(); });
+    std::erase(free_directors, each->director);
+  }
+  if (lost.empty() && free_directors.empty()) {
     missed_since_.reset();
     return std::nullopt;
   }
-  if (!missed_since_) missed_since_ = clock::now();
-  if (clock::now() - *missed_since_ < last_messages) return std::nullopt;
-  if (ended && is_replaced(*ended, status)) {
-    controllers_.replace(*ended);
-    missed_since_.reset();
-    child_ended_ = true;  // another may have ended with it
-    return std::nullopt;
-  }
-  if (ended) {
-    const std::string when = gathered_ ? fmt::format("at tick {}", tick_) : "before the first tick";
-    vanished_ = processes::describe(*ended, fmt::format("{} {}", ended->process.how_it_ended(), when), world_.simulation.layout());
-    if (const auto script = processes::busy_script(*ended)) {  // of many robots one may be the reason
-      vanished_ += fmt::format("; it ran the script of {}: {}", script->robot, script->place);
-    }
-    if (restart(*ended)) return std::nullopt;
-  } else if (!free_directors.empty()) {
-    vanished_ = fmt::format("director '{}' disconnected at tick {}", free_directors.front(), tick_);
-  } else {
-    vanished_ =
-        fmt::format("the controller of {} disconnected at tick {}", by_controller(world_, lost), tick_);
-  }
+  if (!missed_since_) missed_since_ = now;
+  if (now - *missed_since_ < last_messages) return std::nullopt;
+  vanished_ = !free_directors.empty()
+                  ? fmt::format("director '{}' disconnected at tick {}", free_directors.front(), tick_)
+                  : fmt::format("the controller of {} disconnected at tick {}", by_controller(world_, lost), tick_);
   return Ending::controller_vanished;
 }
 
-/// Whether this process is one to start again. Lua processes have robots of several controllers: the most
-/// that one of these may counts. Robots that came later have sessions of their own, and are not resumed.
-bool Watch::may_restart(const processes::ControllerProcess& process) const {
-  if (process.pipe || restarts_.empty()) return false;
-  const auto& robots = world_.simulation.layout().robots;
-  return std::ranges::any_of(process.robots, [&](std::size_t robot) {
-    return process.restarts < restarts_[robots[robot].controller];
-  });
+/// What an ended process means for the run: others have its robots, it has left by itself, it is started again, or the
+/// run ends.
+std::optional<Ending> Watch::settle(processes::ControllerProcess& ended, const std::vector<network::RobotStatus>& status) {
+  child_ended_ = true;  // another may have ended with it
+  const auto left = gathered_ ? left_by(ended, status) : std::vector<std::size_t>();
+  if (!left.empty()) {
+    network::Report report;
+    for (const std::size_t robot : left) {
+      if (tick_ != last_tick_) report.departures.push_back({robot, tick_});
+    }
+    server_.remove_robots(left);
+    peers_.take(std::move(report), tick_);
+  }
+  ended.is_settled = !left.empty() || is_replaced(ended, status);
+  if (ended.is_settled) return std::nullopt;
+  const std::string when = gathered_ ? fmt::format("at tick {}", tick_) : "before the first tick";
+  vanished_ = processes::describe(ended, fmt::format("{} {}", ended.process.how_it_ended(), when), world_.simulation.layout());
+  if (const auto script = processes::busy_script(ended)) {  // of many robots one may be the reason
+    vanished_ += fmt::format("; it ran the script of {}: {}", script->robot, script->place);
+  }
+  if (restart(ended)) return std::nullopt;
+  return Ending::controller_vanished;
 }
 
 /// Starts an ended process again, if the options ask for it and one of its robots is still in the run. The
@@ -263,12 +302,11 @@ bool Watch::restart(const processes::ControllerProcess& ended) {
   const auto robot = std::ranges::find_if(ended.robots, [&](std::size_t each) {
     return status[each].membership != Membership::gone;
   });
-  if (robot == ended.robots.end() || !may_restart(ended)) return false;
+  if (robot == ended.robots.end() || !may_restart(ended, restarts_, world_.simulation.layout())) return false;
   const auto& started = controllers_.restart(ended, status[*robot].token);
   console_.notice(fmt::format("{}; started again (restart {}) as process {}",
                               std::exchange(vanished_, {}), started.restarts, started.process.id()));
   restarted_.insert(restarted_.end(), started.robots.begin(), started.robots.end());
-  missed_since_.reset();
   return true;
 }
 
@@ -288,17 +326,11 @@ void Watch::take_report() {
   peers_.take(std::move(report), tick_);
 }
 
-/// Whether the run cannot continue without the robot's controller: before the first tick always,
-/// later if its deadline policy is to wait.
-bool Watch::is_required(const network::RobotStatus& robot) const {
-  return !gathered_ || robot.deadline.action == scene::DeadlineAction::wait;
-}
-
 std::vector<std::size_t> Watch::unheld_robots() const {
   std::vector<std::size_t> robots;
   const auto status = server_.status();
   for (std::size_t r = 0; r < status.size(); ++r) {
-    if (status[r].membership == Membership::free && is_required(status[r])) robots.push_back(r);
+    if (status[r].membership == Membership::free && is_required(status[r], gathered_)) robots.push_back(r);
   }
   return robots;
 }

@@ -85,15 +85,17 @@ class Watch {
   std::optional<reports::Ending> until(const Step& step);
   std::optional<reports::Ending> interruption();
   std::optional<reports::Ending> supervisor_request();
+  bool is_missed(const processes::ControllerProcess& process, const std::vector<network::RobotStatus>& status,
+                 const std::vector<std::string>& free_directors) const;
   std::optional<reports::Ending> lost_controller();
-  bool may_restart(const processes::ControllerProcess& process) const;
+  std::optional<reports::Ending> settle(processes::ControllerProcess& ended,
+                                        const std::vector<network::RobotStatus>& status);
   bool restart(const processes::ControllerProcess& ended);
   /// What a notice on awaited robots names: more is printed once it is known.
   enum class Detail { robots, scripts, lines };
 
   void serve();
   void take_report();
-  bool is_required(const network::RobotStatus& robot) const;
   std::vector<std::size_t> unheld_robots() const;
   std::vector<std::size_t> awaited_robots() const;
   std::string busy_scripts(std::vector<std::size_t>& robots, Detail& detail) const;
@@ -122,7 +124,8 @@ class Watch {
   bool child_ended_ = false;                ///< one or more, since the last look
   std::optional<reports::Ending> stopped_;  ///< by a deadline or a failure
   std::vector<std::string> dropped_;
-  std::optional<clock::time_point> missed_since_;  ///< since when a controller seems to be lost
+  std::optional<clock::time_point> missed_since_;  ///< since when a controller of others seems to be lost
+  bool is_early_ = false;  ///< a process has ended whose last messages may still come
   clock::time_point waiting_since_{};
   std::string printed_;  ///< the robots that were last printed as awaited
   Detail printed_detail_ = Detail::robots;

@@ -36,8 +36,9 @@ struct DeviceRow {
 
 // --- joints -------------------------------------------------------------------------------------
 
-template <class Read>
-void read_joint_list(Element& element, Read read) {
+/// @param key  what of a joint may be listed once, from its id and mode
+template <class Key, class Read>
+void read_joint_list(Element& element, Key key, Read read) {
   constexpr std::string_view known[] = {"joint"};
   Ids ids;
   for (Element& joint : element.children()) {
@@ -46,11 +47,11 @@ void read_joint_list(Element& element, Read read) {
       continue;
     }
     const std::string id = joint.required("id", identifier);
-    if (!id.empty() && !ids.add(id, joint.where())) {
-      joint.fault_at("id", fmt::format("is listed twice, first{}; list it once",
-                                       joint.report().place(ids.owner(id), joint.where())));
-    }
     const JointMode mode = joint.required("mode", joint_modes(), JointMode::disabled);
+    if (!id.empty() && !ids.add(key(id, mode), joint.where())) {
+      joint.fault_at("id", fmt::format("is listed twice, first{}; list it once",
+                                       joint.report().place(ids.owner(key(id, mode)), joint.where())));
+    }
     read(joint, id, mode);
     joint.done();
   }
@@ -73,15 +74,20 @@ void read_strength(Element& joint, JointActuator& actuator) {
 }
 
 void enable_joint_actuators(const Enabling& e) {
-  read_joint_list(e.element, [&](Element& joint, const std::string& id, JointMode mode) {
+  const auto once = [](const std::string& id, JointMode) { return id; };
+  read_joint_list(e.element, once, [&](Element& joint, const std::string& id, JointMode mode) {
     JointActuator actuator{id, mode, 0, joint.where()};
     read_strength(joint, actuator);
     if (!id.empty()) e.devices.joints.actuators.push_back(actuator);
   });
 }
 
+/// A joint may have a sensor of its position and one of its velocity.
 void enable_joint_sensors(const Enabling& e) {
-  read_joint_list(e.element, [&](Element& joint, const std::string& id, JointMode mode) {
+  const auto once_in_each_mode = [](const std::string& id, JointMode mode) {
+    return mode == JointMode::velocity ? id + "\n" : id;  // no id has a line break
+  };
+  read_joint_list(e.element, once_in_each_mode, [&](Element& joint, const std::string& id, JointMode mode) {
     if (!id.empty()) e.devices.joints.sensors.push_back({id, mode, joint.where()});
   });
 }

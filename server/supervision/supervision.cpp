@@ -64,6 +64,15 @@ std::optional<wire::Fault> fault_of_reason(const std::string& reason) {
       fmt::format("The reason has {} bytes; at most {} are allowed.", reason.size(), longest));
 }
 
+/// A request that waits for an answer which its own program would have to give.
+wire::Fault held_up(const char* what) {
+  return wire::make_fault(
+      ErrorCode::out_of_state, "held_up",
+      fmt::format("The world waits for a session of the same program, which waits for this {0} instead: it would take "
+                  "forever. Answer the tick first (next()), or {0} from another thread or program.",
+                  what));
+}
+
 }  // namespace
 
 void PauseTimer::update(bool is_paused) {
@@ -134,6 +143,8 @@ Reply Supervision::handle(const network::Call& call) {
 }
 
 Reply Supervision::pause(const network::Call& call) {
+  const bool waits = !is_standing() && is_gathered_;
+  if (waits && network::need_of(server_, call.request.held_up) == network::Need::answer) return fail(call, held_up("pause"));
   const bool was_asked = server_.pause() != network::Pause::none || steps_left_ > 0;
   steps_left_ = 0;
   server_.set_paused(true);
@@ -176,6 +187,9 @@ Reply Supervision::step(const network::Call& call) {
   if (call.request.ticks == 0) {
     return fail(call, wire::make_fault(ErrorCode::bad_value, "step.ticks",
                                        "A step has at least one tick."));
+  }
+  if (server_.pause() != network::Pause::none && network::need_of(server_, call.request.held_up) != network::Need::nothing) {
+    return fail(call, held_up("step"));
   }
   if (stepping_) return Reply::later;
   if (server_.pause() == network::Pause::none) {

@@ -35,6 +35,7 @@ struct Request {
   /// nothing
   std::string text;
   std::vector<std::string> entities;  ///< read: ids or globs
+  std::vector<std::string> held_up;   ///< ids of robots or directors whose sessions can't answer before the Response
   std::vector<double> position;       ///< move: as given; x, y, z [m] if it is right
   std::vector<double> orientation;    ///< move: as given; w, x, y, z or nothing
 };
@@ -78,6 +79,7 @@ struct Status {
   std::vector<SessionStatus> sessions;
   std::vector<std::string> free_robots;  ///< ids: the barrier waits for a session that takes them
   std::vector<std::string> gone_robots;  ///< ids
+  std::vector<std::string> free_directors;  ///< ids: likewise without a session
   struct PhaseBudget {
     std::string phase;
     Latency wall;

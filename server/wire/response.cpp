@@ -56,6 +56,7 @@ Request read(const v1::Request& from) {
   if (from.has_snapshot()) request.text = from.snapshot().name();
   if (from.has_restore()) request.text = from.restore().name();
   request.entities.assign(from.read().entities().begin(), from.read().entities().end());
+  request.held_up.assign(from.held_up().begin(), from.held_up().end());
   request.position.assign(from.move().position().begin(), from.move().position().end());
   request.orientation.assign(from.move().orientation().begin(), from.move().orientation().end());
   return request;
@@ -73,6 +74,7 @@ void fill(const Status& from, v1::Status& to) {
   for (const SessionStatus& session : from.sessions) fill(session, *to.add_sessions());
   for (const std::string& robot : from.free_robots) to.add_free_robots(v1::valid_utf8(robot));
   for (const std::string& robot : from.gone_robots) to.add_gone_robots(v1::valid_utf8(robot));
+  for (const std::string& director : from.free_directors) to.add_free_directors(v1::valid_utf8(director));
   for (const Status::PhaseBudget& phase : from.budget) {
     v1::PhaseBudget& budget = *to.add_budget();
     budget.set_phase(phase.phase);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "network/barrier/overview.h"
 #include "pair.h"
 #include "rules.h"
 
@@ -34,6 +35,17 @@ TEST(Pause, P1_AWorldWithoutRobotsStandsAtEachTick) {
   peers.publish(0);
   EXPECT_TRUE(peers.barrier.gate.is_standing());
   EXPECT_FALSE(peers.is_complete());
+}
+
+TEST(Pause, V19_WhatTheWorldNeedsOfASessionThatAPauseHoldsUp) {
+  Pair pair{Config{}};
+  EXPECT_EQ(need_of(pair.peers.barrier, {"robot0"}), Need::answer);
+  EXPECT_EQ(need_of(pair.peers.barrier, {"robot1"}), Need::answers);
+  EXPECT_EQ(need_of(pair.peers.barrier, {"robot1", "robot0"}), Need::answer);
+  EXPECT_EQ(need_of(pair.peers.barrier, {"nobody"}), Need::nothing);
+  EXPECT_EQ(need_of(pair.peers.barrier, {}), Need::nothing);
+  Pair late{with_deadline(DeadlineAction::hold, 50)};
+  EXPECT_EQ(need_of(late.peers.barrier, {"robot0"}), Need::nothing);  // its deadline ends the wait
 }
 
 TEST(Pause, P2_BeforeTheFirstTickNoSessionIsTold) {

@@ -31,11 +31,13 @@ std::string from_hexadecimal(std::string_view text) {
 }  // namespace
 
 void SessionOptions::read_environment() {
-  const char* from = std::getenv("ZIGGURAT_ENDPOINT");
-  endpoint = from == nullptr || *from == '\0' ? find_server() : from;
+  const char* named = std::getenv("ZIGGURAT_ENDPOINT");
+  const std::string theirs = named == nullptr ? "" : named;
+  const bool is_theirs = endpoint.empty() || endpoint == theirs;
+  if (endpoint.empty()) endpoint = theirs.empty() ? find_server() : theirs;
   if (const char* key = std::getenv("ZIGGURAT_SERVER_KEY")) server_key = key;
   if (const char* secret = std::getenv("ZIGGURAT_CURVE_SECRET")) curve_secret = secret;
-  session_token = take_session_token();
+  if (is_theirs) session_token = take_session_token();
 }
 
 Options Options::from_environment() {

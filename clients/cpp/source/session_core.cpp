@@ -40,6 +40,7 @@ bool SessionCore::next() {
 
 bool SessionCore::advance() {
   if (ending || is_over) return false;
+  driven.by_this_thread();
   if (owes) answer();
   for (;;) {
     try {

@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "connection.h"
+#include "driven.h"
 #include "part.h"
 #include "ziggurat/error.h"
 #include "ziggurat/session.h"
@@ -15,7 +16,8 @@ struct SessionCore {
   using Clock = std::chrono::steady_clock;
 
   /// @param part  outlives this
-  SessionCore(const SessionOptions& from, Part& of) : options(from), connection(from), part(of) {}
+  SessionCore(const SessionOptions& from, Part& of)
+      : options(from), connection(from), part(of), driven(from.endpoint) {}
   SessionCore(const SessionCore&) = delete;
   SessionCore& operator=(const SessionCore&) = delete;
 
@@ -53,6 +55,7 @@ struct SessionCore {
   SessionOptions options;
   Connection connection;
   Part& part;
+  Driven driven;
   int exceptions = std::uncaught_exceptions();  // when the session began
 
   v1::ClientMessage outgoing;  // the last answer; long-lived: keeps its memory

@@ -5,6 +5,7 @@
 
 #include "connection.h"
 #include "convert.h"
+#include "driven.h"
 #include "session_core.h"
 #include "ziggurat/error.h"
 #include "ziggurat/v1/envelope.h"
@@ -67,6 +68,7 @@ ServerStatus status_of(const v1::Status& from) {
   }
   to.free_robots.assign(from.free_robots().begin(), from.free_robots().end());
   to.gone_robots.assign(from.gone_robots().begin(), from.gone_robots().end());
+  to.free_directors.assign(from.free_directors().begin(), from.free_directors().end());
   for (const v1::PhaseBudget& phase : from.budget()) {
     to.budget.push_back({phase.phase(), latency_of(phase.wall())});
   }
@@ -114,6 +116,10 @@ struct Supervisor::State {
     fresh.Clear();
     fresh.set_id(++last_id);
     return fresh;
+  }
+  /// Names the sessions that can't answer while this thread waits.
+  void add_held_up() {
+    for (std::string& id : driven_here(options.endpoint)) outgoing.mutable_request()->add_held_up(std::move(id));
   }
   /// @param whole  time-out of which there is this rest; none = forever
   Connection::Kind hear(std::optional<std::chrono::milliseconds> rest,
@@ -203,6 +209,7 @@ ServerStatus Supervisor::status() {
 
 std::uint64_t Supervisor::pause() {
   state_->request().mutable_pause();
+  state_->add_held_up();
   return state_->ask().tick();
 }
 
@@ -213,6 +220,7 @@ std::uint64_t Supervisor::resume() {
 
 std::uint64_t Supervisor::step(std::uint64_t ticks) {
   state_->request().mutable_step()->set_ticks(ticks);
+  state_->add_held_up();
   return state_->ask().tick();
 }
 

@@ -79,6 +79,7 @@ void SessionCore::read(const v1::Welcome& welcome) {
   scene_hash = welcome.scene_hash();
   server_version = welcome.server_version();
   token = welcome.session_token();
+  driven.is(welcome.robots_size() > 0 ? welcome.robots(0).id() : welcome.director().id());
   lease = std::chrono::milliseconds(welcome.wall_lease_ms());
   connection.begin_session(longest_silence(welcome, options));
 }

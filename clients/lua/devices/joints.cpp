@@ -1,4 +1,4 @@
-// robot.joints.<id>: encoder, set_target(target)
+// robot.joints.<id>: encoder, position, velocity, set_target(target)
 
 #include "devices/device_table.h"
 #include "script/arguments.h"
@@ -21,7 +21,7 @@ void make_joints(lua_State* state, Robot& robot) {
   lua_createtable(state, count, 0);
   lua_Integer position = 0;
   for (Joint& joint : robot.joints()) {
-    lua_createtable(state, 0, 2);
+    lua_createtable(state, 0, 4);
     if (joint.has_motor()) set_function<set_target>(state, "set_target", &joint);
     lua_pushvalue(state, -1);
     lua_rawseti(state, -3, ++position);
@@ -36,6 +36,8 @@ void fill_joints(lua_State* state, Robot& robot) {
     if (!joint.has_encoder()) continue;
     lua_rawgeti(state, -1, position);
     set_number(state, "encoder", joint.encoder());
+    if (joint.has_position()) set_number(state, "position", joint.position());
+    if (joint.has_velocity()) set_number(state, "velocity", joint.velocity());
     lua_pop(state, 1);
   }
 }

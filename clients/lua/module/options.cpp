@@ -99,13 +99,10 @@ void check_options(lua_State* state) {
 Options take_options(lua_State* state) {
   Options options;
   options.endpoint = text_of(state, "endpoint");
+  options.read_environment();
   options.controller = text_of(state, "controller");
-  if (options.endpoint.empty()) {
-    const Options environment = Options::from_environment();
-    options.endpoint = environment.endpoint;
-    options.session_token = environment.session_token;
-    if (options.controller.empty()) options.controller = environment.controller;
-  }
+  const char* const controller = std::getenv("ZIGGURAT_CONTROLLER");
+  if (options.controller.empty() && controller != nullptr) options.controller = controller;
   options.robots = robots_of(state);
   options.name = text_of(state, "name");
   if (options.name.empty()) options.name = "lua";

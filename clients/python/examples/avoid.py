@@ -47,7 +47,7 @@ def returns(env, policies):
     """The mean reward of each policy over an episode."""
     found = []
     for batch in policies.reshape(-1, env.num_envs, policies.shape[1]):
-        observations, _ = env.reset()
+        observations, _ = env.reset(seed=[1] * env.num_envs)  # all policies in the same world
         total = np.zeros(env.num_envs)
         for _ in range(TICKS):
             observations, rewards, *_ = env.step(act(batch, observations))

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Drives the four-wheeled vehicle of scenes/dynamics3d_multi_body_test.argos.
 
-    ziggurat serve scenes/dynamics3d_multi_body_test.argos &
-    vehicle.py [ENDPOINT]
+    ziggurat serve scenes/dynamics3d_multi_body_test.argos
+    vehicle.py [ENDPOINT]         in a second terminal
 
 It can also be the command of an <external_controller> in a scene.
 """

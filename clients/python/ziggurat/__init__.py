@@ -1,6 +1,6 @@
 """Controllers for robots of a Ziggurat simulation server. See docs/python-client.md.
 
-    with ziggurat.connect(robots="*") as session:
+    with ziggurat.connect() as session:
         for tick in session:
             for robot in session.robots:
                 robot.joints["left"].target = 1.0
@@ -21,8 +21,9 @@ from .direct import World, direct
 from .errors import ConnectionLost, Displaced, ProtocolError, Refused, Timeout, ZigguratError
 from .find_server import find_server
 from .joining import Deadline, connect, resume
+from .learning import all_readings, motors
 from .named import Named
-from .parallel import ParallelEnv, all_readings, joint_targets, parallel_env
+from .parallel import ParallelEnv, parallel_env
 from .robot import Robot
 from .server import Server
 from .session import Session

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import Optional
+from typing import Callable, Optional
 
 from google.protobuf.message import DecodeError
 
@@ -21,7 +21,8 @@ VERSION = v1.Version(major=1, minor=4)
 class Wait:
     """For something that the server sends, from now on: what comes in between, as heartbeats, does not extend it."""
 
-    def __init__(self, seconds: Optional[float], what: str = "message"):
+    def __init__(self, seconds: Optional[float], what: str = "message", is_in_vain: Callable[[], bool] = lambda: False):
+        self._is_in_vain = is_in_vain  # then it is over
         self._seconds = seconds  # of wall time; None: forever
         self._what = what
         self._end = None if seconds is None else time.monotonic() + seconds
@@ -31,7 +32,7 @@ class Wait:
         return most if self._end is None else min(most, max(0.0, self._end - time.monotonic()))
 
     def is_over(self) -> bool:
-        return self._end is not None and time.monotonic() >= self._end
+        return self._end is not None and time.monotonic() >= self._end or self._is_in_vain()
 
     def __str__(self) -> str:
         return f"no {self._what} for {self._seconds:g} s"
@@ -40,8 +41,10 @@ class Wait:
 class Connection:
     """Connects in the background; the server may start later. Without endpoint: see find_server."""
 
-    def __init__(self, endpoint: str, curve: Optional[Curve] = None):
+    def __init__(self, endpoint: str, curve: Optional[Curve] = None, has_ended: Callable[[], bool] = lambda: False):
+        """has_ended: whether the server is known to have ended; it is asked while waiting for a welcome"""
         self.endpoint = endpoint or find_server()
+        self._has_ended = has_ended
         self.longest_silence: Optional[float] = None  # [s] of wall time; longer, and the connection is lost
         self.transport = make_transport(self.endpoint, curve)
 
@@ -142,8 +145,10 @@ class Connection:
     def _welcome(self, connect_timeout: float, is_patient: bool) -> v1.Welcome:
         while True:
             try:
-                message = self.receive(Wait(connect_timeout))
+                message = self.receive(Wait(connect_timeout, is_in_vain=self._has_ended))
             except Timeout:
+                if self._has_ended():
+                    raise ConnectionLost(f"{self.endpoint}: the server has ended") from None
                 if is_patient and self.is_accepted:
                     continue
                 if has_unknown_host(self.endpoint):

@@ -177,10 +177,8 @@ def direct(director: str = "", endpoint: str = "", *, entities: Union[str, Seque
     for group in groups:
         if group not in _GROUPS:
             raise ValueError(f"tell={group!r}: write some of {', '.join(_GROUPS)}")
-    token = b""
-    if not endpoint:
-        curve = curve or Curve.from_environment()
-        token = take_token()
+    curve = curve or Curve.from_environment()
+    token = take_token(endpoint)
     id = director or os.environ.get("ZIGGURAT_DIRECTOR", "")
     wanted = [entities] if isinstance(entities, str) else list(entities)
     hello = v1.Hello(role=v1.ROLE_DIRECTOR, director=id, client_name=name or id or "python",

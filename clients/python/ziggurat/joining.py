@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import Optional, Sequence, Union
+from typing import Callable, MutableMapping, Optional, Sequence, Union
 
 from . import protocol_pb2 as v1
 from .curve import Curve
@@ -31,11 +31,16 @@ def connect(endpoint: str = "", robots: Union[str, Sequence[str]] = (), *, contr
             name: str = "", version: str = "", deadline: Optional[Deadline] = None,
             takeover: bool = False, can_restore: bool = False, curve: Optional[Curve] = None,
             connect_timeout: float = 10.0, wait_timeout: Optional[float] = None,
-            resume_timeout: Optional[float] = None) -> Session:
+            resume_timeout: Optional[float] = None,
+            environment: MutableMapping[str, str] = os.environ,
+            has_ended: Callable[[], bool] = lambda: False) -> Session:
     """A session with all robots that match both `robots` (ids, or globs with * ? [a-z]) and
-    `controller` (its id in the scene); with neither, all robots. Without endpoint it is that of
-    find_server(), the keys are those of Curve.from_environment(), and a token in ZIGGURAT_SESSION_TOKEN (in
-    hexadecimal) resumes its session; that is removed from the environment.
+    `controller` (its id in the scene); with neither, all robots.
+
+    What is not given is taken from the environment, where `ziggurat run` writes it: the endpoint is that of
+    find_server(), the controller is ZIGGURAT_CONTROLLER, the keys are those of Curve.from_environment(). At the endpoint
+    of ZIGGURAT_ENDPOINT, or without one, a token in ZIGGURAT_SESSION_TOKEN (in hexadecimal) resumes its session; that is
+    removed from the environment.
 
     can_restore      this controller can go back: at Event.RESTORED it takes the state that it had at
                      the tick of the snapshot. Without, the server refuses to restore the world
@@ -43,13 +48,14 @@ def connect(endpoint: str = "", robots: Union[str, Sequence[str]] = (), *, contr
     wait_timeout     wall time to wait for each observation [s]; None: forever
     resume_timeout   wall time for which a session whose connection was lost is tried to resume [s]; None: as
                      long as the server reserves the robots, at least 10 s; 0: never
+    environment      {}: nothing but the endpoint is taken from there
+    has_ended        whether the server is known to have ended: then it is not waited for
 
     Raises ConnectionLost if no server answers, and Refused if the server refuses the session.
     """
-    token = b""
-    if not endpoint:
-        curve = curve or Curve.from_environment()
-        token = take_token()
+    curve = curve or Curve.from_environment(environment)
+    token = take_token(endpoint, environment)
+    controller = controller or environment.get("ZIGGURAT_CONTROLLER", "")
     wanted = [robots] if isinstance(robots, str) else list(robots)
     if not wanted and not controller:
         wanted = ["*"]
@@ -58,18 +64,20 @@ def connect(endpoint: str = "", robots: Union[str, Sequence[str]] = (), *, contr
                      session_token=token, can_restore=can_restore)
     if deadline is not None:
         hello.deadline_policy.CopyFrom(deadline._message())
-    return Session(endpoint, hello, curve, connect_timeout, wait_timeout, resume_timeout)
+    return Session(endpoint, hello, curve, connect_timeout, wait_timeout, resume_timeout, has_ended)
 
 
-def take_token() -> bytes:
-    """Of the session that this program is started to resume. A secret, and for one session only."""
-    text = os.environ.get(_TOKEN, "")
+def take_token(endpoint: str, environment: MutableMapping[str, str] = os.environ) -> bytes:
+    """Of the session that this program is started to resume. A secret, for one session at ZIGGURAT_ENDPOINT only."""
+    if endpoint not in ("", environment.get("ZIGGURAT_ENDPOINT", "")):
+        return b""
+    text = environment.get(_TOKEN, "")
     try:
         token = bytes.fromhex(text)
     except ValueError:
         raise ValueError(f"{_TOKEN} is not hexadecimal; it has two digits for each byte of the "
                          "token") from None
-    os.environ.pop(_TOKEN, None)
+    environment.pop(_TOKEN, None)
     return token
 
 
@@ -77,7 +85,8 @@ def resume(endpoint: str, token: bytes, *, name: str = "python", version: str = 
            takeover: bool = False, curve: Optional[Curve] = None, connect_timeout: float = 10.0,
            wait_timeout: Optional[float] = None, resume_timeout: Optional[float] = None) -> Session:
     """Resumes the session with this token after its connection was lost: same robots, same tick.
-    The last commands hold, and the robots have their values; the first tick's event is RESUME."""
+    The last commands hold, and the robots have their values; the first tick's event is RESUME. Without curve the keys
+    are those of Curve.from_environment()."""
     hello = v1.Hello(role=v1.ROLE_CONTROLLER, robots=["*"], client_name=name,
                      client_version=version, session_token=token, takeover=takeover)
-    return Session(endpoint, hello, curve, connect_timeout, wait_timeout, resume_timeout)
+    return Session(endpoint, hello, curve or Curve.from_environment(), connect_timeout, wait_timeout, resume_timeout)

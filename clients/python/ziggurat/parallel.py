@@ -3,19 +3,12 @@ that package: agents are robots, a step is a tick."""
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 
-from .errors import ProtocolError
+from .learning import Act, Observe, Randomize, World, all_readings, motor_count, motors, tell_of_nothing
 from .robot import Robot
-from .server import Server
-from .joining import connect
 from .session import Session
-from .supervisor import Supervisor
-
-Observe = Callable[[Robot], Any]
-Act = Callable[[Robot, Any], None]
 
 
 @dataclass(frozen=True)
@@ -27,39 +20,25 @@ class Snapshot:
     agents: Tuple[str, ...]  # whose task was not over
 
 
-def all_readings(robot: Robot) -> List[float]:
-    """Encoders, proximity, pose (7 numbers) and available charge, of the robot's devices."""
-    values = [joint.encoder for joint in robot.joints if joint.sensor_mode is not None]
-    values.extend(robot.proximity)
-    if robot.pose is not None:
-        values.extend((*robot.pose.position, *robot.pose.orientation))
-    if robot.battery is not None:
-        values.append(robot.battery.available_charge)
-    return values
-
-
-def joint_targets(robot: Robot, action: Sequence[float]) -> None:
-    """A target for each motor of the robot, in order."""
-    motors = [joint for joint in robot.joints if joint.actuator_mode is not None]
-    if len(action) != len(motors):
-        raise ValueError(f"{robot.id}: an action has {len(motors)} targets, not {len(action)}")
-    for motor, target in zip(motors, action):
-        motor.target = target
-
-
 def parallel_env(scene: Optional[str] = None, **options: Any) -> "ParallelEnv":
     """A ParallelEnv; options are those of the class."""
     return ParallelEnv(scene, **options)
 
 
 class ParallelEnv:
-    """Starts a server for `scene`, or attaches to the one at `endpoint`.
+    """Starts a server for `scene`, or attaches to the one at `endpoint`, when it is first asked for something.
 
+    robots      ids or globs: the agents. In a `scene` all other robots do nothing
     observe     returns an agent's observation of its robot; default all_readings
-    act         performs an action; default joint_targets
+    act         performs an action; default motors
     reward      of an agent, after each tick; default 0
     terminated  whether an agent's task is over; default never
     max_ticks   length of an episode; default the length of the scene
+    randomize   changes the world at the beginning of each episode: called with a Supervisor and a generator of numpy, which
+                is seeded by the episode's seed. The episode then begins at tick 1, whose observations are of the
+                changed world
+    observation_spaces, action_spaces  by agent; by default a Box like the agent's first observation, which needs
+                numpy, and one from -1 to 1 for each value of motors
     command     the server's program; arguments: its other options
 
     The robot of a terminated agent keeps its last commands until the next reset.
@@ -69,84 +48,87 @@ class ParallelEnv:
 
     def __init__(self, scene: Optional[str] = None, *, endpoint: Optional[str] = None,
                  robots: Union[str, Sequence[str]] = "*", observe: Observe = all_readings,
-                 act: Act = joint_targets, reward: Callable[[Robot], float] = lambda robot: 0.0,
+                 act: Act = motors, reward: Callable[[Robot], float] = lambda robot: 0.0,
                  terminated: Callable[[Robot], bool] = lambda robot: False,
-                 max_ticks: Optional[int] = None, command: str = "ziggurat",
-                 arguments: Sequence[str] = (), observation_spaces: Optional[Dict] = None,
-                 action_spaces: Optional[Dict] = None):
+                 max_ticks: Optional[int] = None, randomize: Optional[Randomize] = None,
+                 command: str = "ziggurat", arguments: Sequence[str] = (),
+                 observation_spaces: Optional[Dict] = None, action_spaces: Optional[Dict] = None):
         if (scene is None) == (endpoint is None):
             raise ValueError("give either a scene or an endpoint")
-        self._scene, self._endpoint = scene, endpoint
-        self._robots = robots
         self._observe, self._act = observe, act
         self._reward, self._terminated = reward, terminated
         self._max_ticks = max_ticks
-        self._command, self._arguments = command, list(arguments)
-        self.observation_spaces = observation_spaces or {}
-        self.action_spaces = action_spaces or {}
-        self._server: Optional[Server] = None
-        self._session: Optional[Session] = None
-        self._supervisor: Optional[Supervisor] = None
-        self._kept = 0  # snapshots so far
-        self.possible_agents: List[str] = []  # known after the first reset
+        self.observation_spaces = dict(observation_spaces or {})
+        self.action_spaces = dict(action_spaces or {})
+        self._options = {"scene": None if scene is None else str(scene), "endpoint": endpoint, "robots": robots,
+                         "randomize": randomize, "command": command, "arguments": arguments, "name": "parallel_env"}
+        self._world: Optional[World] = None
         self.agents: List[str] = []
 
+    def _opened(self) -> World:
+        if self._world is None:
+            self._world = World(**self._options)
+            for robot in self._world.agents:
+                tell_of_nothing(self._observe(robot), robot)
+        return self._world
+
+    @property
+    def possible_agents(self) -> List[str]:
+        return [robot.id for robot in self._opened().agents]
+
+    def _robot(self, agent: str) -> Robot:
+        self._opened()
+        return self.session.robots[agent]
+
     def observation_space(self, agent: str) -> Any:
+        if agent not in self.observation_spaces:
+            self.observation_spaces[agent] = _box_like(self._observe(self._robot(agent)))
         return self.observation_spaces[agent]
 
     def action_space(self, agent: str) -> Any:
+        if agent not in self.action_spaces:
+            from .spaces import Box
+            self.action_spaces[agent] = Box(-1, 1, (motor_count(self._robot(agent)),))
         return self.action_spaces[agent]
 
     @property
     def session(self) -> Session:
         """The session, for devices that actions and observations do not include."""
-        if self._session is None:
+        if self._world is None:
             raise RuntimeError("call reset() first")
-        return self._session
+        return self._world.session
 
     def reset(self, seed: Optional[int] = None,
               options: Optional[Dict] = None) -> Tuple[Dict[str, Any], Dict[str, Dict]]:
-        """Back to tick 0: observations and infos by agent. Without a seed, the last one again.
+        """A new episode: observations and infos by agent. Its seed is the one that is given. Without, it is the next of
+        the stream of seeds that the last given one began; if none was given yet, that of the scene or server.
 
         options={"snapshot": s} goes back to what snapshot() gave in place of that; what follows is what
         followed then, bit for bit, with the same actions."""
         snapshot = (options or {}).get("snapshot")
         if snapshot is not None:
             self.restore(snapshot)
-        elif not self._reset_world(seed):
-            self._start(seed)
-        if snapshot is None:
-            next(self.session)
-        self.possible_agents = [robot.id for robot in self.session.robots]
-        if snapshot is None:
-            self.agents = list(self.possible_agents)
+        else:
+            self._opened().begin(seed)
+            self.agents = self.possible_agents
         return self._observations(), self._infos()
 
     def snapshot(self) -> "Snapshot":
         """The world as it is, commands and random streams included, to go back to."""
-        self._kept += 1
-        name = f"env-{os.getpid()}-{self._kept}"
-        tick = self._supervise().snapshot(name)
+        name, tick = self._opened().snapshot()
         return Snapshot(name, tick, tuple(self.agents))
 
     def restore(self, snapshot: "Snapshot") -> None:
         """Back to it. Observations are those of its tick."""
-        self._supervise().restore(snapshot.name)
-        self.session.expect_reset()
-        next(self.session)
+        self._opened().restore(snapshot.name)
         self.agents = list(snapshot.agents)
-
-    def _supervise(self) -> Supervisor:
-        if self._supervisor is None:
-            self._supervisor = Supervisor(self.session.endpoint, name="parallel_env")
-        return self._supervisor
 
     def step(self, actions: Dict[str, Any]) -> Tuple[Dict, Dict, Dict, Dict, Dict]:
         """One tick: observations, rewards, terminations, truncations and infos by agent."""
         for agent, action in actions.items():
             self._act(self.session.robots[agent], action)
         is_over = next(self.session, None) is None
-        tick = self.session.tick.number
+        tick = self.session.tick.number - self._opened().first_tick
         is_over = is_over or (self._max_ticks is not None and tick >= self._max_ticks)
         robots = [self.session.robots[agent] for agent in self.agents]
         observations, infos = self._observations(), self._infos()
@@ -162,46 +144,21 @@ class ParallelEnv:
     def _infos(self) -> Dict[str, Dict]:
         return {agent: {"tick": self.session.tick.number} for agent in self.agents}
 
-    def _reset_world(self, seed: Optional[int]) -> bool:
-        """By a supervisor, if the run has not ended and the server allows supervisors."""
-        if self._session is None or self._session.ending is not None:
-            return False
-        try:
-            self._supervise().reset(seed)
-            self._session.expect_reset()
-        except ProtocolError as error:
-            if error.code not in ("UNIMPLEMENTED", "FORBIDDEN") or self._server is None:
-                raise
-            return False
-        return True
-
-    def _start(self, seed: Optional[int]) -> None:
-        """Starts a new server, or a first session at the endpoint."""
-        if self._session is not None and self._scene is None:
-            raise RuntimeError("the run has ended; only a server of parallel_env itself can restart")
-        seed = seed if seed is not None or self._session is None else self._session.seed
-        self.close()
-        if self._scene is not None:
-            seeds = [] if seed is None else ["--seed", str(seed)]
-            self._server = Server(self._scene, command=self._command,
-                                  arguments=[*self._arguments, *seeds])
-            self._session = self._server.session(robots=self._robots, can_restore=True)
-        else:
-            self._session = connect(self._endpoint, self._robots, can_restore=True)
-            if seed is not None and seed != self._session.seed:
-                self._session_reset_at_start(seed)
-
-    def _session_reset_at_start(self, seed: int) -> None:
-        next(self.session)
-        if not self._reset_world(seed):
-            raise RuntimeError(f"the server runs with seed {self.session.seed} and can't be reset")
-
     def render(self) -> None:
         """Does nothing: there are no pictures."""
 
     def close(self) -> None:
-        for part in (self._session, self._supervisor, self._server):
-            if part is not None:
-                part.close()
-        self._session = self._supervisor = self._server = None
+        if self._world is not None:
+            self._world.close()
+        self._world = None
         self.agents = []
+
+
+def _box_like(observation: Any) -> Any:
+    import numpy
+    from .spaces import Box
+    values = numpy.asarray(observation)
+    if values.dtype.kind not in "biuf":
+        raise ValueError(f"what observe returned is a {type(observation).__name__} and no array of numbers; pass its space "
+                         "in observation_spaces={AGENT: …}")
+    return Box(-numpy.inf, numpy.inf, values.shape)

@@ -13,17 +13,19 @@ from .session import Session
 
 
 def _readable(messages: str) -> str:
-    """What a server with --json printed on stderr, as sentences with their places."""
-    texts = []
+    """What a server with --json printed on stderr, as sentences with their places: its faults, if there are any."""
+    texts, faults = [], []
     for line in messages.splitlines():
         try:
             message = json.loads(line)
             place = f"{message['file']}:{message['line']}:{message['column']}: " if message.get("line") else (
                 f"{message['file']}: " if message.get("file") else "")
             texts.append(place + message["text"])
+            if message.get("severity") == "fault":
+                faults.append(texts[-1])
         except (ValueError, KeyError, TypeError, AttributeError):
             texts.append(line)
-    return "\n".join(text for text in texts if text)
+    return "\n".join(text for text in faults or texts if text)
 
 
 class Server:
@@ -68,23 +70,28 @@ class Server:
             raise RuntimeError(f"ziggurat serve did not start: {line}{_readable(errors)}") from None
 
     def session(self, **options: Any) -> Session:
-        """As connect(). Without one the server is ended; if it has ended itself, because of a fault in the scene
-        for example, RuntimeError has what it printed."""
+        """As connect(), but with nothing from the environment: that may be of another server. Without one this server is
+        ended; if it has ended itself, because of a fault in the scene for example, RuntimeError has what it printed."""
         try:
-            return connect(self.endpoint, **options)
+            return connect(self.endpoint, environment={}, has_ended=self._has_ended, **options)
         except BaseException as error:
-            if isinstance(error, ConnectionLost) or getattr(error, "code", "") == "OUT_OF_STATE":
-                self._explain(error)
+            is_explained = isinstance(error, ConnectionLost) or getattr(error, "code", "") == "OUT_OF_STATE"
+            explanation = self._last_words() if is_explained else ""
             self.close()
-            raise
+            if not explanation:
+                raise
+        raise RuntimeError(explanation)  # without the errors of the connection, which explain nothing
 
-    def _explain(self, error: Exception) -> None:
-        """Raises what the server printed, if it has ended, or does now."""
+    def _has_ended(self) -> bool:
+        return self.process.poll() is not None
+
+    def _last_words(self) -> str:
+        """What the server printed, if it has ended, or does now."""
         try:
             _, errors = self.process.communicate(timeout=1)
         except subprocess.TimeoutExpired:
-            return
-        raise RuntimeError(f"ziggurat serve has ended: {_readable(errors)}") from error
+            return ""
+        return f"ziggurat serve has ended: {_readable(errors)}"
 
     def wait(self, timeout: Optional[float] = None) -> int:
         """Waits for the end of the run [s]; returns the exit code."""

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import threading
 import time
 import weakref
-from typing import Any, Dict, Iterable, Iterator, List, Optional, Union
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Union
 
+from . import driven
 from . import protocol_pb2 as v1
 from .connection import Connection, Wait
 from .curve import Curve
@@ -30,13 +32,15 @@ _MOST_IN_VAIN = 3
 class Session:
     """An iterator over ticks. The next tick sends the values that were set in this one.
 
-    As a context manager it leaves the run at the end of the block: as failed after an exception.
+    As a context manager it leaves the run at the end of the block: as failed after an exception, but for sys.exit(0). So
+    it does at the end of a program without an exception.
     """
 
     def __init__(self, endpoint: str, hello: v1.Hello, curve: Optional[Curve],
                  connect_timeout: float, wait_timeout: Optional[float],
-                 resume_timeout: Optional[float]):
-        self._connection = Connection(endpoint, curve)
+                 resume_timeout: Optional[float], has_ended: Callable[[], bool] = lambda: False):
+        self._connection = Connection(endpoint, curve, has_ended)
+        self._has_ended = has_ended
         self._curve = curve
         self._hello = hello
         self._resume_timeout = resume_timeout
@@ -55,6 +59,7 @@ class Session:
         self._resumed_in_vain = 0  # times without a new observation
         self._is_over = False  # it is not resumed
         self._watch()
+        self.thread: Optional[int] = None  # that drives it, as threading.get_ident()
         self.tick: Optional[Tick] = None  # the current one
         self.ending: Optional[Ending] = None
         self.paused = False
@@ -71,6 +76,7 @@ class Session:
         except BaseException as error:  # Ctrl-C, or no memory
             self.close(f"{type(error).__name__}: {error}")
             raise
+        driven.note(self)
 
     def _make_robots(self) -> None:
         # Without a cycle of references: at its end the program frees them one by one, and the garbage collection
@@ -86,6 +92,15 @@ class Session:
     @property
     def endpoint(self) -> str:
         return self._connection.endpoint
+
+    @property
+    def is_over(self) -> bool:
+        return self._is_over or self.ending is not None
+
+    @property
+    def id_of_one(self) -> str:
+        """Of its robots, or of its director."""
+        return self.welcome.robots[0].id if self.welcome.robots else self.welcome.director.id
 
     @property
     def token(self) -> bytes:
@@ -116,6 +131,7 @@ class Session:
             raise StopIteration
         if self._is_over:
             raise ConnectionLost("the session is closed")
+        self.thread = threading.get_ident()
         if self._owes is not None:
             self._answer()
         wait = Wait(self._wait_timeout, "observation")
@@ -206,14 +222,14 @@ class Session:
         pause = _BETWEEN_HELLOS if self._resumed_in_vain > 1 else 0.0
         while True:
             time.sleep(pause)
-            connection = Connection(self.endpoint, self._curve)
+            connection = Connection(self.endpoint, self._curve, self._has_ended)
             try:
                 welcome = connection.begin(hello, max(0.1, end - time.monotonic()), is_patient=True)
                 return self._go_on(connection, welcome)
             except (ConnectionLost, Refused) as error:
                 connection.close(linger=0)
                 is_refused = isinstance(error, Refused)
-                if time.monotonic() < end and (not is_refused or error.retryable):
+                if time.monotonic() < end and not self._has_ended() and (not is_refused or error.retryable):
                     pause = _BETWEEN_HELLOS if is_refused else _BETWEEN_ATTEMPTS
                     continue
                 self._end()
@@ -353,7 +369,8 @@ class Session:
         hint = self._hint(error)
         if hint and hasattr(error, "add_note"):
             error.add_note(hint)
-        self.close("" if kind is None else f"{kind.__name__}: {error}" + (f" ({hint})" if hint else ""))
+        is_done = kind is None or kind is SystemExit and error.code in (None, 0)
+        self.close("" if is_done else f"{kind.__name__}: {error}" + (f" ({hint})" if hint else ""))
 
     def _hint(self, error: Any) -> str:
         """What a robot lacks, for the use of a device that is None."""

@@ -10,6 +10,7 @@ from .connection import Connection, Wait
 from .curve import Curve
 from .devices import Color, Quaternion, Vector
 from .devices.led import color_of
+from .driven import driven_here
 from .errors import ConnectionLost, Malformed, ProtocolError, name_of, printable
 from .ticks import Ending
 
@@ -50,6 +51,7 @@ class Status:
     free_robots: Tuple[str, ...]  # without a session; the world waits for them
     gone_robots: Tuple[str, ...]
     solver: SolverStatus
+    free_directors: Tuple[str, ...] = ()  # without a session; the world waits for them
 
 
 @dataclass(frozen=True)
@@ -87,7 +89,8 @@ class States:
 
 def supervise(endpoint: str = "", **options: Any) -> "Supervisor":
     """A Supervisor of the server at this endpoint, otherwise at that of find_server(); options are
-    those of the class."""
+    those of the class. Without curve the keys are those of Curve.from_environment()."""
+    options["curve"] = options.get("curve") or Curve.from_environment()
     return Supervisor(endpoint, **options)
 
 
@@ -143,16 +146,18 @@ class Supervisor:
         return _status(self._ask(status=v1.StatusRequest()).status)
 
     def pause(self) -> int:
-        """Stops the world after the current tick; returns that tick."""
-        return self._ask(pause=v1.PauseRequest()).tick
+        """Stops the world after the current tick; returns that tick. ProtocolError with OUT_OF_STATE if the world waits for
+        an answer of this thread itself, to a tick of its session: pause from another thread or program."""
+        return self._ask(pause=v1.PauseRequest(), held_up=driven_here(self._connection.endpoint)).tick
 
     def resume(self) -> int:
         """Continues a paused world."""
         return self._ask(resume=v1.ResumeRequest()).tick
 
     def step(self, ticks: int = 1) -> int:
-        """Runs this many ticks of a paused world; returns the tick at which it stopped."""
-        return self._ask(step=v1.StepRequest(ticks=ticks)).tick
+        """Runs this many ticks of a paused world; returns the tick at which it stopped. As pause(), not of a thread that
+        drives a session itself."""
+        return self._ask(step=v1.StepRequest(ticks=ticks), held_up=driven_here(self._connection.endpoint)).tick
 
     def reset(self, seed: Optional[int] = None) -> int:
         """Builds the world again, with the same seed if none is given."""
@@ -209,7 +214,7 @@ def _status(given: v1.Status) -> Status:
                   tuple(map(_session, given.sessions)), tuple(given.free_robots),
                   tuple(given.gone_robots),
                   SolverStatus(given.solver.islands, given.solver.not_converged,
-                               given.solver.worst_residual))
+                               given.solver.worst_residual), tuple(given.free_directors))
 
 
 def _session(given: v1.SessionStatus) -> SessionStatus:

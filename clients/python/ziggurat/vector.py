@@ -4,9 +4,7 @@ numpy."""
 from __future__ import annotations
 
 import operator
-import os
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 try:
@@ -15,16 +13,11 @@ except ImportError as error:
     raise ImportError(f"{error}. vector_env needs numpy: apt-get install python3-numpy, or pip install "
                       "numpy") from None
 
-from .parallel import all_readings
+from .learning import Act, Observe, Randomize, World, all_readings, motor_count, motors, tell_of_nothing
 from .robot import Robot
-from .server import Server
 from .session import Session
 from .spaces import Box
 from .supervisor import Supervisor
-
-Observe = Callable[[Robot], Sequence[float]]
-Act = Callable[[Robot, Sequence[float]], None]
-
 
 @dataclass(frozen=True)
 class VectorSnapshot:
@@ -32,74 +25,6 @@ class VectorSnapshot:
 
     names: Tuple[str, ...]  # by world
     ticks: Tuple[int, ...]
-
-
-def motors(robot: Robot, action: Sequence[float]) -> None:
-    """A target for each motor of the robot, in order, then the speeds of its wheels: left, right."""
-    at = 0
-    for joint in robot.joints:
-        if joint.actuator_mode is not None:
-            joint.target = float(action[at])
-            at += 1
-    if robot.wheels is not None and robot.wheels.drives:
-        robot.wheels.set_velocity(float(action[at]), float(action[at + 1]))
-
-
-def motor_count(robot: Robot) -> int:
-    drives = robot.wheels is not None and robot.wheels.drives
-    return sum(joint.actuator_mode is not None for joint in robot.joints) + 2 * drives
-
-
-class _World:
-    """A server, and the sessions with it."""
-
-    def __init__(self, scene: str, robots: Union[str, Sequence[str]], command: str,
-                 arguments: Sequence[str]):
-        self.server = Server(scene, command=command, arguments=arguments)
-        self.session: Session = self.server.session(can_restore=True)
-        patterns = [robots] if isinstance(robots, str) else list(robots)
-        self.agents: List[Robot] = [robot for robot in self.session.robots
-                                    if any(fnmatchcase(robot.id, each) for each in patterns)]
-        self.supervisor = Supervisor(self.server.endpoint, name="vector_env")
-        self._has_begin = False  # a snapshot of tick 0 with the present seed, under the name _begin
-        self._begin = f"vector-{os.getpid()}-begin"
-        self._seed = self.session.seed
-        self._kept = 0
-
-    def advance(self) -> None:
-        """To the tick whose command was sent."""
-        if next(self.session, None) is None:
-            ending = self.session.ending
-            raise RuntimeError(f"the run of a world ended at tick {ending.tick}: {ending.reason} {ending.message}")
-
-    def snapshot(self) -> Tuple[str, int]:
-        self._kept += 1
-        name = f"vector-{os.getpid()}-{self._kept}"
-        return name, self.supervisor.snapshot(name)
-
-    def restore(self, name: str) -> None:
-        self.supervisor.restore(name)
-        self.session.expect_reset()
-        self.advance()
-
-    def reset(self, seed: Optional[int]) -> None:
-        """To tick 0; with the seed that it has, by a snapshot."""
-        if self.session.tick is None:
-            self.advance()  # the first observation
-        if seed is not None and seed != self._seed:
-            self.supervisor.reset(seed)
-            self.session.expect_reset()
-            self.advance()
-            self._has_begin = False
-            self._seed = seed
-        elif self._has_begin:
-            return self.restore(self._begin)
-        self.supervisor.snapshot(self._begin)  # in place of that of another seed
-        self._has_begin = True
-
-    def close(self) -> None:
-        for part in (self.session, self.supervisor, self.server):
-            part.close()
 
 
 class VectorEnv:
@@ -112,7 +37,8 @@ class VectorEnv:
     reward      of a robot, after each tick; default 0
     terminated  whether a robot's task is over; default never
     max_ticks   length of an episode; default without end
-    autoreset   a world whose episode is over goes back to its begin in the same step
+    autoreset   in the place of an episode that is over the world's next one begins, in the same step
+    randomize   as in ParallelEnv
     dtype       of observations
     command     the server's program; arguments: its other options
 
@@ -126,7 +52,8 @@ class VectorEnv:
                  action_space: Optional[Box] = None,
                  reward: Callable[[Robot], float] = lambda robot: 0.0,
                  terminated: Callable[[Robot], bool] = lambda robot: False,
-                 max_ticks: Optional[int] = None, autoreset: bool = True, dtype: Any = numpy.float64,
+                 max_ticks: Optional[int] = None, autoreset: bool = True,
+                 randomize: Optional[Randomize] = None, dtype: Any = numpy.float64,
                  command: str = "ziggurat", arguments: Sequence[str] = ()):
         if n < 1:
             raise ValueError(f"n is {n}; it must be 1 or more")
@@ -134,22 +61,19 @@ class VectorEnv:
         self._observe, self._act = observe, act
         self._reward, self._terminated = reward, terminated
         self._max_ticks, self._autoreset = max_ticks, autoreset
-        self._worlds: List[_World] = []
+        self._worlds: List[World] = []
         try:
-            for _ in range(n):
-                self._worlds.append(_World(str(scene), robots, command, ["--duration", "0", *arguments]))
+            for number in range(n):
+                self._worlds.append(World(str(scene), number=number, robots=robots, randomize=randomize, keeps_begin=True, command=command,
+                                          arguments=["--duration", "0", *arguments], name="vector_env"))
             self._shape_spaces(action_space, dtype)
         except BaseException:
             self.close()
             raise
 
     def _shape_spaces(self, action_space: Optional[Box], dtype: Any) -> None:
-        """Waits for the first observations, whose length is that of all."""
-        for world in self._worlds:
-            world.reset(None)
+        """By the first observations, whose length is that of all."""
         first = self._worlds[0].agents
-        if not first:
-            raise ValueError("robots: the scene has no robot with such an id")
         self.possible_agents = [robot.id for robot in first]
         self.agents = list(self.possible_agents)
         sizes = {robot.id: len(self._observe(robot)) for robot in first}
@@ -157,6 +81,7 @@ class VectorEnv:
         if len(set(sizes.values())) > 1 or (action_space is None and len(set(counts.values())) > 1):
             raise ValueError(f"the robots are not alike: they have observations of {sizes} values and actions of "
                              f"{counts}; choose some of them by robots=…")
+        tell_of_nothing(self._observe(first[0]), first[0])
         size, count = next(iter(sizes.values())), next(iter(counts.values()))
         self._agent_observation = Box(-numpy.inf, numpy.inf, (size,), dtype)
         self._agent_action = Box(-1, 1, (count,)) if action_space is None else action_space
@@ -185,9 +110,11 @@ class VectorEnv:
 
     def reset(self, *, seed: Union[None, int, Sequence[int]] = None,
               options: Optional[Dict] = None) -> Tuple[numpy.ndarray, Dict]:
-        """All worlds back to tick 0: observations and infos.
+        """New episodes of all worlds: observations and infos.
 
-        seed     one for each world, or that of the first one, which counts up; without, each keeps its own
+        seed     of these episodes: one for each world, or that of the first one, which counts up. Without, each world has
+                 the next of the stream of seeds that its last given one began; in the beginning the scene's, which counts
+                 up
         options  {"snapshot": s} goes back to what snapshot() gave in place of that; {"mask": m}, by world: only
                  these go back
         """
@@ -202,7 +129,7 @@ class VectorEnv:
             if snapshot is not None:
                 world.restore(snapshot.names[number])
             else:
-                world.reset(None if seeds is None else seeds[number])
+                world.begin(None if seeds is None else seeds[number])
             self._read(number)
         return self._shaped(self._observations.copy()), self._infos()
 
@@ -223,7 +150,7 @@ class VectorEnv:
     def step(self, actions: Any) -> Tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray, numpy.ndarray, Dict]:
         """One tick of all worlds: observations, rewards, terminations, truncations and infos.
 
-        Where an episode is over, its world has gone back to its begin (autoreset); infos["final_observation"]
+        Where an episode is over, its world has begun the next one (autoreset); infos["final_observation"]
         has the last observation, and infos["_final_observation"] says where."""
         self.step_async(actions)
         return self.step_wait()
@@ -249,7 +176,7 @@ class VectorEnv:
             robots = world.agents
             rewards[number] = [self._reward(robot) for robot in robots]
             terminations[number] = [self._terminated(robot) for robot in robots]
-            tick = world.session.tick.number
+            tick = world.session.tick.number - world.first_tick
             truncations[number] = self._max_ticks is not None and tick >= self._max_ticks
         over = terminations.all(axis=1) | truncations.all(axis=1)
         infos = {}
@@ -257,7 +184,7 @@ class VectorEnv:
             infos["final_observation"] = self._shaped(self._observations.copy())
             infos["_final_observation"] = over
             for number in numpy.flatnonzero(over):
-                self._worlds[number].reset(None)
+                self._worlds[number].begin()
                 self._read(number)
         infos.update(self._infos())
         return (self._shaped(self._observations.copy()), self._shaped(rewards),

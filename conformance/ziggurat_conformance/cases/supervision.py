@@ -10,8 +10,8 @@ from ..steps import Check, Hear, Join, Send, ServerEnds, Silence, Skip, Tick
 from ..wire import Count, OneOf, Some
 
 
-def _comes(peer: str = "s", role: str = "ROLE_SUPERVISOR") -> Join:
-    return Join(peer, hello(**{"role": role, "client_name": "supervisor"}), {"robots": Count(0)})
+def _comes(peer: str = "s", role: str = "ROLE_SUPERVISOR", **more) -> Join:
+    return Join(peer, hello(**{"role": role, "client_name": "supervisor", **more}), {"robots": Count(0)})
 
 
 def ask(peer: str, id: int, **request) -> Send:
@@ -32,9 +32,9 @@ def _pausing(id: int = 1) -> list:
     return [ask("s", id, pause={}), Silence("s", 0.1)]
 
 
-def _paused() -> list:
+def _paused(**more) -> list:
     """s has paused the world, of which p has all robots and has answered."""
-    return [*ALL, _comes(), *_pausing(), answer("p"), told("s", 1, tick=Tick(of="p")), Hear("p", "paused")]
+    return [*ALL, _comes(**more), *_pausing(), answer("p"), told("s", 1, tick=Tick(of="p")), Hear("p", "paused")]
 
 
 def _resumed(first: int = 90) -> list:
@@ -115,6 +115,7 @@ def _removed(id: int, entity: str) -> list:
     return [ask("s", id, remove={"entity": entity}), told("s", id)]
 
 
+_V14 = {"major": 1, "minor": 4}
 _TURNED = [0.8, 0.0, 0.0, 0.6]  # a unit quaternion
 _BOX = '<box id="crate" size="0.1,0.1,0.1" movable="false"><body position="1.5,1.5,0"/></box>'
 
@@ -176,6 +177,15 @@ CASES = [
        failed("u", 1, "OUT_OF_STATE"), told("t", 1), Hear("p", "reset"), Hear("p", "observation", {"tick": 0}),
        answer("p"), Hear("p", "paused", {"tick": 0}), Silence("p"), ask("t", 2, resume={}), told("t", 2),
        Hear("p", "observation", {"tick": 1}), fresh=True),
+    _v("V19.pause", "A pause that waits for its own program's answer is OUT_OF_STATE, and has no effect", *ALL, _comes(version=_V14),
+       ask("s", 1, pause={}, held_up=["arm1"]), failed("s", 1, "OUT_OF_STATE"), answer("p"), *observe("p")),
+    _v("V19.others", "A pause that waits for others is answered as ever", *ALL, _comes(version=_V14),
+       ask("s", 1, pause={}, held_up=["nobody"]), Silence("s", 0.1), answer("p"), told("s", 1, tick=Tick(of="p")),
+       Hear("p", "paused"), ask("s", 2, pause={}, held_up=["arm1"]), told("s", 2), *_resumed()),
+    _v("V19.step", "So is a step, which would wait for its own program", *_paused(version=_V14),
+       ask("s", 2, step={"ticks": 1}, held_up=["arm0"]), failed("s", 2, "OUT_OF_STATE"), Silence("p", 0.2), *_resumed()),
+    _v("V19.many", "It names 64 at most", *ALL, _comes(version=_V14), ask("s", 1, pause={}, held_up=["x"] * 65),
+       failed("s", 1, "TOO_MANY"), answer("p"), *observe("p")),
     _v("V6.reset", "After a reset the world is at tick 0", *ALL, _comes(), ask("s", 1, reset={}),
        Skip("p", "reset"), Hear("p", "observation", {"tick": 0}), told("s", 1, tick=0), answer("p"),
        Hear("p", "observation", {"tick": 1}), fresh=True),

@@ -17,6 +17,7 @@ using Kind = wire::Request::Kind;
 namespace {
 
 constexpr std::size_t most_ids = 65'536;  // of a request, patterns included
+constexpr std::size_t most_held_up = 64;  // sessions of a program
 
 std::optional<wire::Fault> check_entities(const std::vector<std::string>& entities) {
   std::size_t patterns = 0;
@@ -38,6 +39,7 @@ std::size_t bytes_of(const wire::Request& request) {
   std::size_t bytes = sizeof request + request.text.size() +
                       sizeof(double) * (request.position.size() + request.orientation.size());
   for (const std::string& each : request.entities) bytes += sizeof each + each.size();
+  for (const std::string& each : request.held_up) bytes += sizeof each + each.size();
   return bytes;
 }
 
@@ -51,6 +53,10 @@ std::optional<wire::Fault> check_request(const wire::Request& request, wire::Rol
   }
   if (!may) {
     return make_fault(ErrorCode::forbidden, {}, "This role may not make this request.");
+  }
+  if (request.held_up.size() > most_held_up) {
+    return make_fault(ErrorCode::too_many, "held_up",
+                      fmt::format("A request may name {} sessions that it holds up.", most_held_up));
   }
   return check_entities(request.entities);
 }

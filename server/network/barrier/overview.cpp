@@ -1,5 +1,7 @@
 #include "network/barrier/overview.h"
 
+#include <algorithm>
+
 namespace ziggurat::network {
 
 namespace {
@@ -55,6 +57,31 @@ wire::SessionStatus status_of(const Barrier& barrier, const Session& session, Ti
 }
 
 }  // namespace
+
+namespace {
+
+bool has_any(const Barrier& barrier, const Session& session, const std::vector<std::string>& ids) {
+  const auto is_meant = [&](const std::string& id) { return std::ranges::find(ids, id) != ids.end(); };
+  if (session.director) return is_meant(barrier.directors.all[*session.director].id);
+  const auto& robots = session.roster.robots;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    if (!session.roster.taken[i] && is_meant(barrier.run->layout.robots[robots[i]].id)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Need need_of(const Barrier& barrier, const std::vector<std::string>& ids) {
+  Need need = Need::nothing;
+  if (ids.empty()) return need;
+  barrier.sessions.for_each([&](const Session& session) {
+    const bool has_end = session.turn.patience.has_value() || session.state == SessionState::draining;
+    if (has_end || !session.has_ticks() || !has_any(barrier, session, ids)) return;
+    need = std::max(need, session.turn.owes ? Need::answer : Need::answers);
+  });
+  return need;
+}
 
 std::vector<RobotStatus> robot_status(const Barrier& barrier) {
   std::vector<RobotStatus> result(barrier.seats.size());
@@ -131,6 +158,10 @@ void fill(const Barrier& barrier, Time now, wire::Status& status) {
     } else if (is_free) {
       status.free_robots.push_back(id);
     }
+  }
+  for (std::size_t director = 0; director < barrier.directors.seats.size(); ++director) {
+    const Seats::Seat& seat = barrier.directors.seats[director];
+    if (seat.owner() == SessionId::none && !seat.has_left) status.free_directors.push_back(barrier.directors.all[director].id);
   }
 }
 

@@ -15,6 +15,10 @@ std::vector<RobotStatus> robot_status(const Barrier& barrier);
 /// @param now  ages are measured up to then
 void fill(const Barrier& barrier, Time now, wire::Status& status);
 
+/// What the world needs most of the sessions that have these robots or directors.
+/// @param ids  of one robot or director of each session; others mean nothing
+Need need_of(const Barrier& barrier, const std::vector<std::string>& ids);
+
 /// With the ids of their robots.
 std::vector<world::Metric> named(const Barrier& barrier, const std::vector<wire::Metric>& metrics);
 /// That were set at the tick in hand: in scene order, then those of directors.

@@ -45,6 +45,31 @@ TEST_F(Devices, HaveTheFunctionsAndReadingsThatAreEnabled) {
 
 // ---- LEDs ---------------------------------------------------------------------------------------
 
+TEST_F(Devices, AJointHasASensorOfItsPositionAndOneOfItsVelocity) {
+  using Description = v1::JointDescription;
+  for (const auto& [id, mode] : {std::pair{"arm", Description::VELOCITY}, std::pair{"arm", Description::POSITION},
+                                 std::pair{"leg", Description::POSITION}}) {
+    v1::JointDescription& sensor = *robot_.add_joint_sensors();
+    sensor.set_id(id);
+    sensor.set_mode(mode);
+  }
+  EXPECT_RUNS(start(R"lua(
+    function step()
+      local arm, leg = robot.joints.arm, robot.joints.leg
+      assert(#robot.joints == 0 and arm.velocity == 1 and arm.position == 2 and arm.encoder == 1)
+      assert(leg.position == 3 and leg.velocity == nil and leg.encoder == 3)
+    end
+  )lua"));
+  for (int i = 0; i < 3; ++i) seen().set_joint_readings(i, i + 1);
+  EXPECT_RUNS(step());
+  ASSERT_EQ(robot().joints().size(), 2U);
+  EXPECT_EQ(robot().joint("arm").velocity(), 1);
+  EXPECT_EQ(robot().joint("arm").position(), 2);
+  EXPECT_EQ(robot().joint("arm").encoder_mode(), JointMode::velocity);
+  EXPECT_FALSE(robot().joint("leg").has_velocity());
+  EXPECT_THROW(robot().joint("leg").velocity(), std::logic_error);
+}
+
 TEST_F(Devices, LedColorsInAllForms) {
   for (int i = 0; i < 6; ++i) robot_.add_leds()->set_color(0x010101);
   EXPECT_RUNS(start(R"lua(

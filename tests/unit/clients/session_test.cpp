@@ -401,5 +401,20 @@ TEST(Options, FromTheEnvironment) {
   EXPECT_EQ(options.controller, "wheels");
 }
 
+TEST(Options, AnEndpointThatIsGivenStaysAndATokenIsForTheOtherOne) {
+  ::setenv("ZIGGURAT_ENDPOINT", "tcp://127.0.0.1:1", 1);
+  ::setenv("ZIGGURAT_SESSION_TOKEN", "7a", 1);
+  Options other;
+  other.endpoint = "tcp://127.0.0.1:2";
+  other.read_environment();
+  EXPECT_EQ(other.endpoint, "tcp://127.0.0.1:2");
+  EXPECT_EQ(other.session_token, "");
+  Options same;
+  same.endpoint = "tcp://127.0.0.1:1";
+  same.read_environment();
+  EXPECT_EQ(same.session_token, "z");
+  ::unsetenv("ZIGGURAT_ENDPOINT");
+}
+
 }  // namespace
 }  // namespace ziggurat

@@ -66,10 +66,11 @@ TEST(Controllers, CommandsFindTheServerInTheirEnvironment) {
   EXPECT_EQ(launches[1].program.arguments,
             (std::vector<std::string>{"/bin/sh", "-c", "./drive --fast"}));
   EXPECT_EQ(launches[1].program.environment,
-            (std::vector<std::pair<std::string, std::string>>{{"ZIGGURAT_ENDPOINT", "ipc:///e"},
+            (std::vector<std::pair<std::string, std::string>>{{"ZIGGURAT_SERVER_KEY", ""},
+                                                              {"ZIGGURAT_CURVE_SECRET", ""},
+                                                              {"ZIGGURAT_ENDPOINT", "ipc:///e"},
                                                               {"ZIGGURAT_CONTROLLER", "drive"},
-                                                              {"ZIGGURAT_SERVER_KEY", ""},
-                                                              {"ZIGGURAT_CURVE_SECRET", ""}}));
+                                                              {"ZIGGURAT_SCENE_FOLDER", ""}}));
 }
 
 TEST(Controllers, LongListsOfNamesAreCut) {

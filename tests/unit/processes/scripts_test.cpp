@@ -97,7 +97,7 @@ TEST_F(Scripts, CommandsAreLookedForInTheSamePlaces) {
   EXPECT_EQ(find("./drive --fast").text, "'" + folder + "/drive' --fast");
   EXPECT_EQ(find("exec ./drive").text, "exec '" + folder + "/drive'");
   EXPECT_EQ(find("sh -e drive.py --out x.csv").text, "sh -e '" + script.string() + "' --out x.csv");
-  for (const char* command : {"./drive", "echo hello", "cd /tmp && ./nothing", "X=1 ./nothing",
+  for (const char* command : {"./drive", "echo hello", "cd /tmp && ./nothing", "X=$A ./nothing",
                               "\"$HOME/x\"", "sh -c 'exec ./nothing'", "sleep 1"}) {
     EXPECT_EQ(find(command).missing, "") << command;
   }
@@ -109,12 +109,47 @@ TEST_F(Scripts, CommandsAreLookedForInTheSamePlaces) {
   EXPECT_NE(find("./drive.py").missing.find("chmod +x"), std::string::npos);
 }
 
+TEST_F(Scripts, CommandsBehindOthersQuotedOrInTheSceneFolder) {
+  const auto scene = write("a b/scene.argos", "");
+  const auto program = write("a b/my drive", "#!/bin/sh\n");
+  const auto script = write("a b/my drive.py", "");
+  write("a b/drive.py", "");
+  fs::permissions(program, fs::perms::owner_all);
+  const std::string folder = scene.parent_path().string();
+  const std::string found_script = "'" + script.string() + "'", found_program = "'" + program.string() + "'";
+  for (const auto& [command, found] : std::vector<std::pair<std::string, std::string>>{
+           {"'./my drive' --fast", found_program + " --fast"},
+           {"./my\\ drive", found_program},
+           {"\"./my drive\"", found_program},
+           {"sh 'my drive.py' x", "sh " + found_script + " x"},
+           {"/bin/sh \"my drive.py\"", "/bin/sh " + found_script},
+           {"nice sh drive.py", "nice sh '" + folder + "/drive.py'"},
+           {"nice -n 5 ./my\\ drive", "nice -n 5 " + found_program},
+           {"exec env A=1 B='2 3' ./my\\ drive", "exec env A=1 B='2 3' " + found_program},
+           {"A=1 timeout -s INT 5 /bin/sh drive.py", "A=1 timeout -s INT 5 /bin/sh '" + folder + "/drive.py'"},
+           {"sh $ZIGGURAT_SCENE_FOLDER/drive.py", "sh '" + folder + "/drive.py'"},
+           {"sh \"${ZIGGURAT_SCENE_FOLDER}/my drive.py\"", "sh " + found_script},
+           {"sh -c 'exec drive.py'", "sh -c 'exec drive.py'"}}) {
+    const FoundCommand result = find_command(command, scene, scene);
+    EXPECT_EQ(result.text, found);
+    EXPECT_EQ(result.missing, "") << command;
+  }
+  for (const char* command : {"nice ./nothing", "env A=1 ./nothing", "A=1 ./nothing", "/bin/sh nothing.py", "'./no thing'",
+                              "sh 'no thing.py'", "$ZIGGURAT_SCENE_FOLDER/nothing", "nice no-such-program"}) {
+    EXPECT_NE(find_command(command, scene, scene).missing, "") << command;
+  }
+  for (const char* command : {"$ZIGGURAT_SCENE_FOLDERS/x", "sh '$ZIGGURAT_SCENE_FOLDER' y", "sh '", "sh -lc x.sh"}) {
+    EXPECT_EQ(find_command(command, scene, scene).missing, "") << command;
+    EXPECT_EQ(find_command(command, scene, scene).text, command);
+  }
+}
+
 TEST_F(Scripts, ACommandThatNoShellCanStartIsTold) {
   const auto program = write("drive", "#!/bin/sh\n");
   const auto plain = write("drive.txt", "");
   fs::permissions(program, fs::perms::owner_all);
   for (const std::string& command : {program.string() + " --fast", "exec " + program.string(), std::string("sleep 1"),
-                                     std::string("X=1 ./nothing"), std::string("cd /tmp && ./nothing"), std::string("exit 4")}) {
+                                     std::string("X=$A ./nothing"), std::string("cd /tmp && ./nothing"), std::string("exit 4")}) {
     EXPECT_EQ(why_not_started(command), "") << command;
   }
   EXPECT_NE(why_not_started(program.string() + "r").find("did you mean 'drive'?"), std::string::npos);

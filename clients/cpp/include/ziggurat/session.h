@@ -65,9 +65,9 @@ struct SessionOptions {
   /// constructor throws ConnectionError. None = no interruption.
   std::function<bool()> is_interrupted;
 
-  /// The endpoint is ZIGGURAT_ENDPOINT, otherwise that of find_server(). Keys are ZIGGURAT_SERVER_KEY and
-  /// ZIGGURAT_CURVE_SECRET, the token is that of take_session_token(). `ziggurat run` sets them for the programs
-  /// that it starts. @throws std::invalid_argument, see find_server() and take_session_token()
+  /// The endpoint, if there is none yet, is ZIGGURAT_ENDPOINT, otherwise that of find_server(). Keys are
+  /// ZIGGURAT_SERVER_KEY and ZIGGURAT_CURVE_SECRET; the token is that of take_session_token(), unless the endpoint is
+  /// another than ZIGGURAT_ENDPOINT. `ziggurat run` sets them for the programs that it starts. @throws std::invalid_argument, see find_server() and take_session_token()
   void read_environment();
 };
 

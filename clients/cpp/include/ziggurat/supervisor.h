@@ -62,6 +62,7 @@ struct ServerStatus {
   std::vector<SessionStatus> sessions;
   std::vector<std::string> free_robots;  ///< ids: without a session; the world waits for them
   std::vector<std::string> gone_robots;  ///< ids: they left the run forever
+  std::vector<std::string> free_directors;  ///< ids: likewise without a session
   struct Phase {
     std::string name;  ///< "exchange", "physics", "recording" or "pacing"
     Latency wall;

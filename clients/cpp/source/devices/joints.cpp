@@ -17,9 +17,18 @@ JointMode mode_of(v1::JointDescription::Mode mode) {
   }
 }
 
+double reading_of(bool has_sensor, double reading, const char* mode, std::string_view id) {
+  if (has_sensor) return reading;
+  throw std::logic_error("joint '" + text::printable_part(id) + "' has no sensor in mode " + mode +
+                         ": the controller's <sensors> do not list it");
+}
+
 }  // namespace
 
-/// A sensor and an actuator with the same id are one joint.
+double Joint::position() const { return reading_of(has_position_, position_, "position", id_); }
+double Joint::velocity() const { return reading_of(has_velocity_, velocity_, "velocity", id_); }
+
+/// Sensors and an actuator with the same id are one joint.
 void Layout::add_joints() {
   auto& readings = add(Readings<double>("joint readings", &v1::Observation::joint_readings));
   auto& targets = add(Settings<double>(&v1::Command::mutable_joint_targets));
@@ -27,12 +36,18 @@ void Layout::add_joints() {
     to.joints_.reserve(size(from.joint_sensors_size() + from.joint_actuators_size()));
     std::map<std::string, std::size_t> known;
     for (const v1::JointDescription& sensor : from.joint_sensors()) {
-      known.emplace(sensor.id(), to.joints_.size());
-      Joint& joint = to.joints_.emplace_back();
+      const auto [found, is_new] = known.emplace(sensor.id(), to.joints_.size());
+      if (is_new) to.joints_.emplace_back();
+      Joint& joint = to.joints_[found->second];
       joint.id_ = sensor.id();
+      const JointMode mode = mode_of(sensor.mode());
+      if (!joint.has_encoder_) joint.encoder_mode_ = mode;
       joint.has_encoder_ = true;
-      joint.encoder_mode_ = mode_of(sensor.mode());
-      readings.add(joint.encoder_);
+      joint.has_position_ |= mode == JointMode::position;
+      joint.has_velocity_ |= mode == JointMode::velocity;
+      readings.add(mode == JointMode::position   ? joint.position_
+                   : mode == JointMode::velocity ? joint.velocity_
+                                                 : joint.other_);
     }
     for (const v1::JointDescription& actuator : from.joint_actuators()) {
       const auto [found, is_new] = known.emplace(actuator.id(), to.joints_.size());

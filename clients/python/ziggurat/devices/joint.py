@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from typing import Dict, List, Optional
+from typing import Dict, List, Optional, Tuple
 
 from .. import protocol_pb2 as v1
 from ..exchange import Exchange
@@ -11,24 +11,50 @@ _MODES = {v1.JointDescription.POSITION: "position", v1.JointDescription.VELOCITY
 
 
 class Joint(Device):
-    """A joint with an encoder, a motor, or both."""
+    """A joint with an encoder, a motor, or both. Encoders are of its position, its velocity, or of both."""
 
-    __slots__ = ("sensor_mode", "actuator_mode", "max_impulse", "_sensor", "_actuator")
+    __slots__ = ("sensor_mode", "actuator_mode", "max_impulse", "_sensors", "_actuator")
 
     def __init__(self, exchange: Exchange, id: str):
         super().__init__(exchange, id)
-        self.sensor_mode: Optional[str] = None  # "position", "velocity" or "disabled"
+        self.sensor_mode: Optional[str] = None  # of the first one: "position", "velocity" or "disabled"
         self.actuator_mode: Optional[str] = None  # the same; None without a motor
         self.max_impulse = 0.0  # of the motor, a substep [N s] or [N m s]
-        self._sensor = self._actuator = -1
+        self._sensors: Tuple[Tuple[Optional[str], int], ...] = ()  # mode and place of each
+        self._actuator = -1
 
     @property
     def encoder(self) -> float:
-        """[m], [rad], [m/s] or [rad/s], by sensor_mode; 0 at tick 0."""
-        if self._sensor < 0:
+        """The reading of the first sensor: [m], [rad], [m/s] or [rad/s], by sensor_mode; 0 at tick 0."""
+        if not self._sensors:
             raise AttributeError(f"joint {self.id!r} has no encoder")
+        return self._read(self._sensors[0][1])
+
+    @property
+    def position(self) -> float:
+        """[m] or [rad]; 0 at tick 0."""
+        return self._measured("position")
+
+    @property
+    def velocity(self) -> float:
+        """[m/s] or [rad/s]; 0 at tick 0."""
+        return self._measured("velocity")
+
+    @property
+    def readings(self) -> List[float]:
+        """Those of all its sensors, in the order of the scene."""
+        return [self._read(place) for _, place in self._sensors]
+
+    def _measured(self, mode: str) -> float:
+        for each, place in self._sensors:
+            if each == mode:
+                return self._read(place)
+        raise AttributeError(f"joint {self.id!r} has no sensor in mode {mode!r}; add "
+                             f"<joint id=\"{self.id}\" mode=\"{mode}\"/> to the controller's <sensors>")
+
+    def _read(self, place: int) -> float:
         readings = self._exchange.seen.joint_readings
-        return readings[self._sensor] if readings else 0.0
+        return readings[place] if readings else 0.0
 
     @property
     def target(self) -> float:
@@ -45,12 +71,14 @@ class Joint(Device):
 
 
 def joints_of(exchange: Exchange, given: v1.RobotDescription) -> List[Joint]:
-    """A sensor and an actuator with the same id are one joint."""
+    """Sensors and an actuator with the same id are one joint."""
     joints: Dict[str, Joint] = {}
     for sensor in given.joint_sensors:
         joint = joints.setdefault(sensor.id, Joint(exchange, sensor.id))
-        joint.sensor_mode = _MODES.get(sensor.mode)
-        joint._sensor = exchange.place("joint")
+        mode = _MODES.get(sensor.mode)
+        if not joint._sensors:
+            joint.sensor_mode = mode
+        joint._sensors += ((mode, exchange.place("joint")),)
     for actuator in given.joint_actuators:
         joint = joints.setdefault(actuator.id, Joint(exchange, actuator.id))
         joint.actuator_mode = _MODES.get(actuator.mode)

@@ -73,6 +73,16 @@ class Module(unittest.TestCase):
         self.assertEqual(lua.returncode, 1)
         self.assertIn("interrupted!", errors)
 
+    def test_the_controller_is_that_of_the_environment(self):
+        script = "require('ziggurat').connect{endpoint = arg[1]}"
+        with serve(VEHICLE) as server:
+            for names, told in (({"ZIGGURAT_CONTROLLER": "ghost"}, "UNKNOWN_CONTROLLER.*'ghost'"),
+                                ({"ZIGGURAT_SERVER_KEY": "short", "ZIGGURAT_CURVE_SECRET": "x"}, "'x'")):
+                lua = subprocess.run(["lua5.3", "-", server.endpoint], input=script, text=True, timeout=60,
+                                     env={**os.environ, **names}, stderr=subprocess.PIPE)
+                self.assertEqual(lua.returncode, 1)
+                self.assertRegex(lua.stderr, told)
+
 
 if __name__ == "__main__":
     unittest.main()

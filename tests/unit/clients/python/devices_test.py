@@ -47,6 +47,22 @@ class Devices(unittest.TestCase):
         with self.assertRaisesRegex(KeyError, "robot 'two' has no joint 'lefd'; did you mean 'left'"):
             self.two.joints["lefd"]
 
+    def test_a_joint_with_a_sensor_of_its_position_and_one_of_its_velocity(self):
+        joint = v1.JointDescription
+        given = v1.RobotDescription(id="three", joint_sensors=[
+            joint(id="arm", mode=joint.VELOCITY), joint(id="arm", mode=joint.POSITION), joint(id="leg", mode=joint.POSITION)])
+        exchange = Exchange()
+        joints = Robot(exchange, 0, given, lambda *_: None).joints
+        self.assertEqual([each.id for each in joints], ["arm", "leg"])
+        self.assertEqual((joints["arm"].position, joints["arm"].velocity), (0, 0))
+        exchange.observe(v1.Observation(tick=1, joint_readings=[1, 2, 3]))
+        self.assertEqual((joints["arm"].position, joints["arm"].velocity), (2, 1))
+        self.assertEqual((joints["arm"].encoder, joints["arm"].sensor_mode), (1, "velocity"))
+        self.assertEqual(joints["arm"].readings, [1, 2])
+        self.assertEqual(joints["leg"].position, 3)
+        with self.assertRaisesRegex(AttributeError, 'no sensor in mode .velocity.; add <joint id="leg" mode="velocity"/>'):
+            joints["leg"].velocity
+
     def test_before_the_first_tick(self):
         self.assertEqual(self.two.joints["left"].encoder, 0)
         self.assertEqual(list(self.two.proximity), [0, 0])

@@ -16,7 +16,9 @@ class Parallel(SessionCase):
             server.send(welcome=welcome(equipped("one"), equipped("two")))
             controller = server.peer
             server.observe(0)
-            self.assertEqual(list(server.receive().joint_targets), [1, 2, 0, 0])
+            command = server.receive()
+            self.assertEqual(list(command.joint_targets), [1, 2, 0, 0])
+            self.assertEqual(list(command.wheel_velocities), [3, 4, 0, 0])
             server.observe(1, joint_readings=[1, 2, 3, 4])
             self.assertEqual(server.receive().role, v1.ROLE_SUPERVISOR)
             server.send(welcome=welcome(role=v1.ROLE_SUPERVISOR))
@@ -40,7 +42,7 @@ class Parallel(SessionCase):
             observations, infos = env.reset()
             self.assertEqual(observations, {"one": 0, "two": 0})
             self.assertEqual(infos["one"]["tick"], 0)
-            observations, rewards, terminations, truncations, _ = env.step({"one": [1, 2]})
+            observations, rewards, terminations, truncations, _ = env.step({"one": [1, 2, 3, 4]})
             self.assertEqual(observations, {"one": 1, "two": 3})
             self.assertEqual(rewards, {"one": 2, "two": 4})
             self.assertEqual(terminations, {"one": False, "two": True})
@@ -64,13 +66,15 @@ class Parallel(SessionCase):
             server.receive()
             server.send(welcome=welcome(equipped("one")))
             server.observe(1, joint_readings=[1, 2], proximity=[3, 4], positioning=range(7),
-                           batteries=[0.5, 9])
+                           batteries=[0.5, 9], wheels=[5, 6, 7, 8], turret_rotations=[9], imus=range(6),
+                           contact_sensors=[1, 2, 3, 4, 5])
 
         def client():
             env = ziggurat.parallel_env(endpoint=self.server.endpoint)
             self.addCleanup(env.close)
             observations, _ = env.reset()
-            self.assertEqual(observations["one"], [1, 2, 3, 4, 0, 1, 2, 3, 4, 5, 6, 0.5])
+            self.assertEqual(observations["one"], [1, 2, 3, 4, 0, 1, 2, 3, 4, 5, 6, 0.5, 5, 6, 7, 8, 9,
+                                                   0, 1, 2, 3, 4, 5, 1, 2, 3, 4, 5])
 
         self.play(part, client)
 
