@@ -33,7 +33,9 @@ function init()
     for id, entity in pairs(world.entities) do
       if is_robot(entity) == robots and id ~= "block0" then
         local place = robots and scatter(0.95, 1.2, 0.3) or scatter(0.48, 0.95, 0.25)
-        world.move(entity, place, {angle = world.random.uniform(0, 2 * math.pi), axis = {x = 0, y = 0, z = 1}})
+        -- Places are apart from each other; one that moves later may still stand there.
+        world.move(entity, place, {angle = world.random.uniform(0, 2 * math.pi), axis = {x = 0, y = 0, z = 1}},
+                   {may_overlap = true})
       end
     end
   end

@@ -8,6 +8,7 @@
 #include <functional>
 #include <iostream>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -36,7 +37,8 @@ po::options_description ctl_options() {
                         "with reset: the new seed; without it the seed stays")(
       "json", "print answers as JSON")(
       "reason", po::value<std::string>()->value_name("TEXT"),
-      "with shutdown: the end is planned; the run's exit code is 0, and its summary has TEXT");
+      "with shutdown: the end is planned; the run's exit code is 0, and its summary has TEXT")(
+      "may-overlap", "with move: also onto others, which are pushed apart");
   add_key_options(options);
   return options;
 }
@@ -144,18 +146,39 @@ Request remove(const Given& given) {
   return [entity = given.words[0]](const Call& call) { print_result(call, "removed", call.server.remove(entity)); };
 }
 
-Request move(const Given& given) {
+/// Words 1 and 2, which may be missing.
+struct Place {
   std::array<double, 3> position{};
-  text::to_numbers("position", given.words[1], "x,y,z in metres, as 1,-1,0.5", position);
   std::optional<std::array<double, 4>> orientation;
+};
+
+Place place_of(const Given& given) {
+  Place place;
+  text::to_numbers("position", given.words[1], "x,y,z in metres, as 1,-1,0.5", place.position);
   if (given.words.size() == 3) {
     math::Vector3 angles;
     text::to_numbers("orientation", given.words[2], "turns about z,y,x in degrees, as 90,0,0", {angles.data(), 3});
     const math::Quaternion turned = scene::orientation_from_degrees(angles);
-    orientation = {turned.w(), turned.x(), turned.y(), turned.z()};
+    place.orientation = {turned.w(), turned.x(), turned.y(), turned.z()};
   }
-  return [entity = given.words[0], position, orientation](const Call& call) {
-    print_result(call, "moved", call.server.move(entity, position, orientation));
+  return place;
+}
+
+Request move(const Given& given) {
+  const Onto onto = given.values.has("may-overlap") ? Onto::others : Onto::free_place;
+  return [entity = given.words[0], place = place_of(given), onto](const Call& call) {
+    print_result(call, "moved", call.server.move(entity, place.position, place.orientation, onto));
+  };
+}
+
+Request is_free(const Given& given) {
+  return [what = given.words[0], place = place_of(given)](const Call& call) {
+    const auto overlapped = call.server.overlapped(what, place.position, place.orientation);
+    if (call.as_json) {
+      call.console.result(nlohmann::ordered_json{{"free", !overlapped}, {"overlapped", overlapped.value_or("")}}.dump());
+    } else {
+      call.console.result(overlapped ? fmt::format("not free: '{}' is there", *overlapped) : "free");
+    }
   };
 }
 
@@ -206,9 +229,9 @@ constexpr Verb verbs[] = {
     {"spawn", "FILE|-", 1, 1, "add an entity: one element, as in <arena>", spawn},
     {"remove", "ENTITY", 1, 1, "remove it from the world", remove},
     {"move", "ENTITY x,y,z [z,y,x]", 2, 3,
-     "put it at rest there [m], with this orientation [degrees]; the place need not be free: what overlaps is pushed "
-     "apart",
-     move},
+     "put it at rest there [m], with this orientation [degrees], if the place is free; --may-overlap: also if not", move},
+    {"is-free", "ENTITY|XML x,y,z [z,y,x]", 2, 3,
+     "whether it would overlap nothing there; XML is one element, as '<box size=\"1,1,1\"/>'", is_free},
     {"read", "[ID|GLOB]...", 0, any_number, "poses of entities: x y z, and the quaternion w x y z",
      read},
     {"shutdown", "[--reason TEXT]", 0, 0, "end the run, as Ctrl-C does; with a reason as planned",
@@ -269,7 +292,8 @@ int execute_ctl(const Arguments& arguments) {
                                        verb.words.empty() ? "" : " ", verb.words));
   }
   const Given given{std::move(words), Values(parsed.values)};
-  for (const auto& [option, of] : {std::pair{"seed", "reset"}, std::pair{"reason", "shutdown"}}) {
+  for (const auto& [option, of] :
+       {std::pair{"seed", "reset"}, std::pair{"reason", "shutdown"}, std::pair{"may-overlap", "move"}}) {
     if (!given.values.has(option) || verb.name == of) continue;
     throw text::UsageError(fmt::format("--{} is for {}; remove it from {}", option, of, verb.name));
   }

@@ -33,7 +33,7 @@ po::options_description scene_options() {
   po::options_description options("Reading the scene", width);
   add_variation(options);
   options.add_options()                                          //
-      ("lenient", "unknown attributes are notices, not faults")  //
+      ("lenient", "unknown attributes, libraries of <loop_functions> and floors that they draw are notices, not faults")  //
       ("max-scene-size", text("SIZE"), "largest scene file, as 64M (the default)");
   return options;
 }

@@ -119,7 +119,9 @@ Rows table_of_means(const Sofar& sofar, const std::vector<std::size_t>& axes,
     row.push_back(fmt::format("{}", group.finished));
     row.push_back(fmt::format("{}", group.failed));
     for (const auto& estimate : group.estimates) {
-      row.insert(row.end(), {number(estimate.mean), number(estimate.half_width)});
+      const std::string count = fmt::format("n={}", estimate.count);  // where there are too few for a number
+      row.insert(row.end(), {estimate.count == 0 ? count : number(estimate.mean),
+                             estimate.count < 2 ? count : number(estimate.half_width)});
     }
   }
   return rows;
@@ -140,13 +142,30 @@ void gather(const Sofar& sofar) {
   ledger.make_view(sofar.experiment);
 }
 
+/// The values of an option, several of which may stand in one text with commas between.
+/// @param known  names that may have commas themselves
+std::vector<std::string> split_names(const std::vector<std::string>& texts, const std::vector<std::string>& known) {
+  std::vector<std::string> names;
+  for (const std::string& text : texts) {
+    if (std::ranges::find(known, text) != known.end()) {
+      names.push_back(text);
+      continue;
+    }
+    for (std::size_t begin = 0, end = 0; begin <= text.size(); begin = end + 1) {
+      end = std::min(text.find(',', begin), text.size());
+      names.push_back(text.substr(begin, end - begin));
+    }
+  }
+  return names;
+}
+
 po::options_description results_options() {
   po::options_description options("Options", 96);
   options.add_options()  //
       ("runs", "a row per run as CSV, not means")  //
       ("csv", "the means as CSV")                  //
       ("by", po::value<std::vector<std::string>>()->composing()->value_name("AXIS"),
-       "means over all runs with the same value of this axis; may be repeated; default: all axes")  //
+       "means over all runs with the same value of this axis, or of several: a,b; default: all axes")  //
       ("metric", po::value<std::vector<std::string>>()->composing()->value_name("NAME"),
        "this metric only, or another number of runs as ticks or wall_s; may be repeated")  //
       ("confidence", po::value<std::string>()->value_name("P"),
@@ -244,17 +263,21 @@ int sweep_results(const Arguments& arguments) {
   std::iota(axes.begin(), axes.end(), std::size_t{0});
   if (values.has("by")) {
     axes.clear();
-    for (const auto& name : values.texts("by")) {
+    std::vector<std::string> known;
+    for (const auto& axis : sofar.experiment.axes) known.push_back(axis.name);
+    for (const auto& name : split_names(values.texts("by"), known)) {
       axes.push_back(axis_named(sofar.experiment, name));
     }
   }
   std::vector<std::string> measures = usual_measures(sofar.results);
   if (values.has("metric")) {
-    measures = values.texts("metric");
-    for (const auto& name : measures) check_measure(name, sweep::measures_of(sofar.results));
+    const auto known = sweep::measures_of(sofar.results);
+    measures = split_names(values.texts("metric"), known);
+    for (const auto& name : measures) check_measure(name, known);
   }
   const Rows rows = table_of_means(sofar, axes, measures, confidence_of(values));
   console.result(values.has("csv") ? as_csv(rows) : aligned(rows));
+  if (rows.size() == 1) console.notice("no run is done yet: there are no means (n=0)");
   console.flush();
   return exit_code::finished;
 }

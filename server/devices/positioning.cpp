@@ -65,7 +65,7 @@ class Positioning final : public Kind {
         if (axis.norm() < 1e-12) axis = turn.axis();  // the noise took it away
         pose.orientation = Eigen::AngleAxisd(angle, axis.normalized());
       }
-      poses[i] = pose;
+      poses[i] = {pose.position, math::canonical(pose.orientation)};
     }
   }
 

@@ -21,6 +21,14 @@ struct Pose {
 /// Whether a quaternion has length 1, up to what rounding and other programs leave of it.
 inline bool is_rotation(const Quaternion& quaternion) { return std::abs(quaternion.squaredNorm() - 1) < 1e-6; }
 
+/// Of the two quaternions that stand for a rotation the one with w >= 0, which turns by 0 to pi; of half turns the one
+/// whose last component that is not 0 is positive.
+inline Quaternion canonical(const Quaternion& q) {
+  const double last = q.z() != 0 ? q.z() : q.y() != 0 ? q.y() : q.x();
+  const bool is_other = q.w() < 0 || (q.w() == 0 && last < 0);
+  return is_other ? Quaternion(-q.coeffs()) : q;
+}
+
 /// X_AC from X_AB and X_BC.
 inline Pose operator*(const Pose& a_b, const Pose& b_c) {
   return {a_b.position + a_b.orientation * b_c.position, a_b.orientation * b_c.orientation};

@@ -55,8 +55,9 @@ void Core::move(Body& body) {
   with(core_, [&](auto& core) { core.move(body); });
 }
 
-std::optional<std::size_t> Core::overlapped_by(std::span<const PlacedCollider> colliders) const {
-  return with(core_, [&](const auto& core) { return core.overlapped_by(colliders); });
+std::optional<std::size_t> Core::overlapped_by(std::span<const PlacedCollider> colliders,
+                                               std::size_t except) const {
+  return with(core_, [&](const auto& core) { return core.overlapped_by(colliders, except); });
 }
 
 JointIndex Core::joint(std::size_t entity, std::size_t joint) const {

@@ -42,8 +42,9 @@ class Core {
   void move(Body& body);
 
   /// The first entity, in order of adding, that one of the colliders overlaps. The floor doesn't
-  /// count; touching is not overlapping.
-  std::optional<std::size_t> overlapped_by(std::span<const PlacedCollider> colliders) const;
+  /// count, nor does `except`; touching is not overlapping.
+  std::optional<std::size_t> overlapped_by(std::span<const PlacedCollider> colliders,
+                                           std::size_t except) const;
 
   JointIndex joint(std::size_t entity, std::size_t joint) const;
   void add_motor(JointIndex joint, scene::JointMode mode, double max_impulse);

@@ -1,6 +1,7 @@
 #pragma once
 // Whether colliders overlap where they are placed.
 
+#include <cstddef>
 #include <vector>
 
 #include "physics/contact/shapes.h"
@@ -13,10 +14,18 @@ struct PlacedCollider {
   btTransform pose;  ///< of the shape's centre, in the world
 };
 
-/// Those of an entity at its pose, joints as assembled.
-std::vector<PlacedCollider> placed_colliders(const scene::Entity& entity);
+/// Those of an entity at a pose of its origin, joints as assembled.
+std::vector<PlacedCollider> placed_colliders(const scene::Entity& entity, const math::Pose& pose);
 
-/// Touching is not overlapping.
-bool overlaps(const PlacedCollider& a, const PlacedCollider& b);
+/// How deep bodies that are placed may be in each other: rounding is a thousand times smaller [m].
+constexpr double placed_depth = 1e-8;
+/// How deep bodies that rest on each other may be in each other [m].
+constexpr double resting_depth = 1e-4;
+
+/// Touching is not overlapping. @param depth  up to which they touch [m]
+bool overlaps(const PlacedCollider& a, const PlacedCollider& b, double depth);
+
+/// No entity.
+constexpr std::size_t nobody = static_cast<std::size_t>(-1);
 
 }  // namespace ziggurat::physics

@@ -22,7 +22,7 @@ Placement::Placement() : parts_(std::make_unique<Parts>()) {}
 Placement::~Placement() = default;
 
 void Placement::add(const scene::Entity& entity) {
-  for (const PlacedCollider& collider : placed_colliders(entity)) {
+  for (const PlacedCollider& collider : placed_colliders(entity, entity.pose)) {
     parts_->nearby.add(parts_->placed.size(), collider.pose.getOrigin(),
                        contact::bounding_radius(collider.shape));
     parts_->placed.push_back({parts_->ids.size(), collider});
@@ -34,7 +34,7 @@ std::string Placement::overlapped_by(const scene::Entity& entity) const {
   constexpr std::size_t of_collider = 5, of_test = 10;  // a neighbour that is passed over: 1
   const std::size_t none = parts_->placed.size();
   std::size_t first = none;
-  for (const PlacedCollider& candidate : placed_colliders(entity)) {
+  for (const PlacedCollider& candidate : placed_colliders(entity, entity.pose)) {
     parts_->effort += of_collider;
     parts_->nearby.visit(candidate.pose.getOrigin(), contact::bounding_radius(candidate.shape),
                          [&](std::size_t i) {
@@ -42,7 +42,7 @@ std::string Placement::overlapped_by(const scene::Entity& entity) const {
                            ++parts_->effort;
                            if (i >= first) return;
                            parts_->effort += of_test;
-                           if (overlaps(candidate, other.collider)) first = i;
+                           if (overlaps(candidate, other.collider, placed_depth)) first = i;
                          });
   }
   return first == none ? std::string() : parts_->ids[parts_->placed[first].entity];

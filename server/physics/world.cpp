@@ -100,8 +100,9 @@ void World::remove(std::size_t entity) {
   body.first_magnet = gone.first_magnet;
 }
 
-std::optional<std::size_t> World::overlapped_by(const scene::Entity& entity) const {
-  return parts_->core.overlapped_by(placed_colliders(entity));
+std::optional<std::size_t> World::overlapped_by(const scene::Entity& entity, const math::Pose& pose,
+                                                std::optional<std::size_t> except) const {
+  return parts_->core.overlapped_by(placed_colliders(entity, pose), except.value_or(nobody));
 }
 
 JointIndex World::joint(std::size_t entity, std::size_t joint) const {

@@ -40,9 +40,11 @@ class World {
   /// Afterwards only its joints may be read, which are at 0.
   void remove(std::size_t entity);
 
-  /// The first entity, in order of adding, that another would overlap at its pose, at the current
-  /// poses. The floor never counts; touching is not overlapping.
-  std::optional<std::size_t> overlapped_by(const scene::Entity& entity) const;
+  /// The first entity, in order of adding, that another would overlap at a pose of its origin, joints as assembled,
+  /// at the current poses. The floor never counts; touching is not overlapping.
+  /// @param except  in order of adding: does not count
+  std::optional<std::size_t> overlapped_by(const scene::Entity& entity, const math::Pose& pose,
+                                           std::optional<std::size_t> except = {}) const;
 
   /// A revolute or prismatic joint of an entity added before.
   /// @param entity  in order of adding;  @param joint  index into Entity::joints

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <lua.hpp>
+#include <memory>
 #include <optional>
 #include <regex>
 #include <string>
@@ -84,6 +86,60 @@ Paths scripts_in(const fs::path& folder) {
   return scripts;
 }
 
+/// Lua's own search for modules, as a script in a folder has it.
+class Modules {
+ public:
+  explicit Modules(const fs::path& folder) : lua_(luaL_newstate(), lua_close) {
+    luaL_openlibs(lua_.get());
+    const std::string own = folder.empty() ? "." : folder.string();
+    lua_getglobal(lua_.get(), "package");
+    lua_getfield(lua_.get(), 1, "path");
+    lua_pushfstring(lua_.get(), "%s/?.lua;%s/?/init.lua;%s", own.c_str(), own.c_str(), lua_tostring(lua_.get(), -1));
+    lua_setfield(lua_.get(), 1, "path");
+  }
+
+  /// The file of a module; empty: it is one of Lua's own; nothing: it is not there.
+  std::optional<fs::path> find(const std::string& name) {
+    lua_State* const lua = lua_.get();
+    lua_settop(lua, 1);
+    lua_getfield(lua, 1, "loaded");
+    if (lua_getfield(lua, -1, name.c_str()) != LUA_TNIL) return fs::path();
+    for (const char* path : {"path", "cpath"}) {
+      lua_getfield(lua, 1, "searchpath");
+      lua_pushstring(lua, name.c_str());
+      lua_getfield(lua, 1, path);
+      const bool is_found = lua_pcall(lua, 2, 1, 0) == LUA_OK && lua_type(lua, -1) == LUA_TSTRING;
+      if (is_found) return fs::path(lua_tostring(lua, -1));
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::unique_ptr<lua_State, decltype(&lua_close)> lua_;
+};
+
+/// Appends what a script requires and is not there, and to `scripts` what is.
+void look_for_modules(const fs::path& script, Modules& modules, Paths& scripts, std::vector<MissingModule>& missing) {
+  if (!size_of(script)) return;
+  static const std::regex call(R"(\brequire\s*\(?\s*["']([^"'\n]{1,255})["']\s*(\.\.)?)");
+  std::ifstream file(script, std::ios::binary);
+  std::size_t number = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++number;
+    if (line.size() > 4096) continue;  // std::regex recurses
+    const auto comment = static_cast<std::ptrdiff_t>(std::min(line.find("--"), line.size()));
+    for (std::sregex_iterator at(line.begin(), line.begin() + comment, call), end; at != end; ++at) {
+      if ((*at)[2].matched) continue;  // the name goes on
+      const auto found = modules.find((*at)[1]);
+      if (!found) {
+        missing.push_back({script, number, (*at)[1]});
+      } else if (found->extension() == ".lua" && !has(scripts, *found)) {
+        scripts.push_back(*found);
+      }
+    }
+  }
+}
+
 struct Search {
   Paths& scripts;
   Paths folders;  ///< of the first scripts
@@ -142,6 +198,16 @@ void follow(Search& search, const fs::path& own, const Loaded& loaded) {
 }
 
 }  // namespace
+
+std::vector<MissingModule> missing_modules(const fs::path& script) {
+  Modules modules(script.parent_path());
+  std::vector<MissingModule> missing;
+  Paths scripts{script};
+  for (std::size_t i = 0; i < std::min(scripts.size(), most_files); ++i) {
+    look_for_modules(fs::path(scripts[i]), modules, scripts, missing);
+  }
+  return missing;
+}
 
 Paths add_required(Paths& scripts) {
   Search search{scripts, {}, {}, {}};

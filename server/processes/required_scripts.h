@@ -1,7 +1,9 @@
 #pragma once
 // The Lua files that scripts load.
 
+#include <cstddef>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace ziggurat::processes {
@@ -14,5 +16,16 @@ namespace ziggurat::processes {
 /// most, each of 4 MiB, and 16 MiB of those whose names are computed.
 /// @return  folders with files that did not fit
 std::vector<std::filesystem::path> add_required(std::vector<std::filesystem::path>& scripts);
+
+/// A module that is required and is not there.
+struct MissingModule {
+  std::filesystem::path script;  ///< that requires it
+  std::size_t line = 0;
+  std::string name;
+};
+
+/// Those that a script, or one that it requires, names in `require` as a plain text and that Lua finds nowhere.
+/// What is required in a call of pcall may be missing.
+std::vector<MissingModule> missing_modules(const std::filesystem::path& script);
 
 }  // namespace ziggurat::processes

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "processes/places.h"
+#include "processes/required_scripts.h"
 #include "scene/files.h"
 #include "scene/names.h"
 #include "text/shortened.h"
@@ -82,6 +83,17 @@ std::optional<std::string_view> missing_function(const fs::path& script) {
   return std::nullopt;
 }
 
+/// Warnings on what a script requires and is not there.
+void check_modules(const fs::path& script, const std::string& file, const scene::Location& where,
+                   std::vector<scene::Problem>& problems) {
+  for (const MissingModule& each : missing_modules(script)) {
+    problems.push_back({scene::Problem::Severity::warning, file, where,
+                        fmt::format("{}:{}: require \"{}\" finds no such module; write it as a file {}.lua beside the script",
+                                    each.script.string(), each.line, text::shortened(each.name),
+                                    text::shortened(each.name))});
+  }
+}
+
 /// A parameter that was probably meant to be the script; empty if there is none.
 std::string name_like_script(const std::vector<std::pair<std::string, std::string>>& params) {
   for (const auto& [name, value] : params) {
@@ -109,6 +121,9 @@ void check(const scene::Scene& scene, const Use& use, const fs::path& scene_file
                         fmt::format("script '{0}' has no function {1}(), which each robot needs; "
                                     "write: function {1}() end",
                                     script, *name)});
+  }
+  if (const auto path = script.empty() ? std::nullopt : find_file(script, file, scene_file)) {
+    check_modules(*path, file, use.where, problems);
   }
 }
 
@@ -148,6 +163,8 @@ std::vector<scene::Problem> check_scripts(const scene::Scene& scene, const fs::p
     if (director.script.empty()) continue;
     if (auto text = fault(director.script, file, scene_file)) {
       problems.push_back({scene::Problem::Severity::fault, file, director.where, *text});
+    } else {
+      check_modules(*find_file(director.script, file, scene_file), file, director.where, problems);
     }
   }
   return problems;

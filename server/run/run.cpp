@@ -373,15 +373,19 @@ Ending Run::run_world() {
                          (options_.pictures && options_.pictures->view.layers.rays));
     simulation.step();
     timer_.end_phase(Phase::physics, summary_);
-    if (!printed_miss_) print_first_miss();
+    print_troubles();
     timer_.end_tick(supervision_, schedule_.is_paced());
   }
 }
 
-/// A notice when the physics' solver has not converged for the first time.
-void Run::print_first_miss() {
+/// A notice when the physics' solver has not converged for the first time, and one when something makes it slow.
+void Run::print_troubles() {
+  if (const auto notice = printed_slow_ ? std::nullopt : simulation::slow_notice(world_.simulation)) {
+    printed_slow_ = true;
+    console_.notice(fmt::format("tick {}: {}", world_.simulation.state().tick, *notice));
+  }
   const wire::SolverStatus solver = supervision::solver_status(world_.simulation);
-  if (solver.not_converged == 0) return;
+  if (printed_miss_ || solver.not_converged == 0) return;
   printed_miss_ = true;
   console_.notice(fmt::format(
       "tick {}: the solver did not converge: bodies that touch miss the laws of contact by up to "

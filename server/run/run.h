@@ -80,7 +80,7 @@ class Run {
   std::optional<Ending> pace();
   std::optional<Ending> wait(const Wait& step);
   bool reset_world();
-  void print_first_miss();
+  void print_troubles();
 
   // Ending.
   void end_in_failure(const std::exception& error);
@@ -118,7 +118,7 @@ class Run {
   Watch watch_;
   reports::Summary summary_;
   PhaseTimer timer_;
-  bool printed_miss_ = false;
+  bool printed_miss_ = false, printed_slow_ = false;
   bool waits_for_viewer_ = false;
   RadioWatch radio_watch_;
 

@@ -49,7 +49,8 @@ Extent extent_of(const scene::Scene& scene, const std::vector<scene::Entity>& en
                  const world::State& state) {
   const Vector3 half = 0.5 * scene.arena.size;
   Extent box{scene.arena.center - half, scene.arena.center + half};
-  if (!scene.physics.floor) return box;
+  const bool is_flat = scene.arena.size.z() == 0;  // without a ceiling
+  if (!scene.physics.floor && !is_flat) return box;
   double top = 0;
   std::size_t next = 0;
   for (const scene::Entity& entity : entities) {
@@ -60,8 +61,8 @@ Extent extent_of(const scene::Scene& scene, const std::vector<scene::Entity>& en
                    scene::reach(link.geometry, pose.orientation.conjugate() * Vector3::UnitZ()));
     }
   }
-  box.low.z() = 0;
-  box.high.z() = std::min(std::max(box.high.z(), 0.0), top);
+  if (scene.physics.floor) box.low.z() = 0;
+  box.high.z() = is_flat ? std::max(box.low.z(), top) : std::min(std::max(box.high.z(), 0.0), top);
   return box;
 }
 

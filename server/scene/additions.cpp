@@ -12,13 +12,8 @@ constexpr const char* name_of_additions = "spawn";
 constexpr std::size_t most_attributes_added = 1000;  // of an element that is added
 constexpr std::size_t most_faults_of_addition = 20;    // it is read while the world waits
 
-void read_addition(Draft& draft, std::string text,
-                   const std::function<bool(const std::string&)>& is_taken, Entity& entity) {
-  Document& document = draft.add_document(std::move(text), name_of_additions);
-  if (!document.root()) return;
-  Element element(document, document.root());
-  if (!entity_kind(element.name())) return element.unknown_in("spawn", entity_names());
-  entity = read_entity(draft, element, Placement::explicit_pose);
+void check_addition(Draft& draft, const Element& element, const Entity& entity,
+                    const std::function<bool(const std::string&)>& is_taken) {
   if (!entity.id.empty() && is_taken(entity.id)) {
     element.fault_at("id", "is the id of another entity; give each its own");
   }
@@ -62,6 +57,26 @@ bool Addition::ok() const {
 Addition Additions::read(std::string text, const Scene& scene, std::size_t max_size,
                          const std::function<bool(const std::string&)>& is_taken,
                          const OpenFile& open) const {
+  return read_element(std::move(text), scene, max_size, open, [&](Draft& draft, Element& element, Entity& entity) {
+    entity = read_entity(draft, element, Placement::explicit_pose);
+    check_addition(draft, element, entity, is_taken);
+  });
+}
+
+Addition Additions::read_shape(std::string text, const Scene& scene, std::size_t max_size,
+                               const OpenFile& open) const {
+  return read_element(std::move(text), scene, max_size, open, [&](Draft& draft, Element& element, Entity& entity) {
+    if (is_single(*entity_kind(element.name())) && !element.has("model")) {
+      entity.kind = *entity_kind(element.name());
+      entity.links.emplace_back().geometry = scene::read_shape(draft, element, element.name());
+    } else {
+      entity = read_entity(draft, element, Placement::looked_at);
+    }
+  });
+}
+
+Addition Additions::read_element(std::string text, const Scene& scene, std::size_t max_size, const OpenFile& open,
+                                 const std::function<void(Draft&, Element&, Entity&)>& read) const {
   Addition addition;
   // A copy, because models and controllers note which of their faults have been reported.
   Scene around;
@@ -99,7 +114,15 @@ Addition Additions::read(std::string text, const Scene& scene, std::size_t max_s
   draft.controllers = parts_->controllers;
   draft.parameters = parts_->parameters;
   try {
-    read_addition(draft, std::move(text), is_taken, addition.entity);
+    Document& document = draft.add_document(std::move(text), name_of_additions);
+    if (document.root()) {
+      Element element(document, document.root());
+      if (entity_kind(element.name())) {
+        read(draft, element, addition.entity);
+      } else {
+        element.unknown_in("spawn", entity_names());
+      }
+    }
   } catch (const TooManyFaults&) {
     // The last fault says so.
   }

@@ -15,6 +15,7 @@
 namespace ziggurat::scene {
 
 struct Draft;
+class Element;
 
 /// An entity that was read by itself.
 struct Addition {
@@ -47,8 +48,16 @@ class Additions {
                 const std::function<bool(const std::string&)>& is_taken,
                 const OpenFile& open = open_no_file) const;
 
+  /// The same for what is looked at only: its id and <body> have no meaning and may be missing, and of a <box>,
+  /// <cylinder> or <sphere> its extents are enough.
+  Addition read_shape(std::string text, const Scene& scene, std::size_t max_size,
+                      const OpenFile& open = open_no_file) const;
+
  private:
   struct Parts;
+  /// @param read  reads the element that the document consists of
+  Addition read_element(std::string text, const Scene& scene, std::size_t max_size, const OpenFile& open,
+                        const std::function<void(Draft&, Element&, Entity&)>& read) const;
   std::unique_ptr<Parts> parts_;
 };
 

@@ -30,17 +30,6 @@ std::optional<Detector> read_detector(Draft& draft, Element& element) {
   return std::nullopt;
 }
 
-math::Vector2 read_principal_point(Element& element) {
-  const auto beta50 = element.optional("principle_point", vector2);
-  const auto corrected = element.optional("principal_point", vector2);
-  if (element.has("principle_point") && element.has("principal_point")) {
-    element.fault_at("principle_point", "and principal_point mean the same; write one of them");
-  } else if (!element.has("principle_point") && !element.has("principal_point")) {
-    element.missing("principal_point");
-  }
-  return corrected.value_or(beta50.value_or(math::Vector2::Zero()));
-}
-
 Camera read_camera(Draft& draft, Element& element) {
   Camera camera;
   camera.where = element.where();
@@ -53,7 +42,7 @@ Camera read_camera(Draft& draft, Element& element) {
   camera.near = reach.first;
   camera.far = reach.second;
   camera.focal_length = element.required("focal_length", positive_vector2, math::Vector2::Ones());
-  camera.principal_point = read_principal_point(element);
+  camera.principal_point = element.required("principal_point", vector2);
   camera.resolution = element.required("resolution", resolution, {1, 1});
   camera.image = element.optional("image", boolean, false);
   if (camera.image && std::ranges::max(camera.resolution) > most_picture_pixels) {

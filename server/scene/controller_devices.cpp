@@ -1,5 +1,6 @@
 // <actuators> and <sensors>: a table of all names of the dialect, and the attributes of each.
 
+#include <algorithm>
 #include <array>
 #include <numbers>
 #include <span>
@@ -63,14 +64,11 @@ void read_strength(Element& joint, JointActuator& actuator) {
   const auto torque = joint.optional("max_torque", non_negative);
   actuator.is_torque = torque.has_value();
   actuator.max_force = torque ? torque : force;
-  const bool is_force = joint.has("max_force") || joint.has("max_torque");  // also one that is wrong
-  if (!is_force) {
-    actuator.max_impulse = joint.required("max_impulse", non_negative);
-    return;
-  }
-  if (joint.optional("max_impulse", non_negative) || (force && torque)) {
-    joint.fault("has more than one of max_force, max_torque and max_impulse; write one");
-  }
+  actuator.max_impulse = joint.optional("max_impulse", non_negative, 0.0);
+  constexpr std::array<std::string_view, 3> strengths{"max_force", "max_torque", "max_impulse"};
+  const auto given = std::ranges::count_if(strengths, [&](std::string_view name) { return joint.has(name.data()); });
+  if (given == 0) missing_all(joint, strengths);
+  if (given > 1) joint.fault("has more than one of max_force, max_torque and max_impulse; write one");
 }
 
 void enable_joint_actuators(const Enabling& e) {
@@ -318,7 +316,12 @@ constexpr std::array<DeviceRow, 20> sensor_rows{{
 
 void read_device(const Enabling& e, const DeviceRow& row) {
   e.element.required("implementation", Words{row.implementation});
-  if (!row.subject.empty()) e.draft.report.no_effect_yet(e.element.where(), row.subject);
+  if (!row.subject.empty()) {
+    e.devices.to_come.emplace_back(row.name);
+    e.draft.report.warn(e.element.where(), row.subject,
+                        fmt::format("{} do not work yet: <{}> is checked, and its table in Lua is empty", row.subject,
+                                    row.name));
+  }
   if (row.is_carried) e.use.devices.push_back({std::string(row.name), e.element.where()});
   row.enable(e);
   e.element.done();

@@ -68,10 +68,22 @@ void read_tags(Draft& draft, Element& container, Entity& entity) {
   });
 }
 
+/// The medium of the radios of an entity: that of their container, or as other versions have it of each radio.
 void read_radios(Draft& draft, Element& container, Entity& entity) {
-  entity.devices.radio_medium = read_medium(draft, container, MediumKind::radio);
+  auto& medium = entity.devices.radio_medium;
+  const std::vector<Element> written = container.children();
+  const bool each = !container.has("medium") &&
+                    std::ranges::any_of(written, [](const Element& radio) { return radio.has("medium"); });
+  if (!each) medium = read_medium(draft, container, MediumKind::radio);
   entity.devices.radios =
-      read_container<Radio>(container, "radio", [&draft](Element& element, std::string id) {
+      read_container<Radio>(container, "radio", [&](Element& element, std::string id) {
+        if (each) {
+          const auto own = read_medium(draft, element, MediumKind::radio);
+          if (medium && own && own != medium) {
+            element.fault_at("medium", "is another than that of the radios before; those of an entity share one");
+          }
+          if (own) medium = own;
+        }
         const Anchor anchor = read_anchor(draft, element);
         element.without_effect("orientation", orientation, "radios reach equally far all around");
         element.without_effect("duplex_mode", text,
@@ -102,24 +114,22 @@ Magnet read_magnet(Draft& draft, Element& element, std::string id) {
   magnet.anchor = read_anchor(draft, element);
   magnet.offset = element.required("offset", position);
   if (element.has("shape")) magnet.shape = read_magnet_shape(element);
-  if (element.has("moment")) {
-    magnet.moment = element.required("moment", vector3);
-  } else if (element.has("remanence")) {
-    magnet.remanence = element.required("remanence", vector3);
-    if (!magnet.shape) {
-      element.fault_at(
-          "remanence",
-          "needs a volume; write shape=\"box\", \"cylinder\" or \"sphere\" with its lengths");
-    }
-  } else {
-    magnet.passive_field = element.required("passive_field", vector3);
+  constexpr std::array<std::string_view, 3> strengths{"passive_field", "moment", "remanence"};
+  const auto passive_field = element.optional("passive_field", vector3);
+  const auto moment = element.optional("moment", vector3);
+  const auto remanence = element.optional("remanence", vector3);
+  const auto given = std::ranges::count_if(strengths, [&](std::string_view name) { return element.has(name.data()); });
+  if (given == 0) missing_all(element, strengths);
+  if (given > 1) {
+    element.fault("gives its strength twice; keep one of passive_field, moment and remanence");
   }
-  if (element.has("passive_field") && (element.has("moment") || element.has("remanence"))) {
-    element.fault_at(
-        "passive_field",
-        "gives the strength a second time; keep one of passive_field, moment and remanence");
-    element.optional("passive_field", vector3);
+  if (element.has("remanence") && !magnet.shape) {
+    element.fault_at("remanence",
+                     "needs a volume; write shape=\"box\", \"cylinder\" or \"sphere\" with its lengths", {"shape"});
   }
+  magnet.passive_field = passive_field.value_or(math::Vector3::Zero());
+  magnet.moment = moment.value_or(math::Vector3::Zero());
+  magnet.remanence = remanence.value_or(math::Vector3::Zero());
   magnet.active_field = element.optional("active_field", vector3, math::Vector3::Zero());
   return magnet;
 }

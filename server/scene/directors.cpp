@@ -35,13 +35,18 @@ void read_director(Draft& draft, Element& element, Director director) {
 
 /// That of a scene for ARGoS is a library, which a server does not load.
 void read_loop_functions(Draft& draft, Element& element) {
+  const bool is_library = element.has("library") || !element.has("script");
+  if (is_library && draft.options.lenient) {
+    return draft.report.notice(element.where(),
+                               "<loop_functions> has no effect: libraries are not loaded into the server, and what "
+                               "this one would do at the start and at each tick is not done");
+  }
   element.without_effect("label", text, "a director has an id");
-  if (element.has("library") || !element.has("script")) {
-    element.fault(
+  if (is_library) {
+    return element.fault(
         "has no script, and libraries are not loaded into the server; write its rule as a Lua script "
         "and name it in <director id=\"…\" script=\"…\"/>, or write a director in C++ or Python and "
-        "name it in command=\"…\"");
-    return;
+        "name it in command=\"…\"; --lenient runs the scene without it");
   }
   Director director;
   director.id = element.optional("id", identifier, "loop_functions");

@@ -27,9 +27,8 @@ void read_uniform(Element& element, Triple triple, Generator& out) {
 /// @param triple  reads a position, or the degrees of an orientation
 Generator read_generator(Element element, Triple triple) {
   Generator out;
-  if (!element.has("method")) element.missing("method");
-  const auto method = element.optional(
-      "method", OneOf<DistributionMethod>{{"uniform", DistributionMethod::uniform},
+  const auto method = needed(
+      element, "method", OneOf<DistributionMethod>{{"uniform", DistributionMethod::uniform},
                                           {"gaussian", DistributionMethod::gaussian},
                                           {"constant", DistributionMethod::constant},
                                           {"grid", DistributionMethod::grid}});
@@ -91,7 +90,7 @@ void read_quantities(Element& entity, Distribution& out) {
 
 /// Takes the ids of all copies; a taken one is a fault, once.
 void take_ids(Draft& draft, Element& pattern, const std::string& id, const Distribution& out) {
-  if (id.empty()) return;
+  if (!pattern.has("id")) return;
   for (unsigned i = 0; i < out.quantity; ++i) {
     const std::string copy = id + std::to_string(out.base_num + i);
     if (draft.entity_ids.add(copy, pattern.where())) continue;

@@ -176,8 +176,8 @@ const Controller* controller_of(const Draft& draft, const Entity& entity);
 
 // --- entities -----------------------------------------------------------------------------------
 
-/// How an entity is written: in the arena, or as the pattern of a <distribute>.
-enum class Placement { explicit_pose, distributed };
+/// How an entity is written: in the arena, as the pattern of a <distribute>, or without a place or id that counts.
+enum class Placement { explicit_pose, distributed, looked_at };
 
 /// Reads <box>, <cylinder>, <sphere>, <prototype>, <foot-bot> or <e-puck>.
 Entity read_entity(Draft& draft, Element& element, Placement placement);

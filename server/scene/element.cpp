@@ -1,9 +1,13 @@
 #include "scene/element.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <charconv>
 #include <iterator>
 #include <system_error>
+
+#include "scene/old_words.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -75,50 +79,70 @@ void check_repeated_attributes(const Document& document, const pugi::xml_node& n
   }
 }
 
+/// The attribute, under its name or an old one.
+/// @param home  the element's name
+pugi::xml_attribute find(const pugi::xml_node& node, std::string_view home, const char* attribute) {
+  const pugi::xml_attribute found = node.attribute(attribute);
+  if (!found.empty()) return found;
+  const OldWord* old = old_name_of(home, attribute);
+  return old ? node.attribute(std::string(old->word).c_str()) : found;
+}
+
 /// @param known  the attributes that the element may have
 void report_unknown_attribute(const Document& document, std::string_view element,
                               const pugi::xml_attribute& attribute,
                               std::span<const std::string_view> known, std::string_view elsewhere) {
-  const Location where = document.locate(attribute);
+  Report& report = document.report();
+  const Location at = document.locate(attribute);
   const std::string_view name = attribute.name();
+  const std::string value = in_quotes(attribute.value());
   if (!elsewhere.empty()) {
-    document.report().fault(where,
-                            fmt::format("the attribute {}={} can't stand in this <{}>: {}", name,
-                                        in_quotes(attribute.value()), element, elsewhere));
-    return;
+    return report.fault(
+        at, fmt::format("the attribute {}={} can't stand in this <{}>: {}", name, value, element, elsewhere));
+  }
+  if (const OldWord* old = old_attribute(element, name)) {
+    return report.notice(at, old->now.empty() ? notice_of(*old, element)
+                                              : fmt::format("{} of <{}> has no effect beside {}, which is the same",
+                                                            name, element, old->now));
   }
   if (document.lenient()) {
-    document.report().notice(where, fmt::format("unknown attribute {} of <{}> has no effect; {}",
-                                                in_quotes(name), element, advice(name, known)));
-    return;
-  }
-  if (const auto why = unsupported_attribute(name)) {
-    document.report().fault(where, fmt::format("the attribute {}={} of <{}> is not supported; {}",
-                                               name, in_quotes(attribute.value()), element, *why));
-    return;
+    return report.notice(at, fmt::format("unknown attribute {} of <{}> has no effect; {}", in_quotes(name),
+                                         element, advice(name, known)));
   }
   const auto meant = nearest(name, known);
   const auto home = home_of_attribute(name);
-  document.report().fault(
-      where, fmt::format("<{}> has an unknown attribute {}={}; {}{}", element, name, in_quotes(attribute.value()),
-                         home && home != element && !meant ? fmt::format("a <{}> has it", *home) : advice(name, known),
-                         document.origin(attribute)));
-  if (meant) document.report().left_out(*meant);
+  const bool is_of_other = home && home != element && !meant;
+  report.fault(at, fmt::format("<{}> has an unknown attribute {}={}; {}{} (--lenient ignores it)", element, name, value,
+                               is_of_other ? fmt::format("a <{}> has it", *home) : advice(name, known),
+                               document.origin(attribute)));
+  if (meant) report.left_out(*meant);
 }
 
 }  // namespace
 
 Location Element::where() const { return document_->locate(node_.name() - 1); }
 
+bool Element::has(const char* attribute) const { return !find(node_, name_, attribute).empty(); }
+
 Location Element::where(const char* attribute) const {
-  const pugi::xml_attribute found = node_.attribute(attribute);
+  const pugi::xml_attribute found = find(node_, name_, attribute);
   return found.empty() ? where() : document_->locate_value(found);
 }
 
 std::optional<std::string> Element::take(const char* attribute) {
   asked_attributes_.push_back(attribute);
-  const pugi::xml_attribute found = node_.attribute(attribute);
-  return found.empty() ? std::nullopt : take_value(*document_, name(), found);
+  const pugi::xml_attribute found = find(node_, name_, attribute);
+  if (found.empty()) return std::nullopt;
+  if (found.name() != std::string_view(attribute)) {
+    const OldWord& old = *old_name_of(name_, attribute);
+    asked_attributes_.push_back(old.word);
+    report().notice(document_->locate(found), notice_of(old, name_));
+  }
+  auto value = take_value(*document_, name(), found);
+  const OldWord* old = value ? old_value(name_, attribute, *value) : nullptr;
+  if (!old) return value;
+  report().notice(document_->locate_value(found), notice_of(*old, name_));
+  return std::string(old->now);
 }
 
 std::vector<std::pair<std::string, std::string>> Element::all_attributes() {
@@ -154,7 +178,12 @@ std::vector<Element> Element::children() {
   any_child_ = true;
   std::vector<Element> result;
   for (const pugi::xml_node node : node_.children()) {
-    if (node.type() == pugi::node_element) result.emplace_back(*document_, node);
+    if (node.type() != pugi::node_element) continue;
+    Element& child = result.emplace_back(*document_, node);
+    const OldWord* old = old_element(name_, child.name_);
+    if (!old || old->now.empty()) continue;
+    report().notice(child.where(), notice_of(*old, name_));
+    child.name_ = old->now;
   }
   return result;
 }
@@ -191,12 +220,12 @@ void Element::done(std::string_view elsewhere, std::span<const std::string> name
     if (name.starts_with("xml:") || name.starts_with("xmlns")) continue;  // XML's own
     if (std::find(asked_attributes_.begin(), asked_attributes_.end(), name) ==
         asked_attributes_.end()) {
-      report_unknown_attribute(*document_, this->name(), attribute, asked_attributes_,
+      report_unknown_attribute(*document_, name_, attribute, asked_attributes_,
                                is_elsewhere(name) ? elsewhere : std::string_view());
     }
   }
   for (const pugi::xml_node node : node_.children()) {
-    if (node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata) {
+    if (!any_text_ && (node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata)) {
       report().notice(document_->locate(node.value()),
                       fmt::format("the text {} in <{}> has no effect here",
                                   in_quotes(trimmed(node.value())), name()));
@@ -215,8 +244,18 @@ void Element::done(std::string_view elsewhere, std::span<const std::string> name
 }
 
 void Element::unknown_in(std::string_view parent, std::span<const std::string_view> known) const {
+  if (const OldWord* old = old_element(parent, name())) {
+    return report().notice(where(), notice_of(*old, parent));
+  }
   if (const auto why = unsupported_element(name())) {
     report().fault(where(), fmt::format("<{}> is not supported; {}", name(), *why));
+    return;
+  }
+  if (const auto robot = robot_of_device(name())) {
+    const std::string_view general = name().substr(name().find('_') + 1);
+    const bool is_known = std::ranges::find(known, general) != known.end();
+    report().fault(where(), fmt::format("<{}> is a device of the {}, which is not modelled here; {}", name(), *robot,
+                                        is_known ? fmt::format("remove it, or write <{}>", general) : "remove it"));
     return;
   }
   const auto meant = nearest(name(), known);
@@ -236,7 +275,8 @@ void Element::unknown_in(std::string_view parent, std::span<const std::string_vi
 }
 
 std::string Element::sentence(const char* attribute, std::string_view text) const {
-  return sentence_on(*document_, this->name(), attribute, node_.attribute(attribute), text);
+  const pugi::xml_attribute found = find(node_, name_, attribute);
+  return sentence_on(*document_, this->name(), found.empty() ? attribute : found.name(), found, text);
 }
 
 void Element::fault_at(const char* attribute, std::string_view text,
@@ -248,8 +288,13 @@ void Element::fault(std::string_view text, std::vector<std::string_view> causes)
   report().fault(where(), fmt::format("<{}> {}", name(), text), std::move(causes));
 }
 
-void Element::missing(const char* attribute) const {
-  fault(fmt::format("lacks the attribute {0}; write {0}=\"…\"", attribute), {attribute});
+void missing(const Element& element, const char* attribute, std::string_view example) {
+  element.fault(fmt::format("lacks the attribute {0}; write {0}=\"{1}\"", attribute, example), {attribute});
+}
+
+void missing_all(const Element& element, std::span<const std::string_view> attributes) {
+  element.fault(fmt::format("lacks the attribute {}; write one", fmt::join(attributes, " or ")),
+        {attributes.begin(), attributes.end()});
 }
 
 std::size_t Element::size() const {

@@ -35,18 +35,34 @@ T blank() {
   }
 }
 
+/// What may be written for a value, if that is one of a few words.
+template <class Read>
+std::string example_of(const Read& read) {
+  if constexpr (requires { read.words(); }) {
+    return read.words();
+  } else if constexpr (std::is_same_v<std::invoke_result_t<Read, std::string_view>, Value<bool>>) {
+    return "true|false";
+  } else {
+    return "…";
+  }
+}
+
 /// One element being read. Read its attributes and children, then call done().
 class Element {
  public:
-  Element(Document& document, pugi::xml_node node) : document_(&document), node_(node) {}
+  Element(Document& document, pugi::xml_node node)
+      : document_(&document), node_(node), name_(node.name()) {}
 
-  std::string_view name() const { return node_.name(); }
+  /// As written, or of an old word of the dialect the one that it is read as.
+  std::string_view name() const { return name_; }
+  /// The first text in it; then it has been read.
+  std::string_view take_text() { return any_text_ = true, node_.text().get(); }
   Location where() const;
   Report& report() const { return document_->report(); }
 
   /// Where an attribute's value begins, or the element if it has none of that name.
   Location where(const char* attribute) const;
-  bool has(const char* attribute) const { return !node_.attribute(attribute).empty(); }
+  bool has(const char* attribute) const;
 
   /// What a reader of values returns.
   template <class Read>
@@ -74,10 +90,7 @@ class Element {
   /// The attribute's value; a missing or wrong one is a fault and gives `fallback`.
   template <class Read>
   ValueOf<Read> required(const char* attribute, Read read,
-                         ValueOf<Read> fallback = blank<ValueOf<Read>>()) {
-    if (!has(attribute)) missing(attribute);
-    return optional(attribute, read).value_or(std::move(fallback));
-  }
+                         ValueOf<Read> fallback = blank<ValueOf<Read>>());
 
   /// Checks an attribute that has no effect here, and reports that.
   template <class Read>
@@ -122,7 +135,6 @@ class Element {
   /// `<element> <text>`, at the element.
   /// @param causes  as of Report::fault
   void fault(std::string_view text, std::vector<std::string_view> causes = {}) const;
-  void missing(const char* attribute) const;
 
   /// Of the element with all that is in it, white space and comments aside [bytes].
   std::size_t size() const;
@@ -132,10 +144,29 @@ class Element {
 
   Document* document_;
   pugi::xml_node node_;
+  std::string_view name_;
   std::vector<std::string_view> asked_attributes_;
   std::vector<std::string_view> asked_children_;
   bool any_attribute_ = false;
   bool any_child_ = false;
+  bool any_text_ = false;
 };
+
+/// Reports that an element lacks an attribute. @param example  of its value
+void missing(const Element& element, const char* attribute, std::string_view example);
+/// Reports that it has none of some attributes of which one is needed.
+void missing_all(const Element& element, std::span<const std::string_view> attributes);
+
+/// The attribute's value; a missing or wrong one is a fault, and nothing.
+template <class Read>
+std::optional<Element::ValueOf<Read>> needed(Element& element, const char* attribute, Read read) {
+  if (!element.has(attribute)) missing(element, attribute, example_of(read));
+  return element.optional(attribute, read);
+}
+
+template <class Read>
+Element::ValueOf<Read> Element::required(const char* attribute, Read read, ValueOf<Read> fallback) {
+  return needed(*this, attribute, read).value_or(std::move(fallback));
+}
 
 }  // namespace ziggurat::scene

@@ -50,6 +50,16 @@ void read_prototype(Draft& draft, Element& element, Entity& entity) {
   read_devices(draft, element, entity);
 }
 
+/// What the ids of copies begin with: empty, they are numbered alone.
+Value<std::string> start_of_ids(std::string_view text) {
+  return text.empty() ? Value<std::string>(std::string()) : identifier(text);
+}
+
+std::string read_entity_id(Element& element, Placement placement) {
+  if (placement == Placement::looked_at) return element.optional("id", start_of_ids, "");
+  return element.required("id", placement == Placement::distributed ? start_of_ids : identifier);
+}
+
 bool needs_controller(EntityKind kind) {
   return kind == EntityKind::foot_bot || kind == EntityKind::e_puck;
 }
@@ -129,7 +139,7 @@ math::Pose read_pose(Element& element) {
 
 math::Pose read_body(Element& element, Placement placement) {
   auto body =
-      placement == Placement::distributed ? element.child("body") : element.required_child("body");
+      placement == Placement::explicit_pose ? element.required_child("body") : element.child("body");
   if (!body) return {};
   if (placement == Placement::distributed && (body->has("position") || body->has("orientation"))) {
     body->report().notice(body->where(),
@@ -138,7 +148,7 @@ math::Pose read_body(Element& element, Placement placement) {
   }
   const math::Pose pose = read_pose(*body);
   body->done();
-  return placement == Placement::distributed ? math::Pose{} : pose;
+  return placement == Placement::explicit_pose ? pose : math::Pose{};
 }
 
 void read_body_and_devices(Draft& draft, Element& element, Entity& entity) {
@@ -163,7 +173,7 @@ Entity read_entity(Draft& draft, Element& element, Placement placement) {
   Entity entity;
   entity.where = element.where();
   entity.kind = entity_kind(element.name()).value();
-  entity.id = element.required("id", identifier);
+  entity.id = read_entity_id(element, placement);
   const auto model = element.optional("model", identifier);
   draft.report.subject = fmt::format("{} {}", element.name(), in_quotes(entity.id));
   if (model) draft.report.subject += fmt::format(" of model {}", in_quotes(*model));
@@ -177,7 +187,8 @@ Entity read_entity(Draft& draft, Element& element, Placement placement) {
   entity.pose = read_body(element, placement);
   if (may_have_controller(entity.kind)) {
     if (auto own = read_controller_choice(draft, element)) controller = std::move(own);
-    if (needs_controller(entity.kind) && !controller) element.required_child("controller");
+    const bool lacks_controller = needs_controller(entity.kind) && !controller;
+    if (lacks_controller && placement != Placement::looked_at) element.required_child("controller");
     if (controller) give_controller(draft, *controller, entity);
   }
   const std::size_t of_model = entity.model ? draft.models[*entity.model].size : 0;
@@ -194,7 +205,7 @@ Entity read_entity(Draft& draft, Element& element, Placement placement) {
 
 std::string read_light(Draft& draft, Element& element, Placement placement) {
   draft.report.no_effect_yet(element.where(), "lights");
-  const std::string id = element.required("id", identifier);
+  const std::string id = read_entity_id(element, placement);
   draft.report.subject = fmt::format("light {}", in_quotes(id));
   if (placement == Placement::explicit_pose) {
     element.required("position", position);

@@ -1,5 +1,6 @@
 // <framework>: time, and what belongs to a process and has no effect on a server.
 
+#include <algorithm>
 #include <cmath>
 
 #include "scene/draft.h"
@@ -19,6 +20,13 @@ void read_experiment(Element experiment, Experiment& out) {
   if (out.length > longest || out.length * out.ticks_per_second > most_ticks) {
     experiment.fault_at("length",
                         "is too long; write at most 9e9 s and 2^53 ticks, or 0 for no end");
+  } else if (const double ticks = out.length * out.ticks_per_second, whole = std::round(ticks);
+             std::abs(ticks - whole) > 1e-9 * std::max(1.0, ticks)) {
+    experiment.report().notice(
+        experiment.where("length"),
+        experiment.sentence("length", fmt::format("is {:.9g} ticks of 1/{} s: the run has {:.0f}, and ends after {:.9g} s",
+                                                  ticks, out.ticks_per_second, std::floor(ticks),
+                                                  std::floor(ticks) / out.ticks_per_second)));
   }
   experiment.done();
 }

@@ -87,11 +87,10 @@ std::optional<Joint> read_joint(const Draft& draft, Element& element, Ids& ids) 
   joint.id = element.optional("id", identifier, "");
   if (!named) joint.id = ids.next("joint", joint.where);
   if (named) take_id(element, ids, joint.id, "joint");
-  if (!element.has("type")) element.missing("type");
-  const auto type = element.optional("type", OneOf<JointType>{{"fixed", JointType::fixed},
-                                                              {"spherical", JointType::spherical},
-                                                              {"prismatic", JointType::prismatic},
-                                                              {"revolute", JointType::revolute}});
+  const auto type = needed(element, "type", OneOf<JointType>{{"fixed", JointType::fixed},
+                                                            {"spherical", JointType::spherical},
+                                                            {"prismatic", JointType::prismatic},
+                                                            {"revolute", JointType::revolute}});
   joint.type = type.value_or(JointType::revolute);  // for which nothing more is refused
   if (type) {
     read_axis_and_limit(element, joint);
@@ -110,6 +109,17 @@ std::optional<Joint> read_joint(const Draft& draft, Element& element, Ids& ids) 
 
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 
+/// What to do with a joint whose child has a place in the tree already.
+std::string_view advice_on_closing(const Entity& entity, const Joint& joint) {
+  const bool is_parent_placed = joint.parent == entity.reference_link ||
+                                std::ranges::any_of(entity.joints, [&](const Joint& other) {
+                                  return &other != &joint && other.child == joint.parent;
+                                });
+  if (!is_parent_placed) return "swap its parent and child";
+  return "links form a tree, in which no loop of joints can be closed: leave this joint out, and let a controller "
+         "drive the others so that both ends stay together, or hold them together with magnets";
+}
+
 /// The joint that leads to each link, or `none`; a second one is a fault.
 std::vector<std::size_t> incoming_joints(Report& report, const Entity& entity, bool& sound) {
   std::vector<std::size_t> incoming(entity.links.size(), none);
@@ -119,16 +129,14 @@ std::vector<std::size_t> incoming_joints(Report& report, const Entity& entity, b
     if (joint.child == entity.reference_link) {
       sound = false;
       report.fault(joint.where,
-                   fmt::format("joint {} has the reference link {} as its child, which closes a "
-                               "cycle; swap its parent and child",
-                               in_quotes(joint.id), child));
+                   fmt::format("joint {} has the reference link {} as its child; {}", in_quotes(joint.id), child,
+                               advice_on_closing(entity, joint)));
     } else if (incoming[joint.child] != none) {
       sound = false;
       report.fault(joint.where,
-                   fmt::format("joint {} gives link {} a second parent, after joint {}; joints "
-                               "make a tree, so remove one of them",
-                               in_quotes(joint.id), child,
-                               in_quotes(entity.joints[incoming[joint.child]].id)));
+                   fmt::format("joint {} gives link {} a second parent, after joint {}; {}", in_quotes(joint.id),
+                               child, in_quotes(entity.joints[incoming[joint.child]].id),
+                               advice_on_closing(entity, joint)));
     } else {
       incoming[joint.child] = i;
     }
@@ -162,8 +170,8 @@ void report_unreached(Report& report, const Entity& entity,
       const Joint& joint = entity.joints[incoming[link]];
       report.fault(
           joint.where,
-          fmt::format("joint {} is part of a cycle that never meets the reference link "
-                      "{}; joints make a tree",
+          fmt::format("joint {0} is part of a loop that never meets the reference link {1}; links form a tree: leave "
+                      "this joint out, and let one from {1} lead to its child",
                       in_quotes(joint.id), in_quotes(entity.links[entity.reference_link].id)));
     }
     for (const std::size_t passed : path) marks[passed] = Mark::known;
@@ -189,8 +197,9 @@ void order_joints(Report& report, Entity& entity) {
     ordered.push_back(entity.joints[i]);
     for (const std::size_t j : outgoing[entity.joints[i].child]) next.push(j);
   }
-  if (ordered.size() + 1 < entity.links.size()) report_unreached(report, entity, incoming);
-  if (sound && ordered.size() + 1 == entity.links.size()) entity.joints = std::move(ordered);
+  if (!sound) return;  // what is not reached may only follow from that
+  if (ordered.size() + 1 < entity.links.size()) return report_unreached(report, entity, incoming);
+  entity.joints = std::move(ordered);
 }
 
 bool read_links(Draft& draft, Element& element, Entity& entity) {

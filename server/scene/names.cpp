@@ -65,9 +65,19 @@ constexpr auto attribute_homes = std::to_array<Reason>({
     {"restitution", "link"},
 });
 
-constexpr auto attribute_reasons = std::to_array<Reason>({
-    {"default_friction", "write friction"},
-    {"debug_file", "record the run instead"},
+/// What the names of their devices begin with.
+constexpr auto foreign_robots = std::to_array<Reason>({
+    {"eyebot_", "eye-bot"},
+    {"kilobot_", "kilobot"},
+    {"epuck_", "e-puck of another plug-in"},
+    {"epuck2_", "e-puck2"},
+    {"pipuck_", "pi-puck"},
+    {"builderbot_", "builderbot"},
+    {"drone_", "drone"},
+    {"spiri_", "spiri"},
+    {"kheperaiv_", "kheperaiv"},
+    {"crazyflie_", "crazyflie"},
+    {"thymio_", "thymio"},
 });
 
 std::optional<std::string_view> reason(std::string_view name, Reasons reasons) {
@@ -131,16 +141,19 @@ std::string Ids::next(std::string_view stem, Location where) {
 
 std::optional<std::string_view> home_of(std::string_view element) { return reason(element, homes); }
 
+std::optional<std::string_view> robot_of_device(std::string_view name) {
+  for (const auto& [prefix, robot] : foreign_robots) {
+    if (name.starts_with(prefix)) return robot;
+  }
+  return std::nullopt;
+}
+
 std::optional<std::string_view> home_of_attribute(std::string_view attribute) {
   return reason(attribute, attribute_homes);
 }
 
 std::optional<std::string_view> unsupported_element(std::string_view name) {
   return reason(name, element_reasons);
-}
-
-std::optional<std::string_view> unsupported_attribute(std::string_view name) {
-  return reason(name, attribute_reasons);
 }
 
 }  // namespace ziggurat::scene

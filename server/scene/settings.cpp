@@ -219,6 +219,13 @@ std::string why_nothing(const pugi::xml_node& root, const std::string& path) {
     const std::string_view name = step.substr(0, step.find('['));
     const auto known = names_in(std::get<0>(parents), is_attribute);
     const bool is_known = std::ranges::find(known, name) != known.end();
+    if (end == path.size() && ending_of(path).name.empty()) {
+      const auto attributes = names_in(std::get<0>(parents), true);
+      const bool is_one = std::ranges::find(attributes, name) != attributes.end();
+      return fmt::format("matches nothing: {} {}", in_quotes(step),
+                         is_one ? fmt::format("is an attribute, and its name begins with @: write @{}", name)
+                                : "is no element, and the path names no attribute: let it end with /@NAME");
+    }
     return fmt::format("matches nothing: there is no {}{}", in_quotes(step),
                        is_known ? "" : "; " + advice(name, known));
   }

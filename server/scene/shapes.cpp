@@ -92,19 +92,45 @@ Hull unit_hull() {
   return std::get<Hull>(make_hull(points));
 }
 
+/// The points of a convex_hull of other versions: `(x,y,z)(x,y,z)…` as the link's text.
+std::vector<math::Vector3> points_in_text(const Element& link, std::string_view left) {
+  std::vector<math::Vector3> points;
+  while (!left.empty()) {
+    const std::size_t end = left.find(')');
+    auto point = left.front() == '(' && end != left.npos ? position(left.substr(1, end - 1))
+                                                         : Wrong{"is no list of points"};
+    if (const Wrong* wrong = std::get_if<Wrong>(&point)) {
+      link.fault(fmt::format("has the text {}, which {}; write (x,y,z)(x,y,z)…, or <hull> with a <vertex> for each",
+                             in_quotes(left), wrong->text));
+      return {};
+    }
+    points.push_back(std::get<0>(point));
+    left = trimmed(left.substr(end + 1));
+  }
+  return points;
+}
+
+/// @param from  the element that has the points
+Hull hull_of(const Element& from, const std::vector<math::Vector3>& points) {
+  auto hull = make_hull(points);
+  if (Hull* made = std::get_if<Hull>(&hull)) return std::move(*made);
+  from.fault(std::get<std::string>(hull));
+  return unit_hull();
+}
+
 Hull read_hull(Draft& draft, Element& element) {
+  if (const std::string_view text = trimmed(element.take_text()); !text.empty() && !element.child("hull")) {
+    const auto points = points_in_text(element, text);
+    return points.empty() ? unit_hull() : hull_of(element, points);
+  }
   auto child = element.required_child("hull");
   if (!child) return unit_hull();
   const bool from_file = child->has("file");
+  if (!from_file) child->optional("file", path);
   const auto points = from_file ? read_vertices(draft, *child) : listed_vertices(*child);
   child->done(from_file ? "its vertices are those of the file" : "");
   if (from_file && points.empty()) return unit_hull();  // reported already
-  auto hull = make_hull(points);
-  if (const std::string* why = std::get_if<std::string>(&hull)) {
-    child->fault(*why);
-    return unit_hull();
-  }
-  return std::get<Hull>(std::move(hull));
+  return hull_of(*child, points);
 }
 
 /// A shape as attributes name it.
@@ -136,8 +162,7 @@ Geometry read_shape(Draft& draft, Element& element, std::string_view name) {
 Geometry read_geometry(Draft& draft, Element& link) {
   std::vector<std::string_view> names;
   for (const Named& shape : shapes) names.push_back(shape.name);
-  if (!link.has("geometry")) link.missing("geometry");
-  const auto name = link.optional("geometry", Words(names));
+  const auto name = needed(link, "geometry", Words(names));
   if (!name) {
     for (const char* extent : {"size", "radius", "height"}) link.optional(extent, text);
     link.child("hull");

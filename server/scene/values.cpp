@@ -1,6 +1,7 @@
 #include "scene/values.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -165,12 +166,15 @@ Value<double> positive(std::string_view text) {
 }
 
 Value<double> length(std::string_view text) {
-  Value<double> value = positive(text);
-  if (const double* v = std::get_if<double>(&value);
-      v && (*v < shortest_length || *v > longest_length)) {
-    return Wrong{"is not a length that can be simulated; write 1e-6 to 1e6 m"};
+  Value<double> value = number(text);
+  const double* v = std::get_if<double>(&value);
+  if (!v || (*v >= shortest_length && *v <= longest_length)) return value;
+  if (*v < 0) return Wrong{"is not positive; write a length from 1e-6 to 1e6 m"};
+  if (*v < shortest_length) {
+    return Wrong{"is below 1e-6 m, the least length of a scene: what has no extent has no inertia and touches "
+                 "nothing; write 1e-6 to 1e6 m"};
   }
-  return value;
+  return Wrong{"is above 1e6 m, the largest length of a scene: beyond, contacts are inexact; write 1e-6 to 1e6 m"};
 }
 
 Value<double> mass(std::string_view text) {
@@ -178,9 +182,13 @@ Value<double> mass(std::string_view text) {
   if (const double* v = std::get_if<double>(&value); v && *v < 0) {
     return Wrong{"is negative; write more than 0 kg"};
   }
-  if (const double* v = std::get_if<double>(&value);
-      v && *v != 0 && (*v < lightest_mass || *v > heaviest_mass)) {
-    return Wrong{"is not a mass that can be simulated; write 1e-9 to 1e9 kg"};
+  constexpr const char* why =
+      ": contacts of bodies whose masses are further apart are inexact; write 1e-9 to 1e9 kg";
+  if (const double* v = std::get_if<double>(&value); v && *v != 0 && *v < lightest_mass) {
+    return Wrong{std::string("is below 1e-9 kg, the least mass of a body") + why};
+  }
+  if (const double* v = std::get_if<double>(&value); v && *v > heaviest_mass) {
+    return Wrong{std::string("is above 1e9 kg, the largest mass of a body") + why};
   }
   return value;
 }
@@ -239,6 +247,18 @@ Value<math::Vector3> non_negative_vector3(std::string_view text) {
 Value<math::Vector3> position(std::string_view text) { return three(text, "x,y,z", coordinate); }
 
 Value<math::Vector3> size(std::string_view text) { return three(text, "x,y,z", length); }
+
+Value<math::Vector3> room(std::string_view text) {
+  const std::size_t last = text.rfind(',');
+  const std::string_view height = last == text.npos ? text : trimmed(text.substr(last + 1));
+  const Value<double> z = number(height);
+  const double* is = std::get_if<double>(&z);
+  if (!is || *is != 0) return size(text);
+  const std::string with_height = std::string(text.substr(0, last == text.npos ? 0 : last)) + ",1";
+  Value<math::Vector3> flat = size(std::string_view(with_height));
+  if (math::Vector3* v = std::get_if<math::Vector3>(&flat)) v->z() = 0;
+  return flat;
+}
 
 Value<math::Vector3> direction(std::string_view text) {
   Value<math::Vector3> value = vector3(text);
@@ -372,12 +392,12 @@ Value<unsigned> Whole::operator()(std::string_view text) const {
 }
 
 Value<std::string> Words::operator()(std::string_view text) const {
-  std::string list;
-  for (const std::string_view word : words_) {
-    if (word == text) return std::string(text);
-    list += (list.empty() ? "" : ", ") + std::string(word);
-  }
-  return Wrong{"is not one of the words known here; write one of: " + list};
+  if (std::ranges::find(words_, text) != words_.end()) return std::string(text);
+  return Wrong{"is not one of the words known here; write one of: " + words(", ")};
+}
+
+std::string Words::words(std::string_view between) const {
+  return fmt::format("{}", fmt::join(words_, between));
 }
 
 std::optional<double> degrees_of_radians(std::string_view text) {

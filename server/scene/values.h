@@ -55,6 +55,7 @@ Value<math::Vector3> vector3(std::string_view text);               ///< `x,y,z`
 Value<math::Vector3> non_negative_vector3(std::string_view text);  ///< `x,y,z`, each >= 0
 Value<math::Vector3> position(std::string_view text);              ///< `x,y,z`, each within 1e6 [m]
 Value<math::Vector3> size(std::string_view text);                  ///< `x,y,z`, each a length [m]
+Value<math::Vector3> room(std::string_view text);                  ///< the same; z may be 0
 Value<math::Vector3> direction(std::string_view text);       ///< `x,y,z` not all 0 -> unit vector
 Value<math::Quaternion> orientation(std::string_view text);  ///< `z,y,x` degrees -> Qx Qy Qz
 Value<std::pair<double, double>> range(std::string_view text);           ///< `min:max`, min <= max
@@ -82,12 +83,20 @@ class OneOf {
   OneOf(std::initializer_list<std::pair<std::string_view, T>> words) : words_(words) {}
 
   Value<T> operator()(std::string_view text) const {
-    std::string list;
     for (const auto& [word, meaning] : words_) {
       if (word == text) return meaning;
-      list += (list.empty() ? "" : ", ") + std::string(word);
     }
-    return Wrong{"is not one of the words known here; write one of: " + list};
+    return Wrong{"is not one of the words known here; write one of: " + words(", ")};
+  }
+
+  /// All of them.
+  std::string words(std::string_view between = "|") const {
+    std::string list;
+    for (const auto& [word, meaning] : words_) {
+      if (!list.empty()) list += between;
+      list += word;
+    }
+    return list;
   }
 
  private:
@@ -106,6 +115,8 @@ class Words {
   Words(std::initializer_list<std::string_view> words) : words_(words) {}
   explicit Words(std::vector<std::string_view> words) : words_(std::move(words)) {}
   Value<std::string> operator()(std::string_view text) const;
+  /// All of them.
+  std::string words(std::string_view between = "|") const;
 
  private:
   std::vector<std::string_view> words_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,6 +24,8 @@ constexpr std::size_t most_effort = 10'000'000;  // of physics::Placement
 constexpr double deep = 1e-3;                // in the floor [m]
 constexpr double huge_movable = 10, huge_fixed = 100;  // times the arena's longest side
 constexpr double far_joint = 10;                       // the same, from its links
+constexpr double long_limit = 50;  // of a prismatic joint, times the entity's size
+constexpr double long_link = 200;  // times the next longest of the entity
 
 /// An axis-aligned box in W [m].
 struct Extent {
@@ -57,14 +60,13 @@ struct Kind {
 class Doubts {
  public:
   Doubts(const scene::Scene& scene, const Simulation& simulation)
-      : scene_(scene), entities_(simulation.entities()) {
-    const auto& layout = simulation.layout();
+      : scene_(scene), layout_(simulation.layout()), entities_(simulation.entities()) {
     for (std::size_t e = 0; e < entities_.size(); ++e) {
       Extent& extent = extents_.emplace_back();
       for (std::size_t l = 0; l < entities_[e].links.size(); ++l) {
         const scene::Link& link = entities_[e].links[l];
         if (!link.collides) continue;
-        extent.add(extent_of(link, simulation.state().links[layout.entities[e].links.begin + l].pose));
+        extent.add(extent_of(link, simulation.state().links[layout_.entities[e].links.begin + l].pose));
       }
     }
   }
@@ -72,13 +74,16 @@ class Doubts {
   std::vector<scene::Problem> find() {
     check_sizes();
     check_joints();
+    check_proportions();
     check_overlaps();
     check_floor();
     check_arena();
     check_gravity();
+    check_floating();
     check_magnets();
+    check_packets();
     std::vector<scene::Problem> problems;
-    for (Kind* kind : {&size_, &far_, &overlap_, &in_floor_, &outside_, &falls_, &no_force_}) {
+    for (Kind* kind : {&size_, &far_, &proportion_, &overlap_, &in_floor_, &outside_, &falls_, &floats_, &no_force_, &deaf_}) {
       if (!kind->first) continue;
       if (kind->more > 0) kind->first->text += fmt::format("; and {} more like this", kind->more);
       problems.push_back(std::move(*kind->first));
@@ -143,6 +148,37 @@ class Doubts {
     }
   }
 
+  /// A link or a limit that is far longer than its entity: one of them has another unit.
+  void check_proportions() {
+    for (const scene::Entity& entity : entities_) {
+      double longest = 0, next = 0, size = 0;
+      const scene::Link* of = nullptr;
+      for (const scene::Link& link : entity.links) {
+        if (!link.collides) continue;
+        const double length = scene::bounds(link.geometry).size().maxCoeff();
+        size += length;
+        next = std::max(next, std::min(length, longest));
+        if (length > longest) longest = length, of = &link;
+      }
+      if (next > 0 && longest > long_link * next) {
+        doubt(proportion_, entity,
+              fmt::format("has link {} of {:.6g} m, {:.3g} times its next longest; lengths are in metres",
+                          scene::in_quotes(of->id), longest, longest / next));
+        continue;
+      }
+      for (const scene::Joint& joint : entity.joints) {
+        if (joint.type != scene::JointType::prismatic || !joint.limit) continue;
+        const double limit = std::max(std::abs(joint.limit->lower), std::abs(joint.limit->upper));
+        if (!(limit > long_limit * size)) continue;
+        doubt(proportion_, entity,
+              fmt::format("has joint {} with a limit of {:.6g} m, {:.3g} times the length of all of its links; limits of "
+                          "prismatic joints are in metres",
+                          scene::in_quotes(joint.id), limit, limit / size));
+        break;
+      }
+    }
+  }
+
   /// Of what a scene places: distributed entities never overlap. Two that stand still may.
   void check_overlaps() {
     if (scene_.entities.size() > most_compared) return;
@@ -175,7 +211,11 @@ class Doubts {
 
   void check_arena() {
     const Vector3 half = scene_.arena.size / 2;
-    const Extent arena{scene_.arena.center - half, scene_.arena.center + half};
+    Extent arena{scene_.arena.center - half, scene_.arena.center + half};
+    if (half.z() == 0) {  // a flat world goes on upwards and downwards
+      arena.low.z() = -std::numeric_limits<double>::infinity();
+      arena.high.z() = std::numeric_limits<double>::infinity();
+    }
     for (std::size_t e = 0; e < entities_.size(); ++e) {
       if (entities_[e].links.empty() || arena.meets(extents_[e])) continue;
       const Vector3& at = entities_[e].pose.position;
@@ -210,6 +250,45 @@ class Doubts {
     }
   }
 
+  /// What hangs in the air because the scene has no gravity and does not say so.
+  void check_floating() {
+    if (scene_.physics.gravity || scene_.physics.magnetism || scene_.physics.flat) return;
+    if (entities_.size() > most_compared) return;
+    for (std::size_t e = 0; e < entities_.size(); ++e) {
+      if (!entities_[e].movable || !(extents_[e].low.z() > deep)) continue;
+      Extent below = extents_[e];
+      below.low.z() -= deep;
+      bool stands = is_in_a_plane(entities_[e]);
+      for (std::size_t other = 0; other < entities_.size() && !stands; ++other) {
+        stands = other != e && below.meets(extents_[other]);
+      }
+      if (stands) continue;
+      doubt(floats_, entities_[e],
+            "floats in the air: the scene has no gravity; write <gravity/> into <dynamics3d>, or <gravity g=\"0\"/> if "
+            "that is meant");
+    }
+  }
+
+  bool is_in_a_plane(const scene::Entity& entity) const {
+    return std::ranges::any_of(scene_.physics.planes, [&](const scene::Plane& plane) {
+      return entity.traction && entity.pose.position.z() == plane.elevation;
+    });
+  }
+
+  /// Robots that never hear each other because their packets have other sizes.
+  void check_packets() {
+    std::map<std::size_t, const world::RangeAndBearingLayout*> first;  // of each medium
+    for (const world::RangeAndBearingLayout& device : layout_.range_and_bearing) {
+      const world::RangeAndBearingLayout& other = *first.emplace(device.medium, &device).first->second;
+      if (other.data.count == device.data.count) continue;
+      doubt(deaf_, entities_[device.mount.entity],
+            fmt::format("sends {} bytes by range and bearing, and {} on the same medium {}: they never hear each other; "
+                        "give them the same size (data_size, of robots rab_data_size)",
+                        device.data.count, scene::in_quotes(entities_[other.mount.entity].id), other.data.count));
+    }
+    if (deaf_.first) deaf_.first->severity = scene::Problem::Severity::notice;
+  }
+
   void check_magnets() {
     if (scene_.physics.magnetism) return;
     for (const scene::Entity& entity : entities_) {
@@ -219,9 +298,10 @@ class Doubts {
   }
 
   const scene::Scene& scene_;
+  const world::Layout& layout_;
   const std::vector<scene::Entity>& entities_;
   std::vector<Extent> extents_;  // at tick 0
-  Kind size_, far_, overlap_, in_floor_, outside_, falls_, no_force_;
+  Kind size_, far_, proportion_, overlap_, in_floor_, outside_, falls_, floats_, no_force_, deaf_;
 };
 
 }  // namespace

@@ -172,8 +172,13 @@ void Simulation::move(std::size_t entity, const math::Pose& pose) {
   parts_->note_move(entity, pose);
 }
 
+std::optional<std::size_t> overlapped_by(const Simulation& in, const scene::Entity& entity, const math::Pose& pose,
+                                         std::optional<std::size_t> except) {
+  return in.parts_->physics.overlapped_by(entity, pose, except);
+}
+
 void Simulation::spawn(const scene::Scene& scene, const scene::Entity& entity, std::string xml) {
-  if (const auto other = parts_->physics.overlapped_by(entity)) {
+  if (const auto other = overlapped_by(*this, entity, entity.pose)) {
     scene::Problem problem;
     problem.file = scene::file_of(scene, entity.where);
     problem.where = entity.where;
@@ -255,6 +260,17 @@ std::vector<std::string> Simulation::notices() const {
       "max_substep=\"{:.2g}\" on <dynamics3d>",
       parts_->layout.entities[bond.entity].id, bond.substep, bond.product, bond.safe,
       bond.divisible ? "solver=\"newton\", " : "", 0.9 * bond.substep * bond.safe / bond.product)};
+}
+
+std::optional<std::string> slow_notice(const Simulation& simulation) {
+  constexpr std::size_t often = 100;  // substeps
+  const Simulation::Parts& parts = *simulation.parts_;
+  const physics::Convergence convergence = parts.physics.convergence();
+  if (convergence.divided < often) return std::nullopt;
+  return fmt::format(
+      "'{}' makes the run slow: its substeps of {:.3g} s are divided into {} parts and more, because it is pulled harder, "
+      "or turns faster, than they can follow; make the masses that hang on its joints lighter, or its links heavier",
+      parts.layout.entities[convergence.divided_entity].id, parts.substep, physics::many_parts);
 }
 
 physics::Convergence Simulation::convergence() const { return parts_->physics.convergence(); }

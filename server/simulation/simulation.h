@@ -115,11 +115,24 @@ class Simulation {
   friend void show(Simulation& to, std::uint64_t tick, std::span<const world::LinkState> links);
   friend void repeat(Simulation& to, const scene::Scene& scene, const Act& act);
 
+  friend std::optional<std::size_t> overlapped_by(const Simulation& in, const scene::Entity& entity,
+                                                  const math::Pose& pose, std::optional<std::size_t> except);
+  friend std::optional<std::string> slow_notice(const Simulation& simulation);
+
  private:
   struct Parts;
   class Growing;
   std::unique_ptr<world::Layout> layout_;  // others keep references to it
   std::unique_ptr<Parts> parts_;
 };
+
+/// The first entity that another would overlap at a pose of its origin, joints as assembled; nothing if the place is free.
+/// The floor does not count; touching is not overlapping, nor are 0.1 mm, as bodies at rest may be in each other.
+/// @param except  into Layout::entities: does not count
+std::optional<std::size_t> overlapped_by(const Simulation& in, const scene::Entity& entity, const math::Pose& pose,
+                                         std::optional<std::size_t> except = {});
+
+/// What the author should know of how the run goes: a sentence if substeps were divided so often that it is slow.
+std::optional<std::string> slow_notice(const Simulation& simulation);
 
 }  // namespace ziggurat::simulation

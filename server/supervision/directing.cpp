@@ -145,7 +145,7 @@ std::optional<wire::Fault> check_act(const simulation::Simulation& world, std::s
     return std::nullopt;
   }
   if (is_removal(act)) return std::nullopt;
-  auto pose = pose_of_move(world.state().origins[entity], std::get<wire::Request>(act));
+  auto pose = pose_of(world.state().origins[entity], std::get<wire::Request>(act));
   if (auto* fault = std::get_if<wire::Fault>(&pose)) return std::move(*fault);
   return std::nullopt;
 }
@@ -225,10 +225,7 @@ std::optional<wire::Fault> Directing::apply(const wire::DirectorAct& act, Names&
     if (!fault) names.gone(id);
     return fault;
   } else {
-    const math::Pose pose = std::get<math::Pose>(
-        pose_of_move(simulation.state().origins[*entity], std::get<wire::Request>(act)));
-    simulation.move(*entity, pose);
-    callers_.tell(Moved{id, pose});
+    return move(simulation, callers_, *entity, std::get<wire::Request>(act));
   }
   return std::nullopt;
 }

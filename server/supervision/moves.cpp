@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "wire/fault.h"
 
@@ -10,13 +13,13 @@ namespace ziggurat::supervision {
 
 using wire::ErrorCode;
 
-std::variant<math::Pose, wire::Fault> pose_of_move(const math::Pose& now,
-                                                   const wire::Request& request) {
+std::variant<math::Pose, wire::Fault> pose_of(const math::Pose& now, const wire::Request& request) {
+  const std::string name = request.kind == wire::Request::Kind::move ? "move" : "is_free";
   constexpr double farthest = 1e6;  // [m], as in scenes
   const auto is_near = [](double value) { return std::abs(value) <= farthest; };
   if (request.position.size() != 3 || !std::ranges::all_of(request.position, is_near)) {
     return wire::make_fault(
-        ErrorCode::bad_value, "move.position",
+        ErrorCode::bad_value, name + ".position",
         "A position must be three numbers x, y, z from -1e6 to 1e6 metres.");
   }
   math::Pose pose = now;
@@ -26,11 +29,29 @@ std::variant<math::Pose, wire::Fault> pose_of_move(const math::Pose& now,
   const double norm = std::sqrt(std::inner_product(q.begin(), q.end(), q.begin(), 0.0));
   if (q.size() != 4 || !std::isfinite(norm) || norm < 1e-6) {
     return wire::make_fault(
-        ErrorCode::bad_value, "move.orientation",
+        ErrorCode::bad_value, name + ".orientation",
         "An orientation must be a quaternion w, x, y, z, finite and not zero.");
   }
   pose.orientation = math::Quaternion(q[0], q[1], q[2], q[3]).normalized();
   return pose;
+}
+
+std::optional<wire::Fault> move(simulation::Simulation& world, const Callers& callers, std::size_t entity,
+                                const wire::Request& request) {
+  auto pose = pose_of(world.state().origins[entity], request);
+  if (auto* fault = std::get_if<wire::Fault>(&pose)) return std::move(*fault);
+  const math::Pose& to = std::get<math::Pose>(pose);
+  if (!request.may_overlap) {
+    if (const auto other = simulation::overlapped_by(world, world.entities()[entity], to, entity)) {
+      return wire::make_fault(ErrorCode::bad_value, "move.position",
+                              fmt::format("'{}' overlaps '{}' where it is moved to; choose a place that is free, or "
+                                          "say that it may overlap.",
+                                          request.text, world.layout().entities[*other].id));
+    }
+  }
+  world.move(entity, to);
+  callers.tell(Moved{request.text, to});
+  return std::nullopt;
 }
 
 }  // namespace ziggurat::supervision

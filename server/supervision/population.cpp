@@ -15,6 +15,7 @@
 #include "processes/scripts.h"
 #include "processes/spawned_scripts.h"
 #include "scene/names.h"
+#include "supervision/moves.h"
 #include "supervision/opener.h"
 #include "wire/fault.h"
 
@@ -155,6 +156,31 @@ std::variant<Population::Candidate, wire::Fault> Population::read(
                             std::string(error.what()).substr(0, longest_message));
   }
   return candidate;
+}
+
+std::variant<std::string, wire::Fault> Population::overlapped(const wire::Request& request) const {
+  const simulation::Simulation& world = world_.simulation;
+  std::optional<std::size_t> itself;
+  scene::Addition element;
+  if (!request.is_element) {
+    itself = entity_named(world, request.text);
+    if (!itself) return no_entity("is_free.entity", request.text, &world);
+  } else if (request.text.size() > longest_spawned) {
+    return wire::make_fault(ErrorCode::too_large, "is_free.xml",
+                            fmt::format("The element has {} bytes; at most {} are allowed.", request.text.size(),
+                                        longest_spawned));
+  } else {
+    element = world_.additions.read_shape(request.text, world_.scene, settings_.max_size, opener(allowed_, world_.path));
+    if (!element.ok()) {
+      return wire::make_fault(ErrorCode::bad_value, "is_free.xml",
+                              std::string(scene::SceneError(element.problems).what()).substr(0, longest_message));
+    }
+  }
+  auto pose = pose_of(itself ? world.state().origins[*itself] : math::Pose{}, request);
+  if (auto* fault = std::get_if<wire::Fault>(&pose)) return std::move(*fault);
+  const scene::Entity& entity = itself ? world.entities()[*itself] : element.entity;
+  const auto other = simulation::overlapped_by(world, entity, std::get<math::Pose>(pose), itself);
+  return other ? world.layout().entities[*other].id : std::string();
 }
 
 std::optional<wire::Fault> Population::spawn(const std::string& xml) {

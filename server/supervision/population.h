@@ -58,6 +58,10 @@ class Population {
                                             const std::function<bool(const std::string&)>& is_taken,
                                             const EarlierSpawns& earlier = {}) const;
 
+  /// The first entity that the one, or the element, of a request would overlap at its pose: its id, empty if the place
+  /// is free; or what is wrong with the request.
+  std::variant<std::string, wire::Fault> overlapped(const wire::Request& request) const;
+
   // Each returns why it can't be done; then nothing has changed.
   std::optional<wire::Fault> spawn(const std::string& xml);
   std::optional<wire::Fault> remove(const std::string& id);

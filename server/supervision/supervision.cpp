@@ -124,6 +124,14 @@ Reply Supervision::handle(const network::Call& call) {
       return reset(call);
     case Kind::move:
       return move(call);
+    case Kind::is_free: {
+      auto overlapped = population_.overlapped(call.request);
+      if (auto* fault = std::get_if<wire::Fault>(&overlapped)) return fail(call, std::move(*fault));
+      server_.answer(call, [&](wire::Outbox& outbox) {
+        outbox.response(call.request.id, world_.simulation.state().tick, std::get<std::string>(overlapped));
+      });
+      return Reply::given;
+    }
     case Kind::spawn:
       return spawn(call);
     case Kind::remove:
@@ -237,12 +245,10 @@ Reply Supervision::read(const network::Call& call) {
 Reply Supervision::move(const network::Call& call) {
   const auto entity = entity_named(world_.simulation, call.request.text);
   if (!entity) return fail(call, no_entity("move.entity", call.request.text, &world_.simulation));
-  auto pose = pose_of_move(world_.simulation.state().origins[*entity], call.request);
-  if (auto* fault = std::get_if<wire::Fault>(&pose)) return fail(call, std::move(*fault));
-  world_.simulation.move(*entity, std::get<math::Pose>(pose));
-  callers_.tell(Moved{call.request.text, std::get<math::Pose>(pose)});
-  return done(call);
+  auto fault = supervision::move(world_.simulation, callers_, *entity, call.request);
+  return fault ? fail(call, std::move(*fault)) : done(call);
 }
+
 
 Reply Supervision::spawn(const network::Call& call) {
   auto fault = population_.spawn(call.request.text);

@@ -35,7 +35,8 @@ constexpr std::array services{
             R"({"type":"object","properties":{"factor":{"type":"number"}},"required":["factor"]})"},
     Service{"/move", Kind::move,
             R"({"type":"object","properties":{"entity":{"type":"string"},"position":{"type":"array",)"
-            R"("items":{"type":"number"}},"orientation":{"type":"array","items":{"type":"number"}}},)"
+            R"("items":{"type":"number"}},"orientation":{"type":"array","items":{"type":"number"}},)"
+            R"("may_overlap":{"type":"boolean"}},)"
             R"("required":["entity","position"]})"},
     Service{"/spawn", Kind::spawn,
             R"({"type":"object","properties":{"xml":{"type":"string"}},"required":["xml"]})"},
@@ -231,6 +232,11 @@ void read_fields(const Json& json, Call& call) {
       request.text = text_of(field(json, "entity"), "entity");
       request.position = numbers(json, "position");
       if (json.contains("orientation")) request.orientation = numbers(json, "orientation");
+      if (json.contains("may_overlap")) {
+        const Json& may = field(json, "may_overlap");
+        if (!may.is_boolean()) throw Wrong{"\"may_overlap\" must be true or false"};
+        request.may_overlap = may.get<bool>();
+      }
       return;
     case Kind::spawn:
       request.text = text_of(field(json, "xml"), "xml");

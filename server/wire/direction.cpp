@@ -7,6 +7,7 @@
 
 #include "wire/fault.h"
 #include "wire/metrics.h"
+#include "wire/response.h"
 #include "world/commands.h"
 #include "ziggurat/v1/protocol.pb.h"
 
@@ -75,13 +76,9 @@ DirectorAct read(const v1::DirectorAct& from) {
     const v1::Push& push = from.push();
     return Push{push.entity(), push.link(), vector_of(push.force()), vector_of(push.torque())};
   }
+  if (from.has_move()) return wire::read(from.move());
   Request request;
-  if (from.has_move()) {
-    request.kind = Request::Kind::move;
-    request.text = from.move().entity();
-    request.position.assign(from.move().position().begin(), from.move().position().end());
-    request.orientation.assign(from.move().orientation().begin(), from.move().orientation().end());
-  } else if (from.has_spawn()) {
+  if (from.has_spawn()) {
     request.kind = Request::Kind::spawn;
     request.text = from.spawn().xml();
   } else {

@@ -288,11 +288,12 @@ void Outbox::restart(const Roster& roster, const Restart& from) {
   finish();
 }
 
-void Outbox::response(std::uint64_t request, std::uint64_t tick) {
+void Outbox::response(std::uint64_t request, std::uint64_t tick, const std::optional<std::string>& overlapped) {
   v1::Response& response = *message_->message.mutable_response();
   response.Clear();
   response.set_id(request);
   response.set_tick(tick);
+  if (overlapped) response.mutable_place()->set_overlapped(v1::valid_utf8(*overlapped));
   finish();
 }
 

@@ -61,7 +61,8 @@ class Outbox {
   void heartbeat(std::uint64_t sequence);
   void restart(const Roster& roster, const Restart& restart);
   // A request was done at this tick, with its result.
-  void response(std::uint64_t request, std::uint64_t tick);
+  /// @param overlapped  is_free: id of the entity that is at the place, or empty
+  void response(std::uint64_t request, std::uint64_t tick, const std::optional<std::string>& overlapped = {});
   void response(std::uint64_t request, const Status& status);
   /// @param entities  into Layout::entities, ascending;  @param hash  16 hexadecimal digits
   void response(std::uint64_t request, const world::Layout& layout, const world::State& state,

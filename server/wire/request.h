@@ -26,18 +26,21 @@ struct Request {
     shutdown,
     snapshot,
     restore,
+    is_free,
   };
   std::uint64_t id = 0;  ///< the client's own
   Kind kind = Kind::none;
   std::uint64_t ticks = 0;            ///< step
   std::optional<std::uint64_t> seed;  ///< reset
   /// spawn: XML; remove, move: id of an entity; snapshot, restore: its name; shutdown: the reason, or
-  /// nothing
+  /// nothing; is_free: one of the first two
   std::string text;
+  bool is_element = false;   ///< is_free: the text is XML
+  bool may_overlap = false;  ///< move: also onto others
   std::vector<std::string> entities;  ///< read: ids or globs
   std::vector<std::string> held_up;   ///< ids of robots or directors whose sessions can't answer before the Response
-  std::vector<double> position;       ///< move: as given; x, y, z [m] if it is right
-  std::vector<double> orientation;    ///< move: as given; w, x, y, z or nothing
+  std::vector<double> position;       ///< move, is_free: as given; x, y, z [m] if it is right
+  std::vector<double> orientation;    ///< move, is_free: as given; w, x, y, z or nothing
 };
 
 /// Of wall time [s].

@@ -40,8 +40,18 @@ void add(const math::Quaternion& from, google::protobuf::RepeatedField<double>& 
 
 }  // namespace
 
-Request read(const v1::Request& from) {
+Request read(const v1::MoveRequest& from) {
   Request request;
+  request.kind = Request::Kind::move;
+  request.text = from.entity();
+  request.position.assign(from.position().begin(), from.position().end());
+  request.orientation.assign(from.orientation().begin(), from.orientation().end());
+  request.may_overlap = from.may_overlap();
+  return request;
+}
+
+Request read(const v1::Request& from) {
+  Request request = from.has_move() ? read(from.move()) : Request();
   request.id = from.id();
   // The numbers of the fields from 2 on are those of Kind from 1 on.
   request.kind = from.request_case() == v1::Request::REQUEST_NOT_SET
@@ -52,13 +62,17 @@ Request read(const v1::Request& from) {
   if (from.has_spawn()) request.text = from.spawn().xml();
   if (from.has_shutdown()) request.text = from.shutdown().reason();
   if (from.has_remove()) request.text = from.remove().entity();
-  if (from.has_move()) request.text = from.move().entity();
   if (from.has_snapshot()) request.text = from.snapshot().name();
   if (from.has_restore()) request.text = from.restore().name();
   request.entities.assign(from.read().entities().begin(), from.read().entities().end());
   request.held_up.assign(from.held_up().begin(), from.held_up().end());
-  request.position.assign(from.move().position().begin(), from.move().position().end());
-  request.orientation.assign(from.move().orientation().begin(), from.move().orientation().end());
+  if (from.has_is_free()) {
+    const v1::IsFreeRequest& place = from.is_free();
+    request.is_element = place.has_xml();
+    request.text = place.has_xml() ? place.xml() : place.entity();
+    request.position.assign(place.position().begin(), place.position().end());
+    request.orientation.assign(place.orientation().begin(), place.orientation().end());
+  }
   return request;
 }
 

@@ -10,6 +10,7 @@
 namespace ziggurat::wire {
 
 Request read(const v1::Request& request);
+Request read(const v1::MoveRequest& request);
 
 void fill(const Status& status, v1::Status& to);
 

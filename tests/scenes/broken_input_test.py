@@ -35,6 +35,15 @@ class BrokenScene(SceneTest):
         self.assertEqual(outcome.code, FINISHED, outcome.err)
         self.assertRegex(outcome.err, r"notice: .*colour")
 
+    def test_lenient_runs_scenes_of_libraries(self):
+        self.change("</argos-configuration>", '<loop_functions library="libx" label="x"><a b="1"/></loop_functions>\n</argos-configuration>')
+        self.change("<arena", '<arena positional_index="grid"', 1)
+        self.fails(r"arms\.argos:\d+:\d+: <loop_functions>.*--lenient")
+        for command in (["check"], ["run", "--ticks", "2"], ["render", "--out", self.folder / "a.png"]):
+            outcome = self.ziggurat(*command, "--lenient", self.scene)
+            self.assertEqual(outcome.code, FINISHED, outcome.err)
+            self.assertRegex(outcome.err, r"notice: .*<loop_functions> has no effect: libraries are not loaded")
+
     def test_a_root_that_is_misspelt_and_an_encoding_that_is_not_read(self):
         self.change("argos-configuration", "argos-config")
         outcome = self.ziggurat("check", self.scene)

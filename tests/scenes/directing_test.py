@@ -188,6 +188,43 @@ class Acts(Directing):
             world.finish()
         self.end()
 
+    def test_an_entity_is_not_moved_onto_another_unless_it_may(self):
+        self.begin()
+        with self.direct() as world:
+            next(world)
+            wall = world.entities["wall"].position
+            self.assertEqual(world.overlapped("b1", wall), "wall")
+            self.assertTrue(world.entities["b1"].is_free((7, 7, 0)))
+            self.assertTrue(world.is_free("b1", world.entities["b1"].position), "it does not count itself")
+            self.assertTrue(world.is_free('<box size="0.1,0.1,0.1"/>', (7, 7, 0)))
+            self.assertEqual(world.overlapped(' <sphere radius="0.05"/>', wall), "wall")
+            world.move("b1", wall)
+            world.move("b2", (7, 7, 0))
+            next(world)
+            self.assertEqual([(each.code, each.field) for each in world.left_out], [("BAD_VALUE", "acts[0].move.position")])
+            self.assertRegex(str(world.left_out[0]), "'b1' overlaps 'wall' where it is moved to")
+            self.assertNotEqual(world.entities["b1"].position[:2], wall[:2])
+            self.assertEqual(world.entities["b2"].position[:2], (7, 7))
+            self.assertEqual(world.overlapped("b1", (7.02, 7, 0)), "b2")
+            world.entities["b1"].move((7.02, 7, 0), may_overlap=True)
+            next(world)
+            self.assertEqual(world.left_out, [])
+            self.assertAlmostEqual(world.entities["b1"].position[0], 7.02, delta=0.1)
+            for what, code in (("nobody", "UNKNOWN_ENTITY"), ("<sphere/>", "BAD_VALUE"), ("<light/>", "BAD_VALUE")):
+                with self.assertRaises(ziggurat.ProtocolError) as raised:
+                    world.is_free(what, (0, 0, 0))
+                self.assertEqual(raised.exception.code, code)
+            world.finish()
+        self.end()
+
+    def test_a_director_may_ask_more_than_a_thousand_times_a_second(self):
+        self.begin()
+        with self.direct() as world:
+            next(world)
+            self.assertEqual({world.is_free("b1", (i % 50 + 5, i // 50 + 5, 0)) for i in range(4000)}, {True})
+            world.finish()
+        self.end()
+
     def test_acts_that_are_left_out_fill_no_terminal(self):
         self.begin()
         with self.direct() as world:

@@ -99,6 +99,32 @@ class Experiments(SceneTest):
         for line in ("[1 judge] marker at 9, params 3", "[2 judge] then at 8", "[3 judge] then 1"):
             self.assertIn(line, outcome.out)
 
+    def test_a_script_asks_whether_a_place_is_free(self):
+        self.with_director("""
+            function init()
+              world.spawn('<box id="a" size="0.1,0.1,0.1" movable="false"><body position="9,9,0"/></box>')
+              world.spawn('<box id="b" size="0.1,0.1,0.1" movable="false"><body position="9,8,0"/></box>')
+            end
+            function post_step(tick)
+              if tick == 1 then
+                local free, other = world.is_free("a", {x = 9, y = 8, z = 0})
+                log("a: ", free, other, ", ", world.is_free("a", {x = 9, y = 9, z = 0}))
+                log("ball: ", world.is_free('<sphere radius="0.1"/>', {x = 9, y = 8, z = 0}))
+                world.move("a", {x = 9, y = 8, z = 0})
+              elseif tick == 2 then
+                log("a is at ", world.entities.a.position.y)
+                world.move("a", {x = 9, y = 8, z = 0}, nil, {may_overlap = true})
+              else
+                world.finish("at " .. world.entities.a.position.y)
+              end
+            end
+        """)
+        summary, outcome = self.summary(self.scene)
+        self.assertEqual(summary["result"], "at 8.0")
+        for line in ("[1 judge] a: 0b, 1", "[1 judge] ball: 0b", "[2 judge] a is at 9"):
+            self.assertIn(line, outcome.out)
+        self.assertRegex(outcome.err, r"judge\.lua:\d+: acts\[0\]\.move\.position: 'a' overlaps 'b' where it is moved to")
+
     def test_a_script_that_fails_is_named(self):
         self.with_director("function post_step(tick) if tick == 2 then error('no food') end end")
         _, outcome = self.summary(self.scene, "--ticks", "5", code=CONTROLLER_FAILED)

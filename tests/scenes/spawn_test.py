@@ -7,7 +7,7 @@ import subprocess
 
 import zmq
 
-from harness import INTERRUPTED, LUA, ZIGGURAT, SceneTest, main
+from harness import FAULT, INTERRUPTED, LUA, ZIGGURAT, SceneTest, main
 
 BOX = '<box id="{}" size="0.1,0.1,0.1" movable="true" mass="1"><body position="{}"/></box>'
 PACED = "--real-time", 3  # fewer lines to read
@@ -64,6 +64,19 @@ class Spawn(SceneTest):
         tick = int(self.read_until(process.stdout, r"^\[(\d+) r0\]")[1])
         self.read_until(process.stdout, rf"^\[{tick + 20} r0\]")
         self.assertNotIn("late", self.end(process).out)
+
+    def test_a_move_onto_another_needs_a_word(self):
+        process = self.begin_without_controllers()
+        self.spawn('<box id="crate" size="0.1,0.1,0.1" movable="true" mass="1"><body position="3,3,0"/></box>')
+        self.spawn('<box id="other" size="0.1,0.1,0.1" movable="true" mass="1"><body position="4,3,0"/></box>')
+        self.assertEqual(self.ctl("is-free", "crate", "4,3.05,0"), "not free: 'other' is there\n")
+        self.assertEqual(self.ctl("is-free", '<box size="0.1,0.1,0.1"/>', "4,3.1,0"), "free\n")
+        self.assertEqual(json.loads(self.ctl("is-free", "crate", "4,3.05,0", "--json")), {"free": False, "overlapped": "other"})
+        self.assertRegex(self.ctl("move", "crate", "4,3.05,0", code=FAULT), "'crate' overlaps 'other' where it is moved to")
+        self.ctl("move", "crate", "4,3.05,0", "--may-overlap")
+        self.assertEqual(self.read("crate")["entities"][0]["position"], [4, 3.05, 0])
+        self.assertRegex(self.ctl("remove", "crate", "--may-overlap", code=FAULT), "--may-overlap is for move")
+        self.end(process)
 
     def test_spawned_robots_share_processes(self):
         process = self.begin("run", *PACED)

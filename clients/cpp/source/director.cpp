@@ -4,6 +4,7 @@
 #include <exception>
 #include <stdexcept>
 
+#include "asked_place.h"
 #include "directing.h"
 #include "layout.h"
 #include "session_core.h"
@@ -105,12 +106,20 @@ std::span<const RadioMessage> Director::radio_messages() const noexcept {
   return state_->part.world().radio_messages();
 }
 
+std::optional<std::string> Director::overlapped(std::string_view what, const std::array<double, 3>& position,
+                                                const std::optional<std::array<double, 4>>& orientation) {
+  v1::ClientMessage question;
+  ask_for_place(what, position, orientation, *question.mutable_request()->mutable_is_free());
+  return overlapped_in(state_->core.ask(question));
+}
+
 void Director::move(std::string_view entity, const std::array<double, 3>& position,
-                    const std::optional<std::array<double, 4>>& orientation) {
+                    const std::optional<std::array<double, 4>>& orientation, Onto onto) {
   v1::MoveRequest move;
   move.set_entity(v1::valid_utf8(entity));
   add_numbers(position, "the position of", entity, *move.mutable_position());
   if (orientation) add_numbers(*orientation, "the orientation of", entity, *move.mutable_orientation());
+  move.set_may_overlap(onto == Onto::others);
   state_->part.add_act(entity.size()).mutable_move()->Swap(&move);
 }
 

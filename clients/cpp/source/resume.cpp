@@ -23,6 +23,7 @@ milliseconds SessionCore::patience() const {
 
 bool SessionCore::resume(const std::string& loss) {
   const auto end = Clock::now() + patience();
+  heard.reset();
   // The answer itself may be why the server closes the connection.
   if (token.empty() || patience().count() == 0 || ++resumes_in_vain > most_in_vain) {
     is_over = true;

@@ -69,12 +69,33 @@ void SessionCore::send_answer() {
   connection.send(outgoing);
 }
 
+const v1::Response& SessionCore::ask(v1::ClientMessage& question) {
+  if (!owes || is_over || ending) throw std::logic_error("the world is asked at a tick, before its answer");
+  question.mutable_request()->set_id(++last_question);
+  connection.send(question);
+  for (;;) {
+    const auto kind = connection.receive(options.wait_timeout, options.is_interrupted);
+    if (!kind) throw ConnectionError("no answer of " + options.endpoint + " to a question");
+    const v1::ServerMessage& message = connection.message();
+    if (*kind == Connection::Kind::kResponse && message.response().id() == last_question) {
+      if (message.response().has_error()) throw to_exception(message.response().error());
+      return message.response();
+    }
+    if (*kind == Connection::Kind::kError) {
+      take(message.error());
+    } else if (*kind != Connection::Kind::kHeartbeat && *kind != Connection::Kind::kResponse) {
+      heard = kind;
+      throw ConnectionError(options.endpoint + ": the world has gone on without this tick's answer");
+    }
+  }
+}
+
 bool SessionCore::wait() {
   // Heartbeats come in between: they do not extend the time-out.
   const auto end = Clock::now() + options.wait_timeout.value_or(std::chrono::milliseconds{0});
   auto rest = options.wait_timeout;
   for (;;) {
-    const auto kind = connection.receive(rest, options.is_interrupted);
+    const auto kind = heard ? std::exchange(heard, {}) : connection.receive(rest, options.is_interrupted);
     if (rest) {
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now());
       rest = std::max(left, std::chrono::milliseconds{0});

@@ -39,6 +39,9 @@ struct SessionCore {
   bool advance();
   void answer();
   void send_answer();
+  /// Asks while a tick waits for the answer; the response stays until the next message is received.
+  /// @throws ConnectionError, ProtocolError if it is refused, std::logic_error if no tick waits
+  const v1::Response& ask(v1::ClientMessage& question);
   bool wait();  // false if there is none
   bool hear(Connection::Kind kind);  // a message that is not to be answered; false after the last one
   void read_moment();  // the message to answer
@@ -85,6 +88,8 @@ struct SessionCore {
   std::uint64_t resumes = 0;
   unsigned resumes_in_vain = 0;  // without a message that is new
   bool is_resumed = false;       // the next message may be the last one again
+  std::uint64_t last_question = 0;
+  std::optional<Connection::Kind> heard;  // instead of the answer to a question: the next message
 };
 
 /// @throws ConnectionError if the server speaks another major version of the protocol (H2), or names more robots than

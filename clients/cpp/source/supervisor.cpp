@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "asked_place.h"
 #include "connection.h"
 #include "convert.h"
 #include "driven.h"
@@ -251,14 +252,21 @@ std::uint64_t Supervisor::remove(std::string_view entity) {
 }
 
 std::uint64_t Supervisor::move(std::string_view entity, const std::array<double, 3>& position,
-                               const std::optional<std::array<double, 4>>& orientation) {
+                               const std::optional<std::array<double, 4>>& orientation, Onto onto) {
   v1::MoveRequest& move = *state_->request().mutable_move();
   move.set_entity(v1::valid_utf8(std::string(entity)));
   for (const double value : position) move.add_position(value);
   if (orientation) {
     for (const double value : *orientation) move.add_orientation(value);
   }
+  move.set_may_overlap(onto == Onto::others);
   return state_->ask().tick();
+}
+
+std::optional<std::string> Supervisor::overlapped(std::string_view what, const std::array<double, 3>& position,
+                                                  const std::optional<std::array<double, 4>>& orientation) {
+  ask_for_place(what, position, orientation, *state_->request().mutable_is_free());
+  return overlapped_in(state_->ask());
 }
 
 WorldStates Supervisor::read(std::span<const std::string> entities) {

@@ -14,7 +14,7 @@ void make_positioning(lua_State* state, Robot&) {
   lua_pushvalue(state, -1);
   lua_rawseti(state, -3, 1);
   lua_setfield(state, -3, "position");
-  lua_createtable(state, 0, 2);  // orientation
+  lua_createtable(state, 0, 3);  // orientation
   lua_createtable(state, 0, 3);  // its axis
   lua_pushvalue(state, -1);
   lua_rawseti(state, -4, 3);
@@ -31,6 +31,7 @@ void fill_positioning(lua_State* state, Robot& robot) {
   const AngleAxis orientation = to_angle_axis(robot.positioning()->orientation);
   lua_rawgeti(state, -1, 2);
   set_number(state, "angle", orientation.angle);
+  set_number(state, "yaw", robot.positioning()->yaw());
   lua_pop(state, 1);
   lua_rawgeti(state, -1, 3);
   set_vector(state, orientation.axis);

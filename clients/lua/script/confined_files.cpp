@@ -7,6 +7,7 @@
 
 #include "script/data_files.h"
 #include "script/guarded.h"
+#include "script/missing_fields.h"
 #include "script/open_files.h"
 
 namespace ziggurat::lua {
@@ -61,7 +62,7 @@ int raise_refusal(lua_State* state, const char* file) {
   return lua_error(state);
 }
 
-int open(lua_State* state) {
+int open_or_refuse(lua_State* state) {
   const char* const file = luaL_checkstring(state, 1);
   const char* const mode = luaL_optstring(state, 2, "r");
   const bool reads_only = std::strpbrk(mode, "wa+") == nullptr;
@@ -70,6 +71,15 @@ int open(lua_State* state) {
   if (!may_open_file(state)) return refuse<push_too_many_files, EMFILE>(state, file);
   const int results = call_original(state);
   count_open_file(state, -results);
+  return results;
+}
+
+/// io.open: an error about its nil says why.
+int open(lua_State* state) {
+  const int results = open_or_refuse(state);
+  const int first = lua_gettop(state) - results + 1;
+  const bool is_refused = results > 1 && lua_isnil(state, first) && lua_type(state, first + 1) == LUA_TSTRING;
+  note_opening(state, is_refused ? first + 1 : 0);
   return results;
 }
 

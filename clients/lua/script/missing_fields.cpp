@@ -1,13 +1,15 @@
 #include "script/missing_fields.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 namespace ziggurat::lua {
 namespace {
 
 // Their addresses are keys of the registry.
-constexpr char watched_key = 0, name_key = 0, owner_key = 0, root_key = 0, table_key = 0, field_key = 0;
+constexpr char watched_key = 0, name_key = 0, owner_key = 0, root_key = 0, table_key = 0, field_key = 0,
+               opening_key = 0;
 
 constexpr int deepest = 3;             // robot.joints.<id>.<field>
 constexpr std::size_t most_named = 24;  // fields of a message
@@ -74,9 +76,29 @@ std::string fields_of(lua_State* state, int table) {
   return text.empty() ? "nothing" : text;
 }
 
+bool contains(std::string_view text, std::string_view part) { return text.find(part) != text.npos; }
+
+/// Whether the error is about a nil value that Lua names no variable for, as in a comparison.
+bool is_unnamed(std::string_view error) {
+  if (!contains(error, "nil") && !contains(error, "'for' ")) return false;
+  const auto is_named = [&](std::string_view kind) { return contains(error, kind); };
+  return std::ranges::none_of(std::array{"(global '", "(local '", "(field '", "(upvalue '", "(method '"}, is_named);
+}
+
 /// Whether the error is about a nil value in a field or variable of that name.
 bool is_about(std::string_view error, const std::string& field) {
-  return error.find("nil value") != error.npos && error.find(" '" + field + "')") != error.npos;
+  return contains(error, "nil value") && contains(error, " '" + field + "')");
+}
+
+/// What io.open said, for an error about a nil value.
+std::string of_opening(lua_State* state, std::string_view error) {
+  if (!contains(error, "nil value") && !contains(error, "got nil")) return {};
+  std::string text;
+  if (lua_rawgetp(state, LUA_REGISTRYINDEX, &opening_key) == LUA_TSTRING) {
+    text = std::string("io.open has returned nil: ") + lua_tostring(state, -1);
+  }
+  lua_pop(state, 1);
+  return text;
 }
 
 }  // namespace
@@ -95,9 +117,24 @@ void watch_missing_fields(lua_State* state, const char* name, const char* kind, 
   lua_pushnil(state);  // so that remember() needs no memory for new keys
   lua_rawsetp(state, LUA_REGISTRYINDEX, &field_key);
   watch_table(state, 1);
+  lua_pushglobaltable(state);
+  watch_table(state, deepest);
+  lua_pop(state, 1);
 }
 
-std::string missing_field(lua_State* state, std::string_view error) {
+void forget_missing_fields(lua_State* state) {
+  lua_pushnil(state);
+  lua_rawsetp(state, LUA_REGISTRYINDEX, &field_key);
+}
+
+void note_opening(lua_State* state, int message) {
+  message == 0 ? lua_pushnil(state) : lua_pushvalue(state, message);
+  lua_rawsetp(state, LUA_REGISTRYINDEX, &opening_key);
+}
+
+namespace {
+
+std::string of_field(lua_State* state, std::string_view error) {
   const int top = lua_gettop(state);
   std::string text;
   if (lua_checkstack(state, 8) == 0) return text;
@@ -110,14 +147,26 @@ std::string missing_field(lua_State* state, std::string_view error) {
     const int table = top + 2;
     const std::string field = lua_tostring(state, top + 1), root = lua_tostring(state, top + 4);
     int left = most_read;
-    const std::string name = name_of(state, table, root, 1, left);
-    if (!name.empty() && is_about(error, field)) {
+    lua_pushglobaltable(state);
+    const bool is_global = lua_rawequal(state, table, -1) != 0;
+    lua_pop(state, 1);
+    const std::string name = is_global ? "" : name_of(state, table, root, 1, left);
+    if (is_global && is_unnamed(error)) {
+      text = "the last global that was read, '" + field + "', is nil";
+    } else if (!name.empty() && (is_about(error, field) || is_unnamed(error))) {
       text = std::string(lua_tostring(state, top + 3)) + " has no " + name + "." + field + "; " + name +
              " has: " + fields_of(state, table);
     }
   }
   lua_settop(state, top);
   return text;
+}
+
+}  // namespace
+
+std::string why_nil(lua_State* state, std::string_view error) {
+  const std::string field = of_field(state, error);
+  return field.empty() ? of_opening(state, error) : field;
 }
 
 }  // namespace ziggurat::lua

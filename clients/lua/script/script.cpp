@@ -113,6 +113,7 @@ Failure Script::call(const Wanted& wanted, const std::string& moment, bool* answ
 }
 
 Failure Script::call_prepared(const std::string& moment, int arguments, int results) {
+  forget_missing_fields(state_.get());
   const auto status = call_leavably(state_.get(), arguments, results, handler);
   if (!status) {
     state_.abandon();
@@ -167,7 +168,7 @@ std::string Script::describe_error(const std::string& moment) {
   if (lacked_memory) {
     text += " (it may have " + std::to_string(max_memory_ >> 20) + " MiB)";
   }
-  if (const std::string missing = missing_field(state_.get(), text); !missing.empty()) text += ": " + missing;
+  if (const std::string why = why_nil(state_.get(), text); !why.empty()) text += ": " + why;
   text += " (in " + moment + ")";
   return traceback.empty() ? text : text + "\n" + traceback;
 }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "ziggurat/sensors.h"
+
 namespace ziggurat::lua {
 
 void set_number(lua_State* state, const char* name, double number) {
@@ -47,8 +49,9 @@ void push_params(lua_State* state, const std::vector<std::pair<std::string, std:
 
 void push_orientation(lua_State* state, const std::array<double, 4>& quaternion) {
   const auto [angle, axis] = to_angle_axis(quaternion);
-  lua_createtable(state, 0, 2);
+  lua_createtable(state, 0, 3);
   set_number(state, "angle", angle);
+  set_number(state, "yaw", yaw_of(quaternion));
   push_vector(state, axis);
   lua_setfield(state, -2, "axis");
 }
@@ -57,7 +60,9 @@ AngleAxis to_angle_axis(const std::array<double, 4>& quaternion) {
   const auto [w, x, y, z] = quaternion;
   const double sine = std::hypot(x, y, z);  // of half the angle
   if (sine == 0) return {};
-  return {2 * std::atan2(sine, w), {x / sine, y / sine, z / sine}};
+  const double last = z != 0 ? z : y != 0 ? y : x;
+  const double sign = w < 0 || (w == 0 && last < 0) ? -1 : 1;  // both stand for the same rotation
+  return {2 * std::atan2(sine, sign * w), {sign * x / sine, sign * y / sine, sign * z / sine}};
 }
 
 }  // namespace ziggurat::lua

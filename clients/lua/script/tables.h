@@ -48,11 +48,11 @@ void set_elements(lua_State* state, const Values& values, Push push) {
 void push_params(lua_State* state, const std::vector<std::pair<std::string, std::string>>& params);
 
 struct AngleAxis {
-  double angle = 0;                     ///< [0, 2 pi] [rad]
+  double angle = 0;                     ///< [0, pi] [rad]
   std::array<double, 3> axis{0, 0, 1};  ///< unit
 };
 
-/// Pushes {angle, axis = {x, y, z}}.
+/// Pushes {angle, axis = {x, y, z}, yaw}.
 /// @param quaternion  unit, w, x, y, z
 void push_orientation(lua_State* state, const std::array<double, 4>& quaternion);
 

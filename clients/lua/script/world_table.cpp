@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -74,17 +75,46 @@ std::array<double, 4> check_orientation(lua_State* state, int index) {
   return {std::cos(angle / 2), x * scale, y * scale, z * scale};
 }
 
+/// The same, or nothing.
+std::optional<std::array<double, 4>> optional_orientation(lua_State* state, int index) {
+  if (lua_isnoneornil(state, index)) return std::nullopt;
+  return check_orientation(state, index);
+}
+
+/// {may_overlap = true}, or nothing.
+Onto check_onto(lua_State* state, int index) {
+  if (lua_isnoneornil(state, index)) return Onto::free_place;
+  check_table(state, index);
+  lua_getfield(state, index, "may_overlap");
+  if (lua_type(state, -1) != LUA_TBOOLEAN) luaL_argerror(state, index, "{may_overlap = true} expected");
+  return lua_toboolean(state, -1) ? Onto::others : Onto::free_place;
+}
+
 int move(lua_State* state) {
-  check_count(state, 2, 3, "world.move(entity, position [, orientation])");
+  check_count(state, 2, 4, "world.move(entity, position [, orientation [, {may_overlap = true}]])");
   const std::string_view entity = check_entity(state, 1);
   const auto position = check_vector(state, 2);
-  if (lua_isnoneornil(state, 3)) {
-    director_of(state).move(entity, position);
-  } else {
-    director_of(state).move(entity, position, check_orientation(state, 3));
-  }
+  const auto orientation = optional_orientation(state, 3);
+  director_of(state).move(entity, position, orientation, check_onto(state, 4));
   note_act(state);
   return 0;
+}
+
+/// True, or false and the id of what is there.
+int is_free(lua_State* state) {
+  check_count(state, 2, 3, "world.is_free(entity or xml, position [, orientation])");
+  const std::string_view what = check_entity(state, 1);
+  const auto position = check_vector(state, 2);
+  const auto orientation = optional_orientation(state, 3);
+  char id[256];  // an id has 255 bytes at most
+  std::size_t size = 0;
+  {
+    const auto overlapped = director_of(state).overlapped(what, position, orientation);
+    if (overlapped) size = overlapped->copy(id, sizeof id);
+  }
+  lua_pushboolean(state, size == 0);
+  if (size > 0) lua_pushlstring(state, id, size);
+  return size == 0 ? 1 : 2;
 }
 
 int spawn(lua_State* state) {
@@ -282,6 +312,7 @@ void push_world(lua_State* state, const WorldParts& parts) {
   lua_setfield(state, -2, "entities");
   set_log_functions(state, parts.log);
   set_function<move>(state, "move", &director);
+  set_function<is_free>(state, "is_free", &director);
   set_function<spawn>(state, "spawn", &director);
   set_function<remove>(state, "remove", &director);
   set_function<push>(state, "push", &director);

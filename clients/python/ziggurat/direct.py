@@ -20,6 +20,7 @@ from .errors import Malformed, ProtocolError
 from .joining import Deadline, take_token
 from .metrics import Metrics
 from .session import Session
+from .supervisor import place_request
 from .ticks import Tick
 
 _GROUPS = {name.lower(): number for name, number in v1.Subscription.Group.items() if number}
@@ -125,9 +126,15 @@ class Entity:
 
     # What is asked for is done before the next tick, in the order of asking.
 
-    def move(self, position: Sequence[float], orientation: Sequence[float] = ()) -> None:
-        """It is at rest there [m], joints as assembled. orientation w, x, y, z; none: as it is"""
-        self._world.move(self.id, position, orientation)
+    def move(self, position: Sequence[float], orientation: Sequence[float] = (), *,
+             may_overlap: bool = False) -> None:
+        """It is at rest there [m], joints as assembled. orientation w, x, y, z; none: as it is. Where others are then it
+        is left out (`left_out`), unless it may overlap them: they are pushed apart."""
+        self._world.move(self.id, position, orientation, may_overlap=may_overlap)
+
+    def is_free(self, position: Sequence[float], orientation: Sequence[float] = ()) -> bool:
+        """Whether it would overlap nothing there."""
+        return self._world.is_free(self.id, position, orientation)
 
     def remove(self) -> None:
         self._world.remove(self.id)
@@ -239,8 +246,22 @@ class World(Session):
         """Adds an element, written as in <arena>: it is in `entities` at the next tick."""
         self._act(spawn=v1.SpawnRequest(xml=xml))
 
-    def move(self, entity: str, position: Sequence[float], orientation: Sequence[float] = ()) -> None:
-        self._act(move=v1.MoveRequest(entity=entity, position=position, orientation=orientation))
+    def move(self, entity: str, position: Sequence[float], orientation: Sequence[float] = (), *,
+             may_overlap: bool = False) -> None:
+        self._act(move=v1.MoveRequest(entity=entity, position=position, orientation=orientation,
+                                      may_overlap=may_overlap))
+
+    def overlapped(self, what: str, position: Sequence[float],
+                   orientation: Sequence[float] = ()) -> Optional[str]:
+        """What an entity, or an element as in <arena>, would overlap there now: the first entity's id; None: the place
+        is free. Asks the server and waits for its answer; what was asked for in this tick is not done yet. The floor
+        does not count, nor does the entity itself.
+        what  an id, or an element: of a single body its extents are enough, as in <box size="1,1,1"/>"""
+        return self._ask(is_free=place_request(what, position, orientation)).place.overlapped or None
+
+    def is_free(self, what: str, position: Sequence[float], orientation: Sequence[float] = ()) -> bool:
+        """Whether that is nothing."""
+        return self.overlapped(what, position, orientation) is None
 
     def remove(self, entity: str) -> None:
         self._act(remove=v1.RemoveRequest(entity=entity))

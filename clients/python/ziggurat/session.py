@@ -69,6 +69,8 @@ class Session:
         self.missed = 0  # deadlines
         self.resumed = 0  # lost connections that were replaced
         self.late = 0  # commands that came too late or twice
+        self._last_question = 0
+        self._heard: Optional[v1.ServerMessage] = None  # instead of the answer to a question: the next message
         # Of controllers that robots of this session have; remove those that you have handled.
         self.spawned: List[SpawnedRobot] = []
         try:
@@ -137,7 +139,7 @@ class Session:
         wait = Wait(self._wait_timeout, "observation")
         while True:
             try:
-                message = self._connection.receive(wait)
+                message, self._heard = self._heard or self._connection.receive(wait), None
             except ConnectionLost as loss:
                 self._resume(loss)
                 wait = Wait(self._wait_timeout, "observation")
@@ -156,6 +158,26 @@ class Session:
                                      printable(message.end.message), message.end.tick)
                 raise StopIteration
             self._take(kind, message)
+
+    def _ask(self, **request: Any) -> v1.Response:
+        """Asks while a tick waits for the answer."""
+        if self._owes is None or self._is_over:
+            raise ValueError("the world is asked at a tick, before its answer")
+        self._last_question += 1
+        self._connection.send(v1.ClientMessage(request=v1.Request(id=self._last_question, **request)))
+        wait = Wait(self._wait_timeout, "answer")
+        while True:
+            message = self._connection.receive(wait)
+            kind = message.WhichOneof("message")
+            if kind == "response" and message.response.id == self._last_question:
+                if message.response.HasField("error"):
+                    raise ProtocolError(message.response.error)
+                return message.response
+            if kind == "error":
+                self._take(kind, message)
+            elif kind not in (None, "heartbeat", "response"):
+                self._heard = message
+                raise ConnectionLost(f"{self.endpoint}: the world has gone on without this tick's answer")
 
     def answer(self) -> None:
         """Answers the last tick now; next() then only waits. Several sessions of one program use the wait so."""
@@ -242,6 +264,7 @@ class Session:
 
     def _go_on(self, connection: Connection, welcome: v1.Welcome) -> None:
         """The session has the robots that it had, in their order."""
+        self._heard = None
         self._connection.close(linger=0)
         self._connection = connection
         if [robot.id for robot in welcome.robots] != [robot.id for robot in self.robots]:

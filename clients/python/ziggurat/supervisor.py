@@ -87,6 +87,11 @@ class States:
         raise KeyError(id)
 
 
+def place_request(what: str, position: Sequence[float], orientation: Sequence[float]) -> v1.IsFreeRequest:
+    subject = {"xml" if what.lstrip().startswith("<") else "entity": what}
+    return v1.IsFreeRequest(position=position, orientation=orientation, **subject)
+
+
 def supervise(endpoint: str = "", **options: Any) -> "Supervisor":
     """A Supervisor of the server at this endpoint, otherwise at that of find_server(); options are
     those of the class. Without curve the keys are those of Curve.from_environment()."""
@@ -179,11 +184,23 @@ class Supervisor:
     def remove(self, entity: str) -> int:
         return self._ask(remove=v1.RemoveRequest(entity=entity)).tick
 
-    def move(self, entity: str, position: Sequence[float],
-             orientation: Sequence[float] = ()) -> int:
-        """The entity is at rest with its origin at `position` [m]; orientation w, x, y, z."""
-        return self._ask(move=v1.MoveRequest(entity=entity, position=position,
-                                             orientation=orientation)).tick
+    def move(self, entity: str, position: Sequence[float], orientation: Sequence[float] = (), *,
+             may_overlap: bool = False) -> int:
+        """The entity is at rest with its origin at `position` [m]; orientation w, x, y, z. Where others are that is
+        refused, unless it may overlap them: they are pushed apart."""
+        return self._ask(move=v1.MoveRequest(entity=entity, position=position, orientation=orientation,
+                                             may_overlap=may_overlap)).tick
+
+    def overlapped(self, what: str, position: Sequence[float],
+                   orientation: Sequence[float] = ()) -> Optional[str]:
+        """What an entity, or an element as in <arena>, would overlap there: the first entity's id; None: the place is
+        free. The floor does not count, nor does the entity itself.
+        what  an id, or an element: of a single body its extents are enough, as in <box size="1,1,1"/>"""
+        return self._ask(is_free=place_request(what, position, orientation)).place.overlapped or None
+
+    def is_free(self, what: str, position: Sequence[float], orientation: Sequence[float] = ()) -> bool:
+        """Whether that is nothing."""
+        return self.overlapped(what, position, orientation) is None
 
     def read(self, entities: Union[str, Sequence[str]] = ()) -> States:
         """States of the entities that match these ids or globs; without any, of all."""

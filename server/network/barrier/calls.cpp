@@ -47,7 +47,8 @@ std::size_t bytes_of(const wire::Request& request) {
 
 std::optional<wire::Fault> check_request(const wire::Request& request, wire::Role role) {
   const bool only_reads = request.kind == Kind::status || request.kind == Kind::read;
-  const bool may = role == wire::Role::supervisor || (role == wire::Role::observer && only_reads);
+  const bool may = role == wire::Role::supervisor || (role == wire::Role::observer && only_reads) ||
+                   (role == wire::Role::director && request.kind == Kind::is_free);
   if (request.kind == Kind::none) {
     return make_fault(ErrorCode::bad_value, "request", "The Request names nothing to do.");
   }

@@ -29,13 +29,18 @@ void handle_heartbeat(Barrier& barrier, const Session& session) {
   send(barrier, session.connection);
 }
 
-void handle_request(Barrier& barrier, Session& session) {
+/// True for a question of a director on which the tick waits: that wait bounds how many there are.
+bool handle_request(Barrier& barrier, Session& session) {
   const std::uint64_t id = barrier.inbox.request_id();
   wire::Request request = barrier.inbox.request();
   auto fault = check_request(request, session.role);
   if (!fault) fault = barrier.calls.add(session.id, session.connection, std::move(request));
-  if (fault) return answer_fault(barrier, session.connection, &session, std::move(*fault), id);
+  if (fault) {
+    answer_fault(barrier, session.connection, &session, std::move(*fault), id);
+    return false;
+  }
   session.contact.faults = 0;
+  return session.role == wire::Role::director && session.turn.owes;
 }
 
 std::size_t size_of(const Received& received) { return received.bytes.size() + received.skipped; }
@@ -69,7 +74,7 @@ bool may_send(Barrier& barrier, const std::string& id, Connection& connection, S
   return false;
 }
 
-/// The message in `barrier.inbox`, of a session. True if it is the Command that was owed.
+/// The message in `barrier.inbox`, of a session. True if it is the Command that was owed, or a question before it.
 bool handle(Barrier& barrier, Session& session, InboxKind kind, world::Commands* commands) {
   const bool is_waiting = session.state == SessionState::hello;
   if (kind == InboxKind::leave) {
@@ -82,7 +87,7 @@ bool handle(Barrier& barrier, Session& session, InboxKind kind, world::Commands*
                             is_waiting ? "The world is loading, and the Hello waits for it."
                                        : "This session has had its Hello already."));
   } else if (kind == InboxKind::request) {
-    handle_request(barrier, session);
+    return handle_request(barrier, session);
   } else if (kind == InboxKind::direction) {
     return handle_direction(barrier, session, commands != nullptr);
   } else {

@@ -192,15 +192,16 @@ void SweepsCore::move(Body& body) {
   physics::move(*body.mechanism, to_bullet(base_pose(body)), parts_->dynamics);
 }
 
-std::optional<std::size_t> SweepsCore::overlapped_by(std::span<const PlacedCollider> colliders) const {
+std::optional<std::size_t> SweepsCore::overlapped_by(std::span<const PlacedCollider> colliders,
+                                                     std::size_t except) const {
   std::optional<std::size_t> first;
   const btCollisionObjectArray& objects = parts_->dynamics.getCollisionObjectArray();
   for (int i = 0; i < objects.size(); ++i) {
     const contact::Collider& collider = contact::collider_of(*objects[i]);
-    if (collider.entity == contact::Collider::floor) continue;
+    if (collider.entity == contact::Collider::floor || collider.entity == except) continue;
     if (first && *first <= collider.entity) continue;
     const PlacedCollider other{collider.shape, objects[i]->getWorldTransform()};
-    if (std::ranges::any_of(colliders, [&](const auto& each) { return overlaps(each, other); })) {
+    if (std::ranges::any_of(colliders, [&](const auto& each) { return overlaps(each, other, resting_depth); })) {
       first = collider.entity;
     }
   }

@@ -116,10 +116,10 @@ void NewtonCore::move(Body& body) {
 }
 
 std::optional<std::size_t> NewtonCore::overlapped_by(
-    std::span<const PlacedCollider> colliders) const {
+    std::span<const PlacedCollider> colliders, std::size_t except) const {
   std::optional<std::size_t> first;
   for (const Collider& collider : colliders_.all) {
-    if (!collider.present || (first && *first <= collider.entity)) continue;
+    if (!collider.present || collider.entity == except || (first && *first <= collider.entity)) continue;
     const btVector3 part = to_bullet(system_.trees[collider.entity].position[collider.part]);
     const btScalar reach = collider.radius + collider.in_part.getOrigin().length();
     const auto is_far = [&](const PlacedCollider& each) {
@@ -127,7 +127,7 @@ std::optional<std::size_t> NewtonCore::overlapped_by(
     };
     if (std::ranges::all_of(colliders, is_far)) continue;  // most are, and their poses take longer
     const PlacedCollider other{collider.shape, colliders_.pose(collider, system_)};
-    if (std::ranges::any_of(colliders, [&](const auto& each) { return overlaps(each, other); })) {
+    if (std::ranges::any_of(colliders, [&](const auto& each) { return overlaps(each, other, resting_depth); })) {
       first = collider.entity;
     }
   }

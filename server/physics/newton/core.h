@@ -36,7 +36,8 @@ class NewtonCore {
   void remove(Body& body);
   void take_back(Body& body);
   void move(Body& body);
-  std::optional<std::size_t> overlapped_by(std::span<const PlacedCollider> colliders) const;
+  std::optional<std::size_t> overlapped_by(std::span<const PlacedCollider> colliders,
+                                           std::size_t except) const;
 
   JointIndex joint(std::size_t entity, std::size_t joint) const;
   void add_motor(JointIndex joint, scene::JointMode mode, double max_impulse);

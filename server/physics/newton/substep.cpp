@@ -289,7 +289,12 @@ void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int spl
 void NewtonCore::divide(std::span<Body> bodies, const Share& whole) {
   std::swap(left_, system_.left);
   for (const auto& [parts, first, last] : left_.islands) {
-    choose(chosen_, std::span(left_.trees).subspan(first, last - first), true, system_.trees.size());
+    const std::span<const int> trees = std::span(left_.trees).subspan(first, last - first);
+    if (parts >= many_parts && convergence_.divided++ == 0) {
+      const auto links = [&](int tree) { return system_.trees[tree].links.size(); };
+      convergence_.divided_entity = static_cast<std::size_t>(*std::ranges::max_element(trees, {}, links));
+    }
+    choose(chosen_, trees, true, system_.trees.size());
     take_parts(bodies, whole, parts);
   }
 }

@@ -216,12 +216,50 @@ TEST_F(Devices, PositioningIsPositionAngleAndAxis) {
     assert(orientation.angle == 0 and orientation.axis.z == 1 and orientation.axis.x == 0)
     function step()
       assert(position.x == 1 and position.y == -2 and position.z == 3)
-      assert(math.abs(orientation.angle - 3 * math.pi / 2) < 1e-12)
-      assert(math.abs(orientation.axis.x + 1) < 1e-12 and orientation.axis.z == 0)
+      assert(math.abs(orientation.angle - math.pi / 2) < 1e-12, "the other way round it is less than pi")
+      assert(math.abs(orientation.axis.x - 1) < 1e-12 and orientation.axis.z == 0)
+      assert(orientation.yaw == 0)
     end
   )lua"));
   const double half = 3 * std::acos(-1.0) / 4;
   assign(*seen().mutable_positioning(), {1, -2, 3, std::cos(half), -std::sin(half), 0, 0});
+  EXPECT_RUNS(step());
+}
+
+/// Of a robot that turns on the spot, as a quaternion that is integrated without end has it.
+TEST_F(Devices, PositioningHasOneFormOfEachRotation) {
+  robot_.set_positioning(true);
+  EXPECT_RUNS(start(R"lua(
+    turned = 0
+    function step()
+      turned = turned + 0.1
+      local o = robot.positioning.orientation
+      local yaw = math.atan(math.sin(turned), math.cos(turned))
+      assert(o.angle >= 0 and o.angle <= math.pi, o.angle)
+      assert(math.abs(o.yaw - yaw) < 1e-9, o.yaw)
+      assert(math.abs(o.angle * o.axis.z - yaw) < 1e-9, o.angle)
+    end
+  )lua"));
+  for (int i = 1; i <= 200; ++i) {  // three turns
+    seen().clear_positioning();
+    assign(*seen().mutable_positioning(), {0, 0, 0, std::cos(0.05 * i), 0, 0, std::sin(0.05 * i)});
+    EXPECT_RUNS(step());
+  }
+}
+
+TEST_F(Devices, ThatDoNotWorkYetAreEmptyTables) {
+  for (const char* device : {"light", "footbot_base_ground", "colored_blob_omnidirectional_camera"}) {
+    robot_.add_devices_to_come(device);
+  }
+  EXPECT_RUNS(start(R"lua(
+    robot.colored_blob_omnidirectional_camera.enable()
+    function step()
+      assert(#robot.light == 0 and #robot.base_ground == 0)
+      for _ in pairs(robot.light) do error("it has a reading") end
+      for _ in ipairs(robot.colored_blob_omnidirectional_camera) do error("it has a reading") end
+      assert(robot.ground == nil, "nothing enables it")
+    end
+  )lua"));
   EXPECT_RUNS(step());
 }
 

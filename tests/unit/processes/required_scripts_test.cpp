@@ -36,6 +36,17 @@ struct RequiredScripts : ::testing::Test {
 
 using Names = std::vector<std::string>;
 
+TEST_F(RequiredScripts, ThatAreNotThereAreFound) {
+  added("local a, b = require 'a', require(\"nothing\")\nlocal s = require('string')\n-- require 'comment'\n"
+        "local ok = pcall(require, 'maybe')\nlocal c = require('sub.c') require('parts.' .. a)");
+  write("sub/c.lua", "return require('sub.gone')");
+  std::vector<std::string> missing;
+  for (const MissingModule& each : missing_modules(folder / "main.lua")) {
+    missing.push_back(each.script.filename().string() + ":" + std::to_string(each.line) + ":" + each.name);
+  }
+  EXPECT_EQ(missing, (std::vector<std::string>{"main.lua:1:nothing", "c.lua:1:sub.gone"}));
+}
+
 TEST_F(RequiredScripts, PlainNames) {
   EXPECT_EQ(added("local a = require 'a'"), Names{"a.lua"});
   EXPECT_EQ(added("local c = require(\"sub.c\")"), Names{"sub/c.lua"});

@@ -125,16 +125,34 @@ TEST(Joints, CyclesAndUnconnectedLinksAreReportedOnceEach) {
   const std::string abc = link("base") + link("a") + link("b") + link("c");
   auto found = tree_faults(abc, joint("1", "a", "b") + joint("2", "b", "c") + joint("3", "c", "a"));
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(count_containing(found, "is part of a cycle that never meets the reference link"), 1u);
+  EXPECT_EQ(count_containing(found, "is part of a loop that never meets the reference link"), 1u);
   found = tree_faults(abc, joint("1", "a", "b") + joint("2", "b", "c"));
   ASSERT_EQ(found.size(), 1u);  // only the first unconnected link, not its children
   EXPECT_EQ(count_containing(found, "link \"a\" is not connected"), 1u);
   found = tree_faults(abc, joint("1", "base", "a") + joint("2", "a", "b") + joint("3", "b", "c") +
                                joint("4", "c", "base"));
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(count_containing(found, "has the reference link \"base\" as its child"), 1u);
+  EXPECT_EQ(count_containing(found, "joint \"4\" has the reference link \"base\" as its child; links form a tree, in "
+                                    "which no loop of joints can be closed: leave this joint out"),
+            1u);
   found = tree_faults(link("base") + link("a"), joint("1", "a", "a"));
-  EXPECT_EQ(count_containing(found, "cycle"), 1u);
+  EXPECT_EQ(count_containing(found, "loop"), 1u);
+}
+
+/// Four links in a ring, closed by the last joint from either end, and a joint the wrong way round.
+TEST(Joints, ALoopIsToldWhatToDoInsteadAndAReversedJointToBeSwapped) {
+  const std::string ring = link("base") + link("a") + link("b") + link("c");
+  const std::string open = joint("1", "base", "a") + joint("2", "a", "b") + joint("3", "base", "c");
+  for (const auto& last : {joint("4", "c", "b"), joint("4", "b", "c")}) {
+    const auto found = tree_faults(ring, open + last);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(count_containing(found, "no loop of joints can be closed: leave this joint out"), 1u) << found[0];
+  }
+  EXPECT_TRUE(tree_faults(ring, open).empty());  // the advice
+  auto found = tree_faults(link("base") + link("a"), joint("1", "a", "base"));
+  EXPECT_EQ(count_containing(found, "as its child; swap its parent and child"), 1u);
+  found = tree_faults(ring, joint("1", "base", "a") + joint("2", "a", "b") + joint("3", "c", "b"));
+  EXPECT_EQ(count_containing(found, "a second parent, after joint \"2\"; swap its parent and child"), 1u);
 }
 
 TEST(Links, UnnamedOnesAreNumbered) {

@@ -37,6 +37,16 @@ TEST(Framework, PartsWithoutEffectGiveNotices) {
   EXPECT_EQ(count_containing(notices(result), "7:1: <visualization> has no effect"), 1u);
 }
 
+TEST(Framework, ALengthBetweenTwoTicksIsTold) {
+  SceneText text;
+  text.framework = R"(<framework><experiment ticks_per_second="10" length="1.25"/></framework>)";
+  EXPECT_EQ(count_containing(notices(text.read()), "2:50: length=\"1.25\" of <experiment> is 12.5 ticks of 1/10 s: the run "
+                                                   "has 12, and ends after 1.2 s"),
+            1u) << all_problems(text.read());
+  text.framework = R"(<framework><experiment ticks_per_second="100" length="0.29"/></framework>)";
+  EXPECT_TRUE(notices(text.read()).empty());  // 28.999999999999996
+}
+
 TEST(Framework, TheFirstOfTwoIsUsed) {
   SceneText text;
   text.rest = R"(<framework><experiment ticks_per_second="77"/></framework>)";
@@ -359,9 +369,14 @@ TEST(Controllers, EveryNameOfTheDialectIsKnown) {
   text.media = R"(<media><led id="leds"/><range_and_bearing id="rab"/></media>)";
   const ReadResult result = text.read();
   EXPECT_TRUE(result.ok()) << all_problems(result);
-  for (const char* subject : {": light sensors are", "quadrotor_speed devices are"}) {
-    EXPECT_EQ(count_containing(notices(result), subject), 1u) << subject;
+  const auto warnings = texts_of(result, Problem::Severity::warning);
+  for (const char* subject : {": light sensors do not work yet: <light> is checked, and its table in Lua is empty",
+                              "quadrotor_speed devices do not work yet"}) {
+    EXPECT_EQ(count_containing(warnings, subject), 1u) << subject << all_problems(result);
   }
+  const auto& to_come = result.scene.controllers.at(0).devices.to_come;
+  EXPECT_EQ(to_come.size(), 13u);  // of 32, and the distance scanner twice
+  EXPECT_EQ(std::ranges::count(to_come, "footbot_light"), 1);
 }
 
 SceneText with_imus(const std::string& imus) {

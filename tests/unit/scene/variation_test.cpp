@@ -57,7 +57,7 @@ TEST(Set, AddsAnAttributeThatTheReaderKnows) {
 TEST(Set, RefusesAnAttributeThatTheReaderDoesNotKnow) {
   EXPECT_EQ(only_fault(SceneText{}.read(set({"physics_engines/dynamics3d/@iteratons=7"}))),
             "test.argos:5:18: <dynamics3d> has an unknown attribute iteratons=\"7\"; did you mean "
-            "\"iterations\"?; set by --set 'physics_engines/dynamics3d/@iteratons=7'");
+            "\"iterations\"?; set by --set 'physics_engines/dynamics3d/@iteratons=7' (--lenient ignores it)");
 }
 
 TEST(Set, RefusesAValueThatTheReaderRefuses) {
@@ -96,6 +96,15 @@ TEST(Set, SaysWhichStepIsNotThere) {
     EXPECT_NE(only_fault(boxes().read(set({(std::string(path) + "=7").c_str()}))).find("no \"tower\""),
               std::string::npos) << path;
   }
+}
+
+TEST(Set, SaysThatAttributesBeginWithAt) {
+  EXPECT_EQ(only_fault(boxes().read(set({"arena/box[@id='b']/mass=7"}))),
+            "test.argos: --set 'arena/box[@id='b']/mass=7': the path matches nothing: \"mass\" is an attribute, and its "
+            "name begins with @: write @mass");
+  EXPECT_EQ(only_fault(boxes().read(set({"physics_engines/dynamics3d/iterations=7"}))),
+            "test.argos: --set 'physics_engines/dynamics3d/iterations=7': the path matches nothing: \"iterations\" is no "
+            "element, and the path names no attribute: let it end with /@NAME");
 }
 
 TEST(Set, RefusesWhatIsNoPathToAttributes) {

@@ -8,6 +8,7 @@ namespace ziggurat::simulation {
 namespace {
 
 using testing::ground;
+using testing::robot;
 using testing::SmallScene;
 
 std::string body(const std::string& id, const std::string& position, bool movable = true,
@@ -87,6 +88,46 @@ TEST(Doubts, OfJointsThatAreFarAway) {
   };
   expect_one(found(arm("91")), "prototype \"p\" has joint \"j\" 91 m away from its link, 10.1 times the arena");
   EXPECT_TRUE(found(arm("0.1")).empty());
+}
+
+TEST(Doubts, OfBodiesThatFloatWithoutGravity) {
+  expect_one(found(body("a", "0,0,1"), "<floor/>"),
+             "box \"a\" floats in the air: the scene has no gravity; write <gravity/> into <dynamics3d>, or <gravity g=\"0\"/>");
+  EXPECT_TRUE(found(body("a", "0,0,1"), "<floor/><gravity g=\"0\"/>").empty()) << "the scene says so";
+  EXPECT_TRUE(found(body("a", "0,0,0") + body("b", "0,0,1"), "<floor/>").empty()) << "it stands";
+  EXPECT_TRUE(found(body("a", "0,0,1", false), "<floor/>").empty()) << "a wall";
+}
+
+std::string slider(const std::string& limit, const std::string& size) {
+  return R"(<prototype id="p" movable="true"><body position="0,0,0"/><links ref="a"><link id="a" geometry="box" size=")" + size +
+         R"(" mass="1"/><link id="b" geometry="box" size=".01,.01,.02" mass="1" position="0,0,.1"/></links><joints>)"
+         R"(<joint id="j" type="prismatic" axis="0,0,1" limit=")" + limit +
+         R"("><parent link="a" position="0,0,.1"/><child link="b"/></joint></joints></prototype>)";
+}
+
+TEST(Doubts, OfLimitsAndLinksFarBeyondTheRobot) {
+  expect_one(found(slider("0:100", ".1,.1,.1")), "has joint \"j\" with a limit of 100 m, 833 times the length of all of its links");
+  EXPECT_TRUE(found(slider("0:1", ".1,.1,.1")).empty());
+  expect_one(found(slider("0:1", "5,.1,.1")), "has link \"a\" of 5 m, 250 times its next longest");
+  EXPECT_TRUE(found(slider("0:1", "3,.1,.1")).empty());
+}
+
+TEST(Doubts, PacketsOfOtherSizesAreANotice) {
+  const auto talker = [](const std::string& id, const std::string& x, const std::string& medium, const std::string& size) {
+    return robot(id, x + ",0,0", R"(<range_and_bearing medium=")" + medium + R"(" anchor="base" data_size=")" + size + R"("/>)");
+  };
+  const auto notices = [](const std::string& arena) {
+    SmallScene small{R"(<range_and_bearing implementation="default"/>)", "", arena, ground};
+    const scene::Scene scene = small.read();
+    return doubts(scene, Simulation(scene, {1}));
+  };
+  const auto found = notices(talker("a", "0", "rab", "10") + talker("b", "1", "rab", "2") + talker("c", "2", "rab", "2"));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].severity, scene::Problem::Severity::notice);
+  EXPECT_EQ(found[0].text,
+            "prototype \"b\" sends 2 bytes by range and bearing, and \"a\" on the same medium 10: they never hear each "
+            "other; give them the same size (data_size, of robots rab_data_size); and 1 more like this");
+  EXPECT_TRUE(notices(talker("a", "0", "rab", "10") + talker("b", "1", "through", "2")).empty());
 }
 
 }  // namespace

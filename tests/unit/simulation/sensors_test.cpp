@@ -10,6 +10,7 @@ namespace {
 
 using testing::robot;
 using testing::SmallScene;
+using testing::wheels;
 
 std::string wall(const std::string& position) {
   return R"(<box id="wall" size="0.1,4,4" movable="false"><body position=")" + position +
@@ -177,6 +178,22 @@ TEST(Positioning, IsThePoseOfTheOriginWithNoiseInItsRange) {
       other.observations().positioning.at(0).position - math::Vector3(1, 2, 3);
   EXPECT_GE(offset.minCoeff(), 0.1 - 1e-12);
   EXPECT_LE(offset.maxCoeff(), 0.2 + 1e-12);
+}
+
+TEST(Positioning, OfATurningRobotIsTheQuaternionThatTurnsByLessThanPi) {
+  const std::string turning = R"(<foot-bot id="f"><body/><controller config="c"/></foot-bot>)";
+  Simulation simulation =
+      SmallScene{wheels, R"(<positioning implementation="default"/>)", turning, testing::ground}.run();
+  simulation.commands().wheels.assign(1, {-0.1, 0.1});  // 0.14 m apart: 1.43 rad/s
+  bool is_over_half = false;
+  for (int tick = 0; tick < 100; ++tick) {
+    simulation.step();
+    const math::Quaternion& q = simulation.observations().positioning.at(0).orientation;
+    EXPECT_GE(q.w(), 0);
+    EXPECT_TRUE(q.isApprox(math::canonical(simulation.state().origins[0].orientation)));
+    is_over_half |= simulation.state().origins[0].orientation.w() < 0;
+  }
+  EXPECT_TRUE(is_over_half);
 }
 
 TEST(Battery, LosesChargeWithTime) {

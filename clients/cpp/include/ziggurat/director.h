@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "ziggurat/entity.h"
+#include "ziggurat/place.h"
 #include "ziggurat/session.h"
 
 namespace ziggurat {
@@ -91,9 +92,23 @@ class Director {
   // --- What is done before the next tick: at most 10 000 acts, with texts of 2 MiB together, else std::length_error.
   // --- Numbers that are not finite are std::invalid_argument.
 
-  /// The entity is at rest at the pose, its joints in their initial positions; no orientation = the present one.
+  /// The entity is at rest at the pose, its joints in their initial positions; no orientation = the present one. Where
+  /// others are then it is left out (take_warnings), unless it may overlap them: they are pushed apart.
   void move(std::string_view entity, const std::array<double, 3>& position,
-            const std::optional<std::array<double, 4>>& orientation = std::nullopt);
+            const std::optional<std::array<double, 4>>& orientation = std::nullopt, Onto onto = Onto::free_place);
+  /// What an entity, or an element as in <arena>, would overlap now at a pose of its origin: the first entity's id, or
+  /// nothing where the place is free. Asks the server and waits for its answer; acts that were asked for since the last
+  /// next() are not done yet. The floor does not count, nor does the entity itself.
+  /// @param what  an id, or an element, which begins with '<': of a single body its extents are enough, as in
+  ///              <box size="1,1,1"/>
+  /// @throws ConnectionError, ProtocolError for what the server refuses; std::logic_error between two ticks
+  std::optional<std::string> overlapped(std::string_view what, const std::array<double, 3>& position,
+                                        const std::optional<std::array<double, 4>>& orientation = std::nullopt);
+  /// Whether that is nothing.
+  bool is_free(std::string_view what, const std::array<double, 3>& position,
+               const std::optional<std::array<double, 4>>& orientation = std::nullopt) {
+    return !overlapped(what, position, orientation);
+  }
   /// @param xml  one element, as in <arena>
   void spawn(std::string_view xml);
   void remove(std::string_view entity);

@@ -66,6 +66,8 @@ class Robot : public Sensors {
   }
   Wheels* wheels() noexcept { return wheels_ ? &*wheels_ : nullptr; }
   Turret* turret() noexcept { return turret_ ? &*turret_ : nullptr; }
+  /// Elements of devices that the scene gives it and that do not work yet, such as `light`.
+  const std::vector<std::string>& devices_to_come() const noexcept { return devices_to_come_; }
 
   /// Adds a line to the server's log, without a line feed at its end; sent with the answer to this
   /// tick. `log` goes to the server's standard output, `log_error` to its standard error.
@@ -120,6 +122,7 @@ class Robot : public Sensors {
   std::optional<RangeAndBearing> range_and_bearing_;
   std::optional<Wheels> wheels_;
   std::optional<Turret> turret_;
+  std::vector<std::string> devices_to_come_;
   std::uint32_t position_ = 0;  // in the session
   bool failed_ = false;
   bool is_gone_ = false;

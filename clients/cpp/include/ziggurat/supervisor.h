@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "ziggurat/place.h"
+
 namespace ziggurat {
 
 struct SupervisorOptions {
@@ -130,9 +132,21 @@ class Supervisor {
   std::uint64_t spawn(std::string_view xml);
   std::uint64_t remove(std::string_view entity);
   /// The entity is at rest at the pose, its joints in their initial positions; no orientation = the
-  /// present one.
+  /// present one. Where others are that is refused, unless it may overlap them: they are pushed apart.
   std::uint64_t move(std::string_view entity, const std::array<double, 3>& position,
-                     const std::optional<std::array<double, 4>>& orientation = std::nullopt);
+                     const std::optional<std::array<double, 4>>& orientation = std::nullopt,
+                     Onto onto = Onto::free_place);
+  /// What an entity, or an element as in <arena>, would overlap at a pose of its origin: the first entity's id, or
+  /// nothing where the place is free. The floor does not count, nor does the entity itself.
+  /// @param what  an id, or an element, which begins with '<': of a single body its extents are enough, as in
+  ///              <box size="1,1,1"/>
+  std::optional<std::string> overlapped(std::string_view what, const std::array<double, 3>& position,
+                                        const std::optional<std::array<double, 4>>& orientation = std::nullopt);
+  /// Whether that is nothing.
+  bool is_free(std::string_view what, const std::array<double, 3>& position,
+               const std::optional<std::array<double, 4>>& orientation = std::nullopt) {
+    return !overlapped(what, position, orientation);
+  }
   /// @param entities  ids or globs; none = all
   WorldStates read(std::span<const std::string> entities = {});
   /// Ends the run, as Ctrl-C does. With a reason that was planned: the run's exit code is 0.

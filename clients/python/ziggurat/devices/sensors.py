@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, Dict, NamedTuple, Optional, Sequence
 
@@ -17,7 +18,13 @@ class Pose(NamedTuple):
     """Of the robot's origin in the world."""
 
     position: Vector  # [m]
-    orientation: Quaternion
+    orientation: Quaternion  # w, x, y, z with w >= 0
+
+    @property
+    def yaw(self) -> float:
+        """The heading: from the world's x axis to the robot's, seen from above, in (-π, π] [rad]."""
+        w, x, y, z = self.orientation
+        return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
 
 class Battery(NamedTuple):

@@ -82,7 +82,7 @@ export class Pointer {
     if (this.isSending && !isLast) return;
     this.isSending = true;
     grab.sent = performance.now();
-    void this.app.call("/move", { entity: grab.id, position: grab.place }).finally(() => { this.isSending = false; });
+    void this.app.call("/move", { entity: grab.id, position: grab.place, may_overlap: true }).finally(() => { this.isSending = false; });
   }
 
   private release(event: PointerEvent): void {

@@ -79,6 +79,14 @@ SAID["long-reasons-cut"] = in_kind("request", lambda _, request: setattr(
     request.shutdown, "reason", request.shutdown.reason[:1024]) if request.HasField("shutdown") else None)
 
 
+for _name, _may in (("moves-onto-others", True), ("moves-onto-nothing", False)):
+    SAID[_name] = in_kind("request", lambda _, request, may=_may: setattr(request.move, "may_overlap", may)
+                          if request.HasField("move") else None)
+for _name, _there in (("places-never-free", "wall"), ("places-always-free", "")):
+    TOLD[_name] = in_kind("response", lambda _, response, there=_there: setattr(response.place, "overlapped", there)
+                          if response.HasField("place") else None)
+
+
 def done_without(kind):
     """A request is answered as done, and is not done."""
     def bend(connection, message):

@@ -84,6 +84,18 @@ TEST_F(Errors, OfWhatTheRobotLacksNameItAndWhatItHas) {
   expect_contains(start("robot.params.gain.x = 1"), " has no robot.params.gain; robot.params has: script, speed (in its chunk");
 }
 
+TEST_F(Errors, OfAComparisonNameTheGlobalThatIsNil) {
+  expect_contains(start("if count > 3 then log('many') end"),
+                  "attempt to compare number with nil: the last global that was read, 'count', is nil (in its chunk");
+  expect_contains(start("for i = 1, most do end"), "the last global that was read, 'most', is nil");
+  expect_contains(start("robot.joints.both.set_target(speed)"), "the last global that was read, 'speed', is nil");
+  const Failure named = start("local x = absent; missing()");
+  expect_contains(named, "attempt to call a nil value (global 'missing') (in its chunk");
+  ASSERT_EQ(start("local absent = earlier function step() local a, b = nil, 1 return a < b end"), std::nullopt);
+  const Failure other = controller().step(1);
+  EXPECT_EQ(other->find("earlier"), std::string::npos) << *other << ": that was read by another call";
+}
+
 // It ended the process, and with it the scripts of all its robots, as a library function that does not end.
 TEST_F(Errors, OfAScriptWithHugeTablesComeAtOnce) {
   const std::string huge =

@@ -122,6 +122,18 @@ TEST_F(Sandbox, EmptiesNoStack) {
   EXPECT_EQ(value("tostring(pcall(debug.getinfo, print, '>S'))"), "false");
 }
 
+TEST_F(Sandbox, AnErrorAboutTheNilOfIoOpenSaysWhyThereIsNone) {
+  const std::string opens = "local f = io.open('" + (folder() / "secret.txt").string() + "') ";
+  const Failure failure = start(opens + "f:read('a')");
+  ASSERT_TRUE(failure);
+  EXPECT_NE(failure->find("attempt to index a nil value (local 'f'): io.open has returned nil: '"), std::string::npos) << *failure;
+  EXPECT_NE(failure->find("is not a file that scripts may use this way"), std::string::npos) << *failure;
+  const Failure missing = start("local f = io.open('" + (folder() / "inside/none.txt").string() + "') f:read('a')");
+  EXPECT_NE(missing->find("none.txt: No such file or directory"), std::string::npos) << *missing;
+  const Failure other = start(opens + "f = io.open('" + (folder() / "inside/data.txt").string() + "') local x x.y = 1");
+  EXPECT_EQ(other->find("io.open"), std::string::npos) << *other;
+}
+
 TEST_F(Sandbox, OpensNoFileOutsideItsFolders) {
   for (const char* name :
        {"OUT .. 'secret.txt'", "'/etc/passwd'", "IN .. '../secret.txt'", "IN .. 'link.txt'",
