@@ -26,6 +26,6 @@ constexpr double resting_depth = 1e-4;
 bool overlaps(const PlacedCollider& a, const PlacedCollider& b, double depth);
 
 /// No entity.
-constexpr std::size_t nobody = static_cast<std::size_t>(-1);
+constexpr std::size_t no_entity = static_cast<std::size_t>(-1);
 
 }  // namespace ziggurat::physics

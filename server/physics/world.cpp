@@ -102,7 +102,7 @@ void World::remove(std::size_t entity) {
 
 std::optional<std::size_t> World::overlapped_by(const scene::Entity& entity, const math::Pose& pose,
                                                 std::optional<std::size_t> except) const {
-  return parts_->core.overlapped_by(placed_colliders(entity, pose), except.value_or(nobody));
+  return parts_->core.overlapped_by(placed_colliders(entity, pose), except.value_or(no_entity));
 }
 
 JointIndex World::joint(std::size_t entity, std::size_t joint) const {

@@ -22,22 +22,14 @@ Randomize = Callable[[Supervisor, Any], None]
 
 
 def all_readings(robot: Robot) -> List[float]:
-    """Of the robot's sensors that have a fixed number of values: joint sensors, proximity, pose (7), available charge,
-    wheels (4), turret, IMUs (6 each), contact sensors (5 each). Messages, packets and what cameras see are not in it."""
+    """Of the robot's sensors that have a fixed number of values: joint sensors, Robot.sensed, wheels (4), turret.
+    Messages, packets and what cameras see are not in it."""
     values = [reading for joint in robot.joints for reading in joint.readings]
-    values.extend(robot.proximity)
-    if robot.pose is not None:
-        values.extend((*robot.pose.position, *robot.pose.orientation))
-    if robot.battery is not None:
-        values.append(robot.battery.available_charge)
+    values.extend(robot.sensed)
     if robot.wheels is not None and robot.wheels.measures:
         values.extend((*robot.wheels.velocity, *robot.wheels.distance))
     if robot.turret is not None and robot.turret.measures:
         values.append(robot.turret.rotation)
-    for imu in robot.imus:
-        values.extend((*imu.acceleration, *imu.angular_velocity))
-    for sensor in robot.contact_sensors:
-        values.extend((float(sensor.touches), *sensor.force, sensor.strength))
     return values
 
 

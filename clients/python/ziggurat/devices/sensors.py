@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Dict, NamedTuple, Optional, Sequence
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 
 from .. import protocol_pb2 as v1
 from ..exchange import Exchange, Readings
@@ -134,3 +134,18 @@ class Sensors:
         """One reading per proximity sensor: 0 (nothing) … 1 (contact)."""
         readings = self._exchange.seen.proximity
         return [readings[place] if readings else 0.0 for place in self._proximity]
+
+    @property
+    def sensed(self) -> List[float]:
+        """All readings here, one after the other: proximity, pose (7), available charge, IMUs (6 each), contact
+        sensors (5 each)."""
+        values = list(self.proximity)
+        if self.pose is not None:
+            values.extend((*self.pose.position, *self.pose.orientation))
+        if self.battery is not None:
+            values.append(self.battery.available_charge)
+        for imu in self.imus:
+            values.extend((*imu.acceleration, *imu.angular_velocity))
+        for sensor in self.contact_sensors:
+            values.extend((float(sensor.touches), *sensor.force, sensor.strength))
+        return values
