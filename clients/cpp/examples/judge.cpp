@@ -70,8 +70,9 @@ int main() try {
       since.reset();
       continue;
     }
-    if (!since) since = director.time();
-    if (director.time() - *since < rest) continue;
+    const std::chrono::nanoseconds began = since.value_or(director.time());
+    since = began;
+    if (director.time() - began < rest) continue;
     char text[200];
     std::snprintf(text, sizeof text, "%s stands on %s, %.2f mm aside", stack->upper->id().c_str(),
                   stack->lower->id().c_str(), 1000 * stack->aside);

@@ -37,8 +37,8 @@ void Mechanism::motions(std::span<Motion> out) const {
   }
   // Bullet's tree velocities come in each link's own frame, the base first.
   const int count = multi->getNumLinks() + 1;
-  omega_.resize(count);
-  velocity_.resize(count);
+  omega_.resize(count, btVector3(0, 0, 0));
+  velocity_.resize(count, btVector3(0, 0, 0));
   multi->compTreeLinkVelocities(&omega_[0], &velocity_[0]);
   for (std::size_t i = 0; i < out.size(); ++i) {
     const btMatrix3x3 basis = transform(i).getBasis();
