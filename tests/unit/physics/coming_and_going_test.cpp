@@ -100,14 +100,18 @@ TEST(AddEntity, OverlapIsTestedAtPresentPoses) {
   World world(with_gravity(9.8), 0.01);
   world.add(box_at({0, 0, 0}, false));
   world.add(box_at({1, 0, 5}));
-  EXPECT_EQ(world.overlapped_by(box_at({0.09, 0, 0})), 0u);
-  EXPECT_EQ(world.overlapped_by(box_at({0.1, 0, 0})), std::nullopt) << "they touch";
-  EXPECT_EQ(world.overlapped_by(box_at({1, 0, 5})), 1u);
+  const auto overlapped_at = [&](const Vector3& place) {
+    const scene::Entity box = box_at(place);
+    return world.overlapped_by(box, box.pose);
+  };
+  EXPECT_EQ(overlapped_at({0.09, 0, 0}), 0u);
+  EXPECT_EQ(overlapped_at({0.1, 0, 0}), std::nullopt) << "they touch";
+  EXPECT_EQ(overlapped_at({1, 0, 5}), 1u);
   for (int i = 0; i < 100; ++i) world.step();
-  EXPECT_EQ(world.overlapped_by(box_at({1, 0, 5})), std::nullopt);
-  EXPECT_EQ(world.overlapped_by(box_at(position(world, 1))), 1u);
+  EXPECT_EQ(overlapped_at({1, 0, 5}), std::nullopt);
+  EXPECT_EQ(overlapped_at(position(world, 1)), 1u);
   world.remove(0);
-  EXPECT_EQ(world.overlapped_by(box_at({0, 0, 0})), std::nullopt);
+  EXPECT_EQ(overlapped_at({0, 0, 0}), std::nullopt);
 }
 
 TEST(RemoveEntity, WakesAllThatRestsOnItAfterOthersCameAndWent) {
