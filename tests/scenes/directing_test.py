@@ -352,11 +352,11 @@ class Acts(Directing):
         self.begin("--lease", "30")
         lost = self.direct()
         next(lost)
-        os.environ.update(ZIGGURAT_ENDPOINT=self.endpoint, ZIGGURAT_SESSION_TOKEN=lost.token.hex())
-        self.addCleanup(os.environ.pop, "ZIGGURAT_ENDPOINT")
         lost.abandon()
         with self.assertRaisesRegex(ziggurat.Refused, "ROBOT_TAKEN"):
             ziggurat.direct("judge", self.endpoint)
+        os.environ.update(ZIGGURAT_ENDPOINT=self.endpoint, ZIGGURAT_SESSION_TOKEN=lost.token.hex())
+        self.addCleanup(os.environ.pop, "ZIGGURAT_ENDPOINT")
         world = ziggurat.direct("judge", tell=EVERYTHING, wait_timeout=LIMIT)
         tick = next(world)
         self.assertEqual((tick.number, tick.event), (0, ziggurat.Event.RESUME))

@@ -57,7 +57,7 @@ class Both(SceneTest):
 
     def test_two_of_the_same_are_refused(self):
         self.change('mode="position" />', 'mode="velocity" />')
-        self.assert_is_sentence(self.run_scene(code=FAULT), r'arms.argos:\d+:\d+: .*id "shoulder" is listed twice, first')
+        self.assert_is_sentence(self.run_scene(code=FAULT), r'arms.argos:\d+:\d+: .*id="shoulder" of <joint> is listed twice, first')
 
 
 if __name__ == "__main__":

@@ -116,6 +116,7 @@ class Session:
 
     @property
     def seed(self) -> int:
+        """The run's: of its start, or of its last reset."""
         return self.welcome.seed
 
     def robot(self, id: str) -> Robot:
@@ -191,6 +192,7 @@ class Session:
     def _take(self, kind: Optional[str], message: v1.ServerMessage) -> None:
         """Handles messages other than ticks and the end; ignores unknown kinds."""
         if kind == "reset":
+            self.welcome.seed = message.reset.seed
             self._begin_anew()
         elif kind == "restored":
             self._begin_anew()

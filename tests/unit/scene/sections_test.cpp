@@ -14,12 +14,12 @@ TEST(Framework, DefaultsAndValues) {
   SceneText text;
   EXPECT_EQ(text.read().scene.experiment.length, 0.0);
   text.framework =
-      R"(<framework><experiment ticks_per_second=" 5 " length="8.5" random_seed="124" real_time="true"/></framework>)";
+      R"(<framework><experiment ticks_per_second=" 5 " length="8.4" random_seed="124" real_time="true"/></framework>)";
   const ReadResult result = text.read();
   ASSERT_TRUE(result.problems.empty()) << all_problems(result);
   const Experiment& experiment = result.scene.experiment;
   EXPECT_EQ(experiment.ticks_per_second, 5u);
-  EXPECT_EQ(experiment.length, 8.5);
+  EXPECT_EQ(experiment.length, 8.4);
   EXPECT_EQ(experiment.random_seed, 124u);
   EXPECT_TRUE(experiment.real_time);
 }
@@ -40,7 +40,7 @@ TEST(Framework, PartsWithoutEffectGiveNotices) {
 TEST(Framework, ALengthBetweenTwoTicksIsTold) {
   SceneText text;
   text.framework = R"(<framework><experiment ticks_per_second="10" length="1.25"/></framework>)";
-  EXPECT_EQ(count_containing(notices(text.read()), "2:50: length=\"1.25\" of <experiment> is 12.5 ticks of 1/10 s: the run "
+  EXPECT_EQ(count_containing(notices(text.read()), "2:54: length=\"1.25\" of <experiment> is 12.5 ticks of 1/10 s: the run "
                                                    "has 12, and ends after 1.2 s"),
             1u) << all_problems(text.read());
   text.framework = R"(<framework><experiment ticks_per_second="100" length="0.29"/></framework>)";

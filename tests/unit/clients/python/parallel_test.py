@@ -73,8 +73,8 @@ class Parallel(SessionCase):
             env = ziggurat.parallel_env(endpoint=self.server.endpoint)
             self.addCleanup(env.close)
             observations, _ = env.reset()
-            self.assertEqual(observations["one"], [1, 2, 3, 4, 0, 1, 2, 3, 4, 5, 6, 0.5, 5, 6, 7, 8, 9,
-                                                   0, 1, 2, 3, 4, 5, 1, 2, 3, 4, 5])
+            self.assertEqual(observations["one"], [1, 2, 3, 4, 0, 1, 2, 3, 4, 5, 6, 0.5,
+                                                   0, 1, 2, 3, 4, 5, 1, 2, 3, 4, 5, 5, 6, 7, 8, 9])
 
         self.play(part, client)
 
