@@ -35,7 +35,7 @@ constexpr Row entity_rows[] = {
      R"(<box id="a" size="1,1,1" movable="true" mass="-1"><body/></box>)",
      R"(mass="-1" of <box> is negative)"},
     {"Zero_size", Part::entity, R"(<box id="a" size="1,0,1" movable="false"><body/></box>)",
-     R"(component 2, "0", is not positive)"},
+     R"(component 2, "0", is below 1e-6 m, the least length of a scene)"},
     {"E16", Part::entity, R"(<box id="a" size="1,1,1" movable="false"/>)",
      "5:1: <box> lacks the element <body>"},
     {"E24_position", Part::entity,
@@ -65,7 +65,7 @@ constexpr Row entity_rows[] = {
      R"(source="loop_functions" of <floor> is not supported: libraries are not loaded into the server; write )"
      R"(source="image" and a path, or run with --lenient, which makes the floor white)"},
     {"No_extent", Part::entity, R"(<sphere id="a" radius="0" movable="false"><body/></sphere>)",
-     R"(5:23: radius="0" of <sphere> is below 1e-6 m, the least length of a scene: what has no extent has no )"
+     R"(5:24: radius="0" of <sphere> is below 1e-6 m, the least length of a scene: what has no extent has no )"
      "inertia and touches nothing; write 1e-6 to 1e6 m"},
     {"Too_light", Part::entity, R"(<sphere id="a" radius="1" mass="1e-12" movable="true"><body/></sphere>)",
      R"(mass="1e-12" of <sphere> is below 1e-9 kg, the least mass of a body: contacts of bodies whose masses are )"

@@ -43,10 +43,12 @@ class HeldUp(unittest.TestCase):
         session = self.connect()
         with ziggurat.direct("judge", self.server.endpoint) as judge:
             next(judge)
-            thread = threading.Thread(target=lambda: list(session), daemon=True)
+            thread = threading.Thread(target=lambda: (next(session), next(session)), daemon=True)
             thread.start()
             self.refused(self.world.pause)
             self.assertEqual(next(judge).number, 1)
+            thread.join(60)
+            self.assertFalse(thread.is_alive())
 
     def test_what_does_not_wait_is_done(self):
         session = self.connect()
