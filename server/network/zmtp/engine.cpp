@@ -48,10 +48,9 @@ Taken Engine::take_greeting(Bytes input, std::string& reply) {
     return fail(version.empty() ? "what it sends is not ZMTP 3, ZeroMQ's wire protocol"
                                 : "it speaks ZMTP " + version + ", and ZMTP 3 is needed (libzmq 4)");
   }
-  if (input.size() >= first_of_greeting && !std::exchange(has_greeted_, true)) {
-    reply += zmtp::greeting(mechanism_for(keys_), true).substr(first_of_greeting);
-  }
   if (found == Greeting::incomplete) return {Step::incomplete, greeting_size, false, {}};
+  // The rest follows the client's whole greeting: a client that breaks off at our mechanism has told its own.
+  reply += zmtp::greeting(mechanism_for(keys_), true).substr(first_of_greeting);
   const std::string mechanism(mechanism_of(input));
   if (mechanism == mechanism_for(keys_)) {
     stage_ = curve_ ? Stage::hello : Stage::ready;

@@ -70,7 +70,6 @@ class Engine {
   const CurveKeys* keys_;
   std::optional<CurvePeer> curve_;
   std::string refusal_;
-  bool has_greeted_ = false;  // with the whole greeting
 };
 
 }  // namespace ziggurat::network::zmtp
