@@ -28,7 +28,7 @@ class Driven {
   std::thread::id thread_;  // none: no thread has waited for its ticks yet
 };
 
-/// Of the sessions with this server that the calling thread drives: an id of each. One that no thread has begun yet may be
+/// Ids, one of each session with this server that the calling thread drives. One that no thread has begun yet may be
 /// that of a thread which is just starting: it has a second, and is the caller's then.
 std::vector<std::string> driven_here(const std::string& endpoint);
 

@@ -96,7 +96,7 @@ class Director {
   /// others are then it is left out (take_warnings), unless it may overlap them: they are pushed apart.
   void move(std::string_view entity, const std::array<double, 3>& position,
             const std::optional<std::array<double, 4>>& orientation = std::nullopt, Onto onto = Onto::free_place);
-  /// What an entity, or an element as in <arena>, would overlap now at a pose of its origin: the first entity's id, or
+  /// The overlap of an entity, or an element as in <arena>, now at a pose of its origin: the first other entity's id, or
   /// nothing where the place is free. Asks the server and waits for its answer; acts that were asked for since the last
   /// next() are not done yet. The floor does not count, nor does the entity itself.
   /// @param what  an id, or an element, which begins with '<': of a single body its extents are enough, as in

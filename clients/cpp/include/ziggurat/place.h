@@ -1,9 +1,9 @@
 #pragma once
-// Where entities are moved to.
+// Places that entities are moved to.
 
 namespace ziggurat {
 
-/// What may be at the place that an entity is moved to.
+/// Occupants that the place of a moved entity may have.
 enum class Onto {
   free_place,  ///< nothing: a move onto others is not done
   others,      ///< others, too: what overlaps is pushed apart

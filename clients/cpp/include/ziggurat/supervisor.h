@@ -136,7 +136,7 @@ class Supervisor {
   std::uint64_t move(std::string_view entity, const std::array<double, 3>& position,
                      const std::optional<std::array<double, 4>>& orientation = std::nullopt,
                      Onto onto = Onto::free_place);
-  /// What an entity, or an element as in <arena>, would overlap at a pose of its origin: the first entity's id, or
+  /// The overlap of an entity, or an element as in <arena>, at a pose of its origin: the first other entity's id, or
   /// nothing where the place is free. The floor does not count, nor does the entity itself.
   /// @param what  an id, or an element, which begins with '<': of a single body its extents are enough, as in
   ///              <box size="1,1,1"/>
