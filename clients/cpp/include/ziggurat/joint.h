@@ -19,7 +19,7 @@ class Joint {
   const std::string& id() const noexcept { return id_; }
 
   bool has_encoder() const noexcept { return has_encoder_; }
-  /// The reading of the sensor that the scene lists first.
+  /// The mode of the sensor that the scene lists first.
   JointMode encoder_mode() const noexcept { return encoder_mode_; }
   /// The reading of that sensor at the session's tick, in the unit of encoder_mode(); 0 at tick 0 and without an
   /// encoder.
