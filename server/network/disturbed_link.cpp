@@ -10,7 +10,6 @@
 namespace ziggurat::network {
 
 using Case = v1::ServerMessage::MessageCase;
-using Kind = wire::Inbox::Kind;
 
 namespace {
 
@@ -156,12 +155,12 @@ void DisturbedLink::end(const std::string& connection, Line& line, bool is_order
 bool DisturbedLink::arrives(const Received& received, Time now) {
   Line* line = find(received.connection);
   if (line == nullptr) return true;
-  const Kind kind = received.is_single_frame ? inbox_.parse(received.bytes) : Kind::malformed;
+  const wire::Inbox::Kind kind = received.is_single_frame ? inbox_.parse(received.bytes) : wire::Inbox::Kind::malformed;
   Effect effect;
-  const bool is_answer = kind == Kind::command || kind == Kind::direction;
+  const bool is_answer = kind == wire::Inbox::Kind::command || kind == wire::Inbox::Kind::direction;
   if (is_answer) effect = draw(*line, Direction::commands, inbox_.command_tick());
   if (effect.is_lost) return false;
-  const bool is_last = kind == Kind::leave && inbox_.leave().robots.empty();
+  const bool is_last = kind == wire::Inbox::Kind::leave && inbox_.leave().robots.empty();
   if (is_last) line->paths.clear();
   if (effect.delay.count() == 0 && line->incoming.empty()) {
     if (is_last && line->outgoing.empty()) lines_.erase(received.connection);

@@ -18,9 +18,9 @@ void append(std::string& text, Format... number_and_format) {
   text.append(digits, end);
 }
 
-constexpr int deepest = 3;                // tables in tables
-constexpr std::size_t most_named = 100;   // fields of a table
-constexpr std::size_t most_read = 10'000;  // entries of a table: of more the order is not known
+constexpr int deepest_logged = 3;                // tables in tables
+constexpr std::size_t most_logged = 100;   // fields of a table
+constexpr std::size_t most_sorted = 10'000;  // entries of a table: of more the order is not known
 constexpr std::size_t longest = 1000;     // text in a table, and name of a field [bytes]
 
 void append_value(lua_State* state, int index, std::string& text, int depth);
@@ -55,7 +55,7 @@ std::vector<Field> fields_in(lua_State* state, int depth, std::size_t elements, 
   std::string_view name;
   std::size_t read = 0;
   for (lua_pushnil(state); lua_next(state, -2) != 0; lua_pop(state, 1)) {
-    if (++read > most_read) {
+    if (++read > most_sorted) {
       lua_pop(state, 2);
       is_all = false;
       return {};
@@ -63,8 +63,8 @@ std::vector<Field> fields_in(lua_State* state, int depth, std::size_t elements, 
     if (has_name(state, name)) fields.push_back({name, {}});
   }
   std::ranges::sort(fields, {}, &Field::name);
-  is_all = fields.size() <= most_named && read == fields.size() + elements;
-  fields.resize(std::min(fields.size(), most_named));
+  is_all = fields.size() <= most_logged && read == fields.size() + elements;
+  fields.resize(std::min(fields.size(), most_logged));
   std::size_t size = 0;
   for (lua_pushnil(state); lua_next(state, -2) != 0; lua_pop(state, 1)) {
     if (size > LogLines::max_bytes || !has_name(state, name)) continue;
@@ -78,7 +78,7 @@ std::vector<Field> fields_in(lua_State* state, int depth, std::size_t elements, 
 
 /// {1, 2, x = 3, …}: elements from 1 on, then fields with a name, and whether there is more.
 void append_table(lua_State* state, int index, std::string& text, int depth) {
-  if (depth == deepest || lua_checkstack(state, 4) == 0) {
+  if (depth == deepest_logged || lua_checkstack(state, 4) == 0) {
     text += "{…}";
     return;
   }

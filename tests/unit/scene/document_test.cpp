@@ -12,15 +12,6 @@
 namespace ziggurat::scene {
 namespace {
 
-std::string only_fault(const ReadResult& result) {
-  const auto texts = faults(result);
-  if (texts.size() != 1) {
-    ADD_FAILURE() << texts.size() << " faults:\n" << all_problems(result);
-    return "";
-  }
-  return texts[0];
-}
-
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }

@@ -26,7 +26,7 @@ std::string distributed(unsigned quantity, const std::string& entity) {
          "<entity quantity='" + std::to_string(quantity) + "' max_trials='1'>" + entity + "</entity></distribute>";
 }
 
-std::string prototype(const std::string& id, const std::string& links, const std::string& devices = "") {
+std::string prototype_of(const std::string& id, const std::string& links, const std::string& devices = "") {
   return "<prototype id='" + id + "'><body position='0,0,0'/><links ref='l0'>" + links + "</links><devices>" + devices +
          "</devices></prototype>";
 }
@@ -69,11 +69,11 @@ TEST(Memory, LargeScenesHaveEnough) {
 TEST(Memory, CopiesOfADistributionCount) {
   const std::string leds =
       "<leds medium='leds'>" + repeated(3000, "<led anchor='origin' offset='0,0,0' color='red'/>") + "</leds>";
-  const SceneText text = scene_with("\n" + distributed(100'000, prototype("p", link_of_prototype, leds)));
+  const SceneText text = scene_with("\n" + distributed(100'000, prototype_of("p", link_of_prototype, leds)));
   EXPECT_EQ(only_fault(text),
             "test.argos:5:122: quantity=\"100000\" of <entity> is too many: each of these entities takes some 1.1 MB of memory, "
             "and the scene has 4285.5 MB left; write at most 3741, or raise --max-scene-size");
-  EXPECT_TRUE(scene_with(distributed(3741, prototype("p", link_of_prototype, leds))).read().ok());
+  EXPECT_TRUE(scene_with(distributed(3741, prototype_of("p", link_of_prototype, leds))).read().ok());
   ReadOptions larger;
   larger.max_size = std::size_t{4} << 30;
   EXPECT_TRUE(text.read(larger).ok());
@@ -143,7 +143,7 @@ TEST(Memory, RingsCountAsTheirSensors) {
                             repeated(10, "<ring anchor='origin' radius='.1' range='.1' num_sensors='1000'/>") +
                             "</proximity_sensors>";
   std::string prototypes;
-  for (int i = 0; i < 3000; ++i) prototypes += prototype("p" + std::to_string(i), link_of_prototype, rings);
+  for (int i = 0; i < 3000; ++i) prototypes += prototype_of("p" + std::to_string(i), link_of_prototype, rings);
   EXPECT_NE(only_fault(scene_with(prototypes)).find("<prototype> takes some 2.5 MB of memory"), std::string::npos);
   SceneText models;
   for (int i = 0; i < 3000; ++i) {

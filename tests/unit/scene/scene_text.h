@@ -1,6 +1,8 @@
 #pragma once
 // A valid scene in parts that a test can replace, and functions to inspect the reported problems.
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -50,6 +52,13 @@ inline std::vector<std::string> faults(const ReadResult& result) {
 
 inline std::vector<std::string> notices(const ReadResult& result) {
   return texts_of(result, Problem::Severity::notice);
+}
+
+/// The text of the only fault; a failure of the test if there is none or another one.
+inline std::string only_fault(const ReadResult& result) {
+  const auto texts = faults(result);
+  EXPECT_EQ(texts.size(), 1u) << all_problems(result);
+  return texts.size() == 1 ? texts.front() : "";
 }
 
 inline std::size_t count_containing(const std::vector<std::string>& texts,

@@ -35,12 +35,6 @@ SceneText boxes() {
   return text;
 }
 
-std::string only_fault(const ReadResult& result) {
-  const auto found = faults(result);
-  EXPECT_EQ(found.size(), 1u) << all_problems(result);
-  return found.empty() ? "" : found.front();
-}
-
 TEST(Set, ChangesAnAttribute) {
   const auto result = SceneText{}.read(set({"framework/experiment/@ticks_per_second=25"}));
   EXPECT_TRUE(result.ok()) << all_problems(result);

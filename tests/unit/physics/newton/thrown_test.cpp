@@ -12,7 +12,7 @@ namespace {
 
 using namespace testing;
 
-scene::Entity wall(double near, double thickness) {
+scene::Entity wall_of(double near, double thickness) {
   return standing(at(near + thickness / 2, 0, -0.5), scene::Box{{thickness, 1, 1}}, 1);
 }
 
@@ -29,7 +29,7 @@ TEST(NewtonThrown, AMotorStopsAtAThinWall) {
     for (const double gap : {0.005, 0.02, 0.035}) {
       World world(newton(false), 1 / hz);
       world.add(slide(0.05));
-      world.add(wall(gap, 0.005));
+      world.add(wall_of(gap, 0.005));
       world.add_motor(world.joint(0, 0), scene::JointMode::velocity, 50 / hz);
       world.set_target(world.joint(0, 0), 2);
       for (int i = 0; i < hz / 2; ++i) {
@@ -102,7 +102,7 @@ TEST(NewtonThrown, AMotorWithAMagnetStopsAtABlockWithAMagnet) {
       };
       world.add(with_magnet(slide(mass), 1));
       world.add(with_magnet(loose(at(0.04, 0, 0), scene::Box{{0.04, 0.04, 0.04}}, 0.1), 0));
-      world.add(wall(0.0605, 0.01));
+      world.add(wall_of(0.0605, 0.01));
       world.add_motor(world.joint(0, 0), scene::JointMode::velocity, 20 / hz);
       world.set_target(world.joint(0, 0), 1000);
       for (int i = 0; i < hz / 2; ++i) {
@@ -144,7 +144,7 @@ TEST(NewtonThrown, WhatIsStruckStopsAtAWall) {
       World world(newton(false, 0), 1 / hz);
       world.add(loose(at(-0.5, 0, 0), scene::Box{{0.1, 0.1, 0.1}}, 1, 0));
       world.add(loose(at(0, 0, 0.03), scene::Box{{0.04, 0.04, 0.04}}, 0.05, 0));
-      world.add(wall(0.04, 0.005));
+      world.add(wall_of(0.04, 0.005));
       const world::Push push{0, Vector3(hz * speed, 0, 0), Vector3::Zero()};
       set_pushes(world, std::span(&push, 1));
       world.step();
@@ -196,7 +196,7 @@ TEST(NewtonThrown, APushStopsAtAWall) {
   for (const double hz : long_runs::substep_rates()) {
     World world(newton(false, 0), 1 / hz);
     world.add(loose(at(0, 0, 0), scene::Box{{0.04, 0.04, 0.04}}, 0.1, 0));
-    world.add(wall(0.05, 0.01));
+    world.add(wall_of(0.05, 0.01));
     const world::Push push{0, Vector3(500, 0, 0), Vector3::Zero()};
     set_pushes(world, std::span(&push, 1));
     world.step();
