@@ -57,6 +57,8 @@ MUTANTS = [
     _bent("json-leaves-zeros-out", "T6.json-session", form="json"),
     _bent("json-numbers", "T6.json-session", form="json"),
     _bent("json-snakes", "T6.json-session", form="json"),
+    _bent("json-refuses-texts", "T6.json-texts-for-numbers", form="json"),
+    _bent("json-strips-texts", "T6.not-json-space-in-a-number", form="json"),
     _bent("json-enum-numbers", "S9.stale", "T6", form="json"),
     _bent("deaf-to-hello", "H1.at-once"),
     _bent("state-is-silent", "H1.first"),
@@ -293,7 +295,7 @@ MUTANTS = [
 
 # They say nothing where something is expected: to wait for long shows no more.
 SILENT = {
-    "late-waits", "silent-on-garbage", "duplicate-silent", "plain-text", "garbage-is-silent", "too-large-is-silent",
+    "json-strips-texts", "late-waits", "silent-on-garbage", "duplicate-silent", "plain-text", "garbage-is-silent", "too-large-is-silent",
     "deaf-to-hello", "state-is-silent", "refused-for-ever", "late-gets-nothing", "displaced-not-told",
     "stale-is-silent", "duplicate-is-silent", "packets-cut", "waits-always", "paused-not-told", "too-many-is-silent",
     "any-reason", "leave-beyond-dropped", "leave-ignored", "end-not-told", "hello-after-end-is-silent",
