@@ -215,7 +215,7 @@ MUTANTS = [
     _bent("moves-onto-nothing", "V8.may-overlap"),
     _bent("places-never-free", "V18.free"),
     _bent("places-always-free", "V18.taken"),
-    _bent("unknown-entity-is-none", "V18.wrong"),
+    _bent("place-of-none", "V18.wrong"),
     _bent("spawn-not-done", "V9.spawn"),
     _bent("shutdown-not-done", "V10.shutdown"),
     _bent("reasons-lost", "V10.reason"),
@@ -295,7 +295,8 @@ MUTANTS = [
 
 # They say nothing where something is expected: to wait for long shows no more.
 SILENT = {
-    "json-strips-texts", "late-waits", "silent-on-garbage", "duplicate-silent", "plain-text", "garbage-is-silent", "too-large-is-silent",
+    "json-strips-texts",
+    "late-waits", "silent-on-garbage", "duplicate-silent", "plain-text", "garbage-is-silent", "too-large-is-silent",
     "deaf-to-hello", "state-is-silent", "refused-for-ever", "late-gets-nothing", "displaced-not-told",
     "stale-is-silent", "duplicate-is-silent", "packets-cut", "waits-always", "paused-not-told", "too-many-is-silent",
     "any-reason", "leave-beyond-dropped", "leave-ignored", "end-not-told", "hello-after-end-is-silent",
