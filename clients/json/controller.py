@@ -183,6 +183,9 @@ def main():
     except (ValueError, LookupError, TypeError, AttributeError, StopIteration, RecursionError) as error:
         tell(f"{endpoint} sent what is no message of the protocol: {error!r:.200}")
         return 1
+    finally:
+        controller.connection.close()
+        zmq.Context.instance().term()  # waits for the last message, as long as the linger says
 
 
 if __name__ == "__main__":

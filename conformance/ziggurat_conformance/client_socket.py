@@ -4,6 +4,7 @@ import os
 import secrets
 import select
 import socket
+import tempfile
 import time
 from dataclasses import dataclass
 from typing import Optional
@@ -13,11 +14,10 @@ import zmq.auth.thread
 import zmq.utils.monitor
 
 from .case import Failed
-from .relay import ClientRelay
+from .relay import MOST_FRAMES, ClientRelay
 from .server_process import free_port
 
 _REBINDING = 5.0  # [s] until a port is free again
-_MOST_WAITING = 100  # messages of each connection that the kit has not read
 # Messages that wait to be sent over a connection, beside one that is being sent. Whatever they are, short ones are in
 # buffers of the system.
 _MOST_TO_SEND = 1
@@ -38,8 +38,8 @@ class Arrival:
 class ServerSocket:
     """A ROUTER behind a relay that listens at a port of its own. It may be closed and opened again there."""
 
-    def __init__(self, secret_key: Optional[bytes] = None, is_open: bool = True):
-        """is_open: every key may connect; otherwise none."""
+    def __init__(self, secret_key: Optional[bytes] = None, is_open: bool = True, is_local: bool = False):
+        """is_open: every key may connect; otherwise none. is_local: at a socket of this machine, ipc://."""
         self._context = zmq.Context()
         self._secret_key = secret_key
         self._authenticator = None
@@ -47,8 +47,9 @@ class ServerSocket:
             self._authenticator = zmq.auth.thread.ThreadAuthenticator(self._context)
             self._authenticator.start()
             self._authenticator.configure_curve_callback(credentials_provider=_Doorkeeper(is_open))
-        self._port = free_port()
-        self.endpoint = f"tcp://127.0.0.1:{self._port}"
+        self._folder = tempfile.TemporaryDirectory(prefix="ziggurat-kit-") if is_local else None
+        self._address = f"{self._folder.name}/server" if is_local else ("127.0.0.1", free_port())
+        self.endpoint = f"ipc://{self._address}" if is_local else "tcp://{}:{}".format(*self._address)
         self._relay: Optional[ClientRelay] = None
         self._socket: Optional[zmq.Socket] = None
         self._monitor: Optional[zmq.Socket] = None
@@ -62,7 +63,7 @@ class ServerSocket:
         name = f"ziggurat-kit-{secrets.token_hex(16)}"
         self._socket = self._context.socket(zmq.ROUTER)
         self._socket.setsockopt(zmq.LINGER, 0)
-        self._socket.setsockopt(zmq.RCVHWM, _MOST_WAITING)
+        self._socket.setsockopt(zmq.RCVHWM, MOST_FRAMES)  # never reached: ZeroMQ would lose the rest when the client closes
         self._socket.setsockopt(zmq.SNDHWM, _MOST_TO_SEND)
         self._socket.setsockopt(zmq.SNDTIMEO, int(1000 * LONGEST_SEND))
         self._socket.setsockopt(zmq.ROUTER_MANDATORY, 1)  # waits for room, and tells if there is none
@@ -79,7 +80,7 @@ class ServerSocket:
         deadline = time.monotonic() + _REBINDING
         while True:
             try:
-                return ClientRelay(self._port, name)
+                return ClientRelay(self._address, name)
             except OSError:
                 if time.monotonic() > deadline:
                     raise
@@ -94,6 +95,14 @@ class ServerSocket:
             self._socket = None
         if self._relay is not None:
             self._relay.close()
+
+    def hold(self, is_held: bool) -> None:
+        """is_held: nothing more is read of the client, until it is not."""
+        self._relay.hold(is_held)
+
+    def unread(self) -> int:
+        """[bytes] of the client that wait at a local socket."""
+        return self._relay.unread()
 
     def is_reached(self) -> bool:
         """A client has connected since it was opened."""
@@ -112,6 +121,8 @@ class ServerSocket:
         if self._authenticator is not None:
             self._authenticator.stop()
         self._context.term()
+        if self._folder is not None:
+            self._folder.cleanup()
 
     def receive(self, seconds: float) -> Optional[Arrival]:
         """Raises Failed for what is more than the kit takes."""

@@ -7,9 +7,10 @@ from typing import Any, Optional
 from . import wire
 from .case import Case, Failed, NonStrict, Unimplemented
 from .client_bytes import client_message, form_of
-from .client_messages import refusal
+from .client_messages import heartbeat, refusal
 from .client_program import ClientProgram
 from .client_robots import readings, robot
+from .client_socket import ServerSocket
 from .client_steps import (CheckClient, Cut, Ends, HearCorrection, HearFrom, HearLate, HearResume, Listen,
                            Mechanisms, Quiet, Refuse, Remove, Restart, SinceMinor, Tell, TellBytes, TellObservation, TellWelcome, Wait)
 from .client_variants import TOKEN, environment_for, keys_for, socket_for
@@ -23,6 +24,9 @@ from .scene_robots import SceneRobots
 from .wire import protocol
 
 _FIRST = 10.0  # [s] from a program's connection to its first message
+_LEAST_SILENCE, _BEATS = 3.0, 3  # M3: [s], and in heartbeats, that show a loss where nothing else does
+_BEAT = 1000  # [ms] that M6 promises
+_BEATEN = (State.READY, State.STEPPING, State.PAUSED, State.DRAINING)
 _RULES = {"hello": "H1", "command": "S3", "leave": "L5"}  # that ask for these messages
 _LATE = 0.3  # [s] for a Command that need not come
 _MOST_AT_ONCE, _MOST_A_SECOND = 2000, 1000  # M7
@@ -52,12 +56,14 @@ class ClientStage:
         self.keys = keys_for(case.variant)
         self._played: list = []  # robots of the scene that the client has
         self._token = TOKEN  # of the session, also after it was lost
+        self._silence = 0.0  # [s] after which the client sees that this session is lost
         self._knows_token = case.variant == RESTARTED  # the client does
         self._strange_token = ""  # what it said about a token that it can't know
+        self._takes_over: Optional[bool] = None  # its first Hello asks for it
         self.last_commands: list = []  # at most two
         self._unkept: list[Fault] = []  # SHOULDs
         self._allowance = float(_MOST_AT_ONCE)  # of M7
-        self._counted_at = self._observed_at = time.monotonic()
+        self._counted_at = self._observed_at = self._told_at = time.monotonic()
         self._socket = socket_for(case.variant, self.keys)
         try:
             self.program = ClientProgram(command, environment_for(
@@ -108,7 +114,8 @@ class ClientStage:
             "version": {"major": 1, "minor": 0}, "session_token": self._token, "tick_ns": 100_000_000,
             "ticks_per_second": 10, "mode": "MODE_LOCK_STEP", "seed": 7, "scene_hash": "0123456789abcdef",
             "max_message_bytes": 64 << 20, "server_version": "kit", "role": "ROLE_CONTROLLER",
-            **step.fields})
+            "wall_heartbeat_ms": _BEAT, **step.fields})
+        self._silence = max(_LEAST_SILENCE, _BEATS * welcome.wall_heartbeat_ms / 1000)
         welcome.robots.extend(robots or self._wanted_robots())
         self._knows_token = True
         self._tell(protocol.ServerMessage(welcome=welcome))
@@ -197,13 +204,13 @@ class ClientStage:
         self.transcript.add("server", "───", "listens from now on")
         self._socket.open()
 
-    def hear_resume(self, step: HearResume) -> None:
-        limit = max(step.within, self._patience())
+    def hear_resume(self, _: HearResume) -> None:
+        limit = self._silence + self._patience()
         deadline = time.monotonic() + limit
         if self.session.state is not State.NEW:
             self._lose(is_connected=True)
         while True:
-            message = self._receive(deadline - time.monotonic(), is_new=True)
+            message = self._receive(deadline - time.monotonic(), is_new=True, is_silent=True)
             if message is None or time.monotonic() >= deadline and not message.HasField("hello"):
                 _judge(f"it did not resume its session within {limit:g} s (M3, L4)"
                        f"{self._gone()}", True)
@@ -220,7 +227,7 @@ class ClientStage:
             _judge(f"its Hello has the token {token!r}; its session has {self._token!r} (L4)", False)
 
     def quiet(self, step: Quiet) -> None:
-        message = self._receive(step.seconds)
+        message = self._receive(step.seconds, is_silent=True)
         if message is not None:
             _judge(f"the client said {wire.text_of(message, 300)}; nothing is expected", step.should)
 
@@ -254,9 +261,10 @@ class ClientStage:
         if not found:
             raise Unimplemented("it does not connect with the keys that it was given (T10)")
 
-    def connections(self) -> int:
+    @property
+    def socket(self) -> ServerSocket:
         """For checks."""
-        return self._socket.connections()
+        return self._socket
 
     def _patience(self) -> float:
         """[s] for the next message."""
@@ -268,12 +276,12 @@ class ClientStage:
         """For checks."""
         return self._receive(seconds)
 
-    def _receive(self, seconds: float, is_new: bool = False) -> Optional[protocol.ClientMessage]:
+    def _receive(self, seconds: float, is_new: bool = False, is_silent: bool = False) -> Optional[protocol.ClientMessage]:
         """The next message but heartbeats, which are answered. is_new: it may come over another
-        connection, and whatever it is, it is no fault."""
+        connection, and whatever it is, it is no fault. is_silent: without heartbeats to the client meanwhile (M6)."""
         deadline = time.monotonic() + seconds
         while True:
-            arrival = self._arrival(deadline)
+            arrival = self._arrival(deadline, is_silent)
             if arrival is None:
                 return None
             message = self._message_of(arrival, is_new)
@@ -284,6 +292,8 @@ class ClientStage:
                 raise Failed(f"the client said {wire.text_of(message, 300)}: "
                              + "; ".join(map(str, broken[:5])))
             self._count(message)
+            if message.HasField("hello"):
+                self._judge_takeover(message.hello)
             if message.HasField("command"):
                 self.last_commands = [*self.last_commands[-1:], message.command]
             if not self._refuses_token(message):
@@ -293,6 +303,13 @@ class ClientStage:
             if time.monotonic() >= deadline:  # else they could come without end
                 return None
 
+    def _judge_takeover(self, hello: protocol.Hello) -> None:
+        """Raises Failed unless its user has asked for it. With a token it makes no difference (L8)."""
+        if self._takes_over is None:
+            self._takes_over = hello.takeover
+        if hello.takeover and not hello.session_token and not self._takes_over:
+            raise Failed("its Hello has takeover, which its first one had not: it takes robots of others unasked (L10)")
+
     def _refuses_token(self, message: protocol.ClientMessage) -> bool:
         """As a server does: there is no such session (L4)."""
         if self._knows_token or not message.hello.session_token:
@@ -301,19 +318,22 @@ class ClientStage:
         self.tell(refusal("NO_SUCH_SESSION"))
         return True
 
-    def _arrival(self, deadline: float):
+    def _arrival(self, deadline: float, is_silent: bool):
         while True:
             arrival = self._socket.receive(min(0.02, max(0.0, deadline - time.monotonic())))
             if arrival is not None:
                 return arrival
             if time.monotonic() > deadline or self.program.exit_code() is not None:
                 return self._socket.receive(0.02)
+            if not is_silent and self.session.state in _BEATEN and time.monotonic() - self._told_at > _BEAT / 1000:
+                self.tell(heartbeat(0))
 
     def _message_of(self, arrival, is_new: bool) -> protocol.ClientMessage:
         """Raises Failed for what is no message of the protocol."""
         has_session = self.session.state not in (State.NEW, State.CLOSED)
         if has_session and self.routing_id not in (None, arrival.routing_id) and not is_new:
-            raise Failed("it sends over a second connection; one connection carries one session (T1)")
+            raise Failed("it sends over a second connection; one connection carries one session (T1), and silence of less "
+                         f"than {self._silence:g} s shows no loss (M3)")
         if arrival.socket_type != "DEALER":
             raise Failed(f"it connects with a {arrival.socket_type}; a DEALER is expected (T1)")
         if len(arrival.frames) != 1:
@@ -366,6 +386,7 @@ class ClientStage:
     def _send(self, data: bytes) -> None:
         if self.routing_id is None:
             raise Failed("the client has not connected")
+        self._told_at = time.monotonic()
         self._socket.send(self.routing_id, data)
 
     def _lose(self, is_connected: bool = False) -> None:

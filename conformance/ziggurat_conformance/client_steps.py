@@ -99,9 +99,8 @@ class Listen:
 
 @dataclass(frozen=True)
 class HearResume:
-    """A Hello with the session's token; until it comes, the client may send over the restored connection."""
-
-    within: float = 0.0  # [s]; 0: the usual patience
+    """A Hello with the session's token; until it comes, the client may send over the restored connection. It has the time
+    that M3 gives a client to notice by silence that its connection is lost, and then the usual patience."""
 
 
 @dataclass(frozen=True)

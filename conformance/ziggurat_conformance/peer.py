@@ -1,7 +1,7 @@
 """One connection to the server under test."""
 
 import time
-from typing import Optional
+from typing import Callable, Optional
 
 import zmq
 
@@ -20,6 +20,7 @@ from .zmtp_frames import SERVER
 
 # [s] that a message waits for room in the queue; ZeroMQ has no queue for a connection that was refused.
 _LONGEST_SEND, _LONGEST_SEND_IF_REFUSED = 60.0, 2.0
+_LOOKS_EVERY = 0.2  # [s] whether the server has ended; what it said last has come by then
 
 _BELOW = "\n" + 25 * " "  # a line of the transcript begins with time, peer and direction
 
@@ -49,7 +50,9 @@ class Transcript:
 class Peer:
     """A DEALER that remembers what it was told."""
 
-    def __init__(self, name: str, endpoint: str, form: str, transcript: Transcript, keys=None):
+    def __init__(self, name: str, endpoint: str, form: str, transcript: Transcript, keys=None,
+                 runs: Callable[[], bool] = lambda: True):
+        """runs: whether the server does."""
         self.name = name
         self.form = form
         self.transcript = transcript
@@ -58,6 +61,7 @@ class Peer:
         self.tick = 0  # of the last observation
         self.observation: Optional[protocol.Observation] = None
         self.heartbeats: list[int] = []
+        self._server_runs = runs
         self._session = Session()
         self._answers = Answers()
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
@@ -90,13 +94,16 @@ class Peer:
         self._send(frames)
 
     def hear(self, patience: float, heartbeats: bool = False) -> Optional[protocol.ServerMessage]:
-        """The next message, within so many seconds. Heartbeats of the server are noted and passed
-        over unless asked for; they do not extend the wait."""
+        """The next message, within so many seconds, and as long as the server runs. Heartbeats of the server are noted and
+        passed over unless asked for; they do not extend the wait."""
         deadline = time.monotonic() + patience
         while True:
+            is_last = not self._server_runs()
             left = max(0.0, deadline - time.monotonic())
-            if not self._relay.wait(self.socket, left + 0.001):
-                return None
+            if not self._relay.wait(self.socket, min(left, _LOOKS_EVERY) + 0.001):
+                if is_last or left <= _LOOKS_EVERY:
+                    return None
+                continue
             message = self._receive()
             if wire.kind_of(message) == "heartbeat" and not heartbeats:
                 self.heartbeats.append(message.heartbeat.sequence)

@@ -1,6 +1,7 @@
 """What stands between a program under test and the kit's socket: ZeroMQ gathers all frames of a message, and has no bound
 for their number. A relay counts what the program sends, and reads no more than the kit may take."""
 
+import contextlib
 import math
 import os
 import secrets
@@ -9,7 +10,7 @@ import socket
 import struct
 import threading
 import time
-from typing import Optional
+from typing import Optional, Union
 
 import zmq
 
@@ -17,7 +18,7 @@ from .case import Failed
 from .relay_pipe import AT_ONCE, RelayPipe
 from .zmtp_frames import CLIENT, SERVER, Sender
 
-_MOST_BYTES, _MOST_FRAMES = 128 << 20, 10_000  # that wait to be taken, beside what one read begins
+_MOST_BYTES, MOST_FRAMES = 128 << 20, 10_000  # that wait to be taken, beside what one read begins
 _MOST_SIDE_BY_SIDE, _MOST_CONNECTIONS = 16, 1000  # of clients: at one time; in all
 _LAST_WRITE = 0.2  # [s] for what the kit sent before it was closed
 _LOOKS_EVERY = 0.01  # [s] whether that is over
@@ -82,12 +83,12 @@ class _Relay:
         """Where no whole message waits. Raises Failed if there can be none any more."""
         if self._is_stuck():
             raise Failed(f"the {self._sender.name} sent {self._bytes} bytes in {self._frames} frames that make no whole message: a "
-                         f"message is one frame (T2), and the kit takes at most {_MOST_BYTES} bytes and {_MOST_FRAMES} frames")
+                         f"message is one frame (T2), and the kit takes at most {_MOST_BYTES} bytes and {MOST_FRAMES} frames")
 
     def _is_full(self) -> bool:
         """Nothing is read until something is taken, but frames that have begun."""
         with self._lock:
-            return self._bytes >= _MOST_BYTES or self._frames >= _MOST_FRAMES
+            return self._bytes >= _MOST_BYTES or self._frames >= MOST_FRAMES
 
     def _is_stuck(self) -> bool:
         """Nothing more comes until something is taken."""
@@ -166,11 +167,25 @@ class _Relay:
 class ClientRelay(_Relay):
     """Where clients connect."""
 
-    def __init__(self, port: int, target: str):
-        """port: of the loopback. target: the abstract name of the kit's Unix socket. Raises OSError."""
+    def __init__(self, address: Union[tuple, str], target: str):
+        """address: host and port, or the path of a Unix socket. target: the abstract name of the kit's Unix socket. Raises
+        OSError."""
         self._target = target
         self._connections = 0  # in all
-        super().__init__(socket.create_server(("127.0.0.1", port), backlog=100), CLIENT)
+        self._is_held = False
+        super().__init__(_listener(address), CLIENT)
+
+    def hold(self, is_held: bool) -> None:
+        """is_held: nothing more is read of clients."""
+        self._is_held = is_held
+        self._wake()
+
+    def unread(self) -> int:
+        """[bytes] that clients have sent and that wait; of TCP, those that have left their machine's buffers."""
+        return sum(pipe.unread() for pipe in list(self._pipes))
+
+    def _is_full(self) -> bool:
+        return self._is_held or super()._is_full()
 
     def has_client(self) -> bool:
         """One has connected, if only for a moment."""
@@ -217,6 +232,17 @@ class ServerRelay(_Relay):
             return connect(self._server, _CONNECTING), accepted
         except OSError:
             raise ConnectionRefusedError from None  # the kit's socket tries it again
+
+
+def _listener(address: Union[tuple, str]) -> socket.socket:
+    if isinstance(address, tuple):
+        return socket.create_server(address, backlog=100)
+    with contextlib.suppress(FileNotFoundError):
+        os.unlink(address)
+    listener = socket.socket(socket.AF_UNIX)
+    listener.bind(address)
+    listener.listen(100)
+    return listener
 
 
 def connect(endpoint: str, seconds: float) -> socket.socket:

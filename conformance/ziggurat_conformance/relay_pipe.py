@@ -1,7 +1,10 @@
 """A connection of the program under test to a relay, and the relay's to the kit's socket: bytes of each go to the other."""
 
+import fcntl
 import select
 import socket
+import struct
+import termios
 from typing import Callable
 
 from .zmtp_frames import Frames, Sender
@@ -44,6 +47,10 @@ class RelayPipe:
     def is_within_a_frame(self) -> bool:
         """The rest of one is still to come."""
         return self._frames.left > 0
+
+    def unread(self) -> int:
+        """[bytes] that the program has sent and that wait."""
+        return struct.unpack("i", fcntl.ioctl(self._program, termios.FIONREAD, bytes(4)))[0]
 
     def is_over(self) -> bool:
         """One end is closed, and the other one has all that came from it."""

@@ -59,7 +59,7 @@ class Servers:
         self._commands_started.add(command)
         if scene != CROWDED:
             try:
-                _await_world(server.endpoint, self.keys.of("controller") if files else None)
+                _await_world(server, self.keys.of("controller") if files else None)
             except (Failed, ValueError):
                 pass  # the cases will tell
         return server
@@ -78,10 +78,10 @@ class Servers:
         self.keys.close()
 
 
-def _await_world(endpoint: str, keys: Optional[tuple]) -> None:
+def _await_world(server: ServerProcess, keys: Optional[tuple]) -> None:
     """Until a Hello, which is refused, is answered otherwise than by Loading: a server may listen
     before its world is there. One that is mute is what the cases are for."""
-    probe = Peer("probe", endpoint, "binary", Transcript(), keys)
+    probe = Peer("probe", server.endpoint, "binary", Transcript(), keys, server.runs)
     try:
         probe.send(wire.from_dict(protocol.ClientMessage, {"hello": {"version": {"major": 0}}}))
         probe.hear_behind("loading", _WORLD)

@@ -167,7 +167,8 @@ class Stage:
         if name not in self.peers:
             keys = self.keys.of(name) if self.keys else None
             form = name if name in wire.FORMS else self.form
-            self.peers[name] = Peer(name, self.endpoint, form, self.transcript, keys)
+            runs = self.server.runs if self.server else lambda: True
+            self.peers[name] = Peer(name, self.endpoint, form, self.transcript, keys, runs)
         return self.peers[name]
 
     def play(self, steps: tuple) -> None:

@@ -3,11 +3,13 @@
 import time
 
 from ..case import Case
+from ..client_congestion import last_message_is_lost
 from ..client_messages import (BEGUN, HELLO, LEFT, answered, end, error, heartbeat, observation, refusal, ticks,
                                welcome)
 from ..client_robots import robot, rover, sights
 from ..client_steps import (CheckClient, Ends, HearCorrection, HearFrom, Quiet, Refuse, Remove, SinceMinor,
                             Tell, TellBytes, TellObservation, Wait)
+from ..keys import LOCAL
 from ..wire import Some
 
 
@@ -16,7 +18,7 @@ def _own_routing_id(stage) -> str:
 
 
 def _one_connection(stage) -> str:
-    count = stage.connections()
+    count = stage.socket.connections()
     return "" if count == 1 else f"it has {count} connections; one carries the session (T1)"
 
 
@@ -54,6 +56,9 @@ CASES = [
     Case("H9.named", "Its Hello has its name", (HearFrom("hello", {"client_name": Some()}, should=True),)),
     Case("T1.one-dealer", "It connects with one DEALER, and sends one frame each time",
          (*BEGUN, *ticks(1, 2), Quiet(0.3), CheckClient("connections", _one_connection, should=True))),
+    Case("T1.linger", "Its last message arrives over a connection that is congested for half a second",
+         (HearFrom("hello", should=True), welcome(mode="MODE_HARDWARE_IN_THE_LOOP", deadline_policy=_HOLD), *ticks(0, 0),
+          CheckClient("last message", last_message_is_lost, should=True)), variant=LOCAL),
     Case("T7.routing-id", "It lets ZeroMQ choose its routing id",
          (HELLO, CheckClient("routing id", _own_routing_id, should=True))),
     Case("T4.small-limit", "No message is longer than Welcome allows",
@@ -77,6 +82,8 @@ CASES = [
     Case("H11.late", "It begins at whatever tick the world is at",
          (HELLO, welcome(), *ticks(41, 43))),
     Case("H11.waits", "Before the first tick it waits", (HELLO, welcome(), Quiet(0.5), *ticks(0, 1))),
+    Case("H13.unasked", "It takes over no robots unless its user asks for it",
+         (HearFrom("hello", {"takeover": False}, should=True),)),
     Case("H14.own-policies", "Each robot may have a deadline policy of its own",
          (HELLO, welcome({**robot("arm0"), "deadline_policy": {"action": "WAIT"}},
                          {**robot("arm1"), "deadline_policy": _HOLD}), *ticks(0, 2))),

@@ -8,7 +8,6 @@ from ..client_steps import CheckClient, Cut, Ends, HearFrom, HearResume, Quiet, 
 from ..wire import text_of
 from .client_core import storm
 
-_SILENCE = 6.0  # [s], much longer than the 100 ms that _WATCHED promises
 _WATCHED = {"wall_heartbeat_ms": 100}
 
 
@@ -66,7 +65,11 @@ CASES = [
           CheckClient("answer", _same_answer, should=True), *ticks(4, 5)),
     _case("L4.other-tick", "The world may have gone on meanwhile", *BEGUN, *ticks(1, 3), Cut(), _resumed(70)),
     _case("M3.silence", "When nothing comes for much longer than M6 says, it resumes its session",
-          HELLO, welcome(**_WATCHED), *ticks(0, 2), heartbeat(1), HearResume(_SILENCE), welcome(), *ticks(2, 4)),
+          HELLO, welcome(**_WATCHED), *ticks(0, 2), heartbeat(1), HearResume(), welcome(), *ticks(2, 4)),
+    *[_case(f"M3.{name}", f"{title} is no loss",
+            HELLO, welcome(wall_heartbeat_ms=beat), *ticks(0, 2), Quiet(silence), *ticks(3, 4))
+      for name, title, beat, silence in (("short-silence", "Silence of less than 3 s", 100, 2.3),
+                                         ("slow-beats", "Silence of less than three heartbeats", 2000, 4.5))],
     _case("M3.beats", "As long as heartbeats come, the connection is alive",
           HELLO, welcome(**_WATCHED), *ticks(0, 2), *[s for n in range(20) for s in (heartbeat(n), Quiet(0.1))],
           *ticks(3, 4)),

@@ -1,5 +1,7 @@
 """Section 1: transport."""
 
+import json
+
 from ..case import Case
 from ..messages import ALL, answer, hear_error, heartbeat, hello, join, observe
 from ..steps import Check, Frames, Hear, Join, RefusesToListen, Send, Silence
@@ -56,11 +58,23 @@ _NOT_JSON = {
     "comment": b'{"heartbeat": {"sequence": 5}} // five',
     "text-for-a-list": b'{"leave": {"robots": "0", "reason": "DONE"}}',
     "number-for-a-text": b'{"command": {"log": [{"text": 7}]}}',
+    "space-in-a-number": b'{"heartbeat": {"sequence": " 5"}}',
+    "plus-before-a-number": b'{"heartbeat": {"sequence": "+5"}}',
+    "point-in-an-integer": b'{"command": {"tick": "0.0"}}',
+    "nothing-for-a-number": b'{"command": {"tick": "0", "jointTargets": ["", 0, 0, 0]}}',
     "two-kinds": b'{"heartbeat": {"sequence": 5}, "command": {"tick": "0"}}',
     "name-twice": b'{"heartbeat": {"sequence": 5, "sequence": 6}}',
     "nul": b'{"heartbeat": {"sequence": 5}}\0{"leave": {}}',
     "latin-1": b'{"command": {"log": [{"text": "\xe9"}]}}',
 }
+
+
+def _texts_for_numbers(stage) -> str:
+    tick = stage.peer("p").tick
+    command = {"tick": tick, "robots": ["0"], "jointTargets": ["0.5"], "log": [{"robot": "0", "text": "12"}]}
+    stage.play((Frames("p", (json.dumps({"command": command}).encode(),)), Hear("p", "observation", {"tick": tick + 1})))
+    return ""
+
 
 # Fields that protocol 1.0 does not have: 2000 of Command and of ClientMessage.
 _UNKNOWN_FIELD = b"\x80\x7d\x07"
@@ -116,6 +130,8 @@ CASES = [
     *[Case(f"T6.not-json-{name}", f"What is not JSON, or not of the message's types, is MALFORMED: {name}",
            (ALL, Frames("p", (text,)), hear_error("p", "MALFORMED"), answer("p"), observe("p")), forms=("json",))
       for name, text in _NOT_JSON.items()],
+    Case("T6.json-texts-for-numbers", "A text that is a number is taken for it",
+         (ALL, Check("texts", _texts_for_numbers)), forms=("json",)),
     Case("T6.binary-in-json", "A binary message in a JSON session is MALFORMED",
          (ALL, Frames("p", (b"\x22\x02\x08\x05",)), hear_error("p", "MALFORMED"), answer("p"),
           observe("p")), forms=("json",)),

@@ -46,6 +46,8 @@ class Connection:
 
     def said(self, data):
         """What goes to the server instead of a client's message."""
+        if self.bug in bends.RAW_SAID:
+            return bends.RAW_SAID[self.bug](data)
         return self._bent(data, protocol.ClientMessage, bends.SAID)
 
     def told(self, data):
@@ -86,7 +88,10 @@ def write(writer, body, more=False):
 async def pump(reader, writer, bend):
     """Greeting, commands and messages of several frames as they are; other messages bent."""
     try:
-        writer.write(await reader.readexactly(_GREETING))
+        left = _GREETING
+        while left and (part := await reader.read(left)):  # in parts: each end waits for the other's first ones (T1)
+            writer.write(part)
+            left -= len(part)
         is_inside = False  # a message of several frames
         while True:
             flags = (await reader.readexactly(1))[0]

@@ -24,6 +24,7 @@ HELLOS = {
     "asks-for-nothing": lambda hello: hello.ClearField("robots"),
     "no-role": _set("role", protocol.ROLE_UNSPECIFIED),
     "observer": _set("role", protocol.ROLE_OBSERVER),
+    "takes-over": _set("takeover", True),
     "long-name": _set("client_name", "x" * 70_000),
     "many-patterns": _many_patterns,
     "names-its-token": lambda hello: setattr(hello, "client_name", hello.session_token.hex() or "tiny"),
@@ -46,6 +47,12 @@ LEAVES = {
     "leave-beyond": lambda leave: leave.robots.append(99),
     "leave-twice-in-one": lambda leave: leave.robots.extend([0, 0]),
 }
+
+# What takes for a lost connection, in seconds without a message.
+SILENCES = {"lost-after-a-moment": 0.6, "lost-after-3-s": 3.0}
+
+# The refusal that is answered by taking over what others have.
+TAKEOVERS = {"takes-over-what-is-taken": protocol.Error.ROBOT_TAKEN, "takes-over-without-session": protocol.Error.NO_SUCH_SESSION}
 
 # The bytes of a message → what is sent.
 BYTES = {

@@ -2,6 +2,7 @@
 
 import socket
 import threading
+import time
 import unittest
 
 import zmq
@@ -13,6 +14,16 @@ from ziggurat_conformance.wire import protocol
 READY = b"\x05READY\x0bSocket-Type\0\0\0\x06ROUTER"
 GREETING = b"\xff" + bytes(8) + b"\x7f\x03\x00" + b"NULL".ljust(52, b"\0") + bytes([4, len(READY)]) + READY
 PATIENCE = 30.0  # [s] on a busy machine
+
+
+class Ended(unittest.TestCase):
+    def test_it_is_not_waited_for(self):
+        with socket.create_server(("127.0.0.1", 0)) as listener:
+            peer = Peer("p", f"tcp://127.0.0.1:{listener.getsockname()[1]}", "binary", Transcript(), runs=lambda: False)
+            self.addCleanup(peer.release)
+            start = time.monotonic()
+            self.assertIsNone(peer.hear(PATIENCE))
+            self.assertLess(time.monotonic() - start, PATIENCE / 2)
 
 
 class Hostile(unittest.TestCase):

@@ -34,8 +34,8 @@ def _client(mutant) -> list:
     return client_mode.play(cases, command, Options(patience, START_PATIENCE, mutant.form), lambda outcome: None)
 
 
-def _right_client(form: str, cases: list) -> list:
-    command = [sys.executable, "-B", str(HERE / "tiny_client.py"), "", form]
+def _right_client(form: str, cases: list, kind: str = "") -> list:
+    command = [sys.executable, "-B", str(HERE / "tiny_client.py"), kind, form]
     return client_mode.play(cases, command, Options(HANG, START_PATIENCE, form), lambda outcome: None)
 
 
@@ -98,6 +98,11 @@ class Clients(Mutants):
         for outcomes in _side_by_side(_right_client, [*forms, "json"], [*parts, json]):
             self.assert_passes(outcomes)
         self.assert_passes(_right_client("binary", timed))
+
+    def test_one_that_notices_losses_by_silence_reconnects(self):
+        parts = _parts([case for case in client_mode.CASES if case.level is Level.RECONNECT or case.id.startswith("L12.")], 8)
+        for outcomes in _side_by_side(_right_client, ["binary"] * len(parts), parts, ["without-monitor"] * len(parts)):
+            self.assert_passes(outcomes)
 
     def test_there_are_enough(self):
         self.assertGreaterEqual(sum(mutant.is_must for mutant in client_mutants.MUTANTS), 60)

@@ -57,6 +57,8 @@ MUTANTS = [
     _bent("json-leaves-zeros-out", "T6.json-session", form="json"),
     _bent("json-numbers", "T6.json-session", form="json"),
     _bent("json-snakes", "T6.json-session", form="json"),
+    _bent("json-refuses-texts", "T6.json-texts-for-numbers", form="json"),
+    _bent("json-strips-texts", "T6.not-json-space-in-a-number", form="json"),
     _bent("json-enum-numbers", "S9.stale", "T6", form="json"),
     _bent("deaf-to-hello", "H1.at-once"),
     _bent("state-is-silent", "H1.first"),
@@ -213,7 +215,7 @@ MUTANTS = [
     _bent("moves-onto-nothing", "V8.may-overlap"),
     _bent("places-never-free", "V18.free"),
     _bent("places-always-free", "V18.taken"),
-    _bent("unknown-entity-is-none", "V18.wrong"),
+    _bent("place-of-none", "V18.wrong"),
     _bent("spawn-not-done", "V9.spawn"),
     _bent("shutdown-not-done", "V10.shutdown"),
     _bent("reasons-lost", "V10.reason"),
@@ -293,6 +295,7 @@ MUTANTS = [
 
 # They say nothing where something is expected: to wait for long shows no more.
 SILENT = {
+    "json-strips-texts",
     "late-waits", "silent-on-garbage", "duplicate-silent", "plain-text", "garbage-is-silent", "too-large-is-silent",
     "deaf-to-hello", "state-is-silent", "refused-for-ever", "late-gets-nothing", "displaced-not-told",
     "stale-is-silent", "duplicate-is-silent", "packets-cut", "waits-always", "paused-not-told", "too-many-is-silent",

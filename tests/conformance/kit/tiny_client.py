@@ -1,7 +1,7 @@
 """A controller that uses every device, rightly, and broken ones: tiny_client.py [BUG [json]].
 
 It resumes its session after a lost connection, repeats its values after a missed deadline, and uses keys.
-One BUG of client_bugs.py makes it break one rule.
+One BUG of client_bugs.py makes it break one rule; "without-monitor" is none: it notices losses by silence alone.
 """
 
 import os
@@ -41,7 +41,7 @@ class Client:
         self.started_at = time.monotonic()
         self.epoch = None
         self.tick, self.is_fresh = -1, True  # the next Command has all values
-        self.left, self.retries = set(), 3
+        self.left, self.retries, self.takes_over = set(), 3, False
         self.curve = None
         self.context = zmq.Context.instance()
         self.connect()
@@ -99,11 +99,12 @@ class Client:
     def hear(self):
         """The next message; None if the connection was lost, or nothing came for much too long."""
         promised = self.welcome.wall_heartbeat_ms if self.welcome else 0
-        deadline = time.monotonic() + max(3.0, 3 * promised / 1000) if promised else None
+        silence = bugs.SILENCES.get(self.bug, max(3.0, 3 * promised / 1000))
+        deadline = time.monotonic() + silence if promised else None
         while not self.socket.poll(20):
-            if deadline and time.monotonic() > deadline and self.bug != "no-watchdog":
+            if deadline and time.monotonic() > deadline and self.bug not in ("no-watchdog", "no-resume"):
                 return None
-            if self.monitor.poll(0):
+            if self.bug != "without-monitor" and self.monitor.poll(0):
                 event = zmq.utils.monitor.recv_monitor_message(self.monitor)["event"]
                 if event != zmq.EVENT_DISCONNECTED and self.bug not in ("waits-for-ever", "falls-back"):
                     sys.exit("the keys are refused")
@@ -130,7 +131,7 @@ class Client:
 
     def hello(self, token=b""):
         hello = protocol.Hello(version={"major": 1, "minor": 3}, role=protocol.ROLE_CONTROLLER, robots=["*"],
-                               client_name="tiny", session_token=token)
+                               client_name="tiny", session_token=token, takeover=self.takes_over)
         bugs.HELLOS.get(self.bug, lambda *_: None)(hello)
         self.say(hello=hello)
 
@@ -138,7 +139,8 @@ class Client:
         self.close()
         self.connect()
         self.welcome, self.is_fresh, self.is_resumed = None, True, self.answered is not None
-        self.hello({"begins-anew": b"", "wrong-token": b"guess"}.get(self.bug, self.token))
+        self.takes_over = self.bug == "takes-over-when-lost"
+        self.hello({"begins-anew": b"", "takes-over-when-lost": b"", "wrong-token": b"guess"}.get(self.bug, self.token))
 
     def command(self):
         """The right one for the last Observation."""
@@ -243,7 +245,8 @@ class Client:
     take_restored = take_reset
 
     def take_displaced(self, _):
-        if self.bug in ("comes-back", "comes-back-by-token", "comes-back-elsewhere"):
+        if self.bug.startswith("comes-back"):
+            self.takes_over = self.bug == "comes-back-by-takeover"
             if self.bug == "comes-back-elsewhere":
                 self.close()
                 self.connect()
@@ -252,7 +255,8 @@ class Client:
         return 0 if self.bug == "displaced-is-fine" else 1
 
     def take_refusal(self, refusal):
-        if self.bug == "tries-an-old-token":
+        self.takes_over = bugs.TAKEOVERS.get(self.bug) == refusal.error.code
+        if self.takes_over or self.bug == "tries-an-old-token":
             return self.hello()
         if self.bug in ("storm", "storms-with-token"):
             self.hello(self.token)
@@ -296,7 +300,7 @@ class Client:
             return None
         leave = protocol.Leave(reason=protocol.Leave.DONE)
         bugs.LEAVES.get(self.bug, lambda *_: None)(leave)
-        self.socket.setsockopt(zmq.LINGER, -1)  # it ends once that is sent
+        self.socket.setsockopt(zmq.LINGER, 0 if self.bug == "does-not-linger" else -1)  # it ends once that is sent
         self.say(leave=leave)
         self.close()
         self.context.term()

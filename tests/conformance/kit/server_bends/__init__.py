@@ -2,4 +2,4 @@
 
 from . import beginning, deadlines, directing, later_versions, states, supervision, tick
 from . import several  # last: it has bends of the others under other names
-from .kinds import OPTIONS, RAW, SAID, TOLD
+from .kinds import OPTIONS, RAW, RAW_SAID, SAID, TOLD

@@ -5,7 +5,7 @@ import secrets
 
 import protocol_pb2 as protocol
 
-from .kinds import E, RAW, SAID, TOLD, clear_fields, drop, in_kind, recode, refill, said, set_fields, swap, told
+from .kinds import E, RAW, RAW_SAID, SAID, TOLD, clear_fields, drop, in_kind, recode, refill, said, set_fields, swap, told
 
 RAW["two-frames"] = lambda data: [(data, b"")]
 RAW["nul-behind"] = lambda data: [data if data[:1] == b"{" else data + b"\0"]
@@ -50,6 +50,8 @@ RAW["json-leaves-zeros-out"] = _rewritten(_without_zeros)
 RAW["json-numbers"] = _rewritten(_numbers)
 RAW["json-snakes"] = _rewritten(_snakes)
 RAW["json-enum-numbers"] = _rewritten(_enum_numbers)
+RAW_SAID["json-refuses-texts"] = lambda data: [data.replace(b'["0.5"]', b"[true]")]
+RAW_SAID["json-strips-texts"] = lambda data: [data.replace(b'" 5"', b'"5"')]
 
 
 @said("unknown-fields-malformed")

@@ -7,8 +7,8 @@ import protocol_pb2 as protocol
 E = protocol.Error
 POLICY = protocol.DeadlinePolicy
 # Of what clients say and of what the server says: functions of a connection and a message; of the bytes that
-# the server says; of the options that the server is started with.
-SAID, TOLD, RAW, OPTIONS = {}, {}, {}, {}
+# the server says, and of those that clients say; of the options that the server is started with.
+SAID, TOLD, RAW, RAW_SAID, OPTIONS = {}, {}, {}, {}, {}
 
 
 def said(*bugs):

@@ -58,7 +58,7 @@ TOLD["states-reversed"] = _of_states(lambda states: refill(states, "entities", r
 TOLD["no-state-hash"] = _of_states(lambda states: states.ClearField("hash"))
 
 
-@told("unknown-entity-is-none")
+@told("unknown-entity-is-none", "place-of-none")
 def _(connection, message):
     if message.HasField("response") and message.response.error.code == E.UNKNOWN_ENTITY:
         message.response.ClearField("error")
