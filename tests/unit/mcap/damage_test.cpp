@@ -78,8 +78,12 @@ TEST(Damage, AFileThatIsCutOffHasAllWholeChunks) {
   }
 }
 
-TEST(Damage, ADamagedChunkTakesNoOtherAlong) {
-  std::string file = example(Compression::zstd);
+/// Without compression only the chunk's CRC tells it.
+class DamagedChunk : public testing::TestWithParam<Compression> {};
+INSTANTIATE_TEST_SUITE_P(Of, DamagedChunk, testing::Values(Compression::none, Compression::lz4, Compression::zstd));
+
+TEST_P(DamagedChunk, TakesNoOtherAlong) {
+  std::string file = example(GetParam());
   const Reader whole(bytes_of(file));
   const ChunkIndex& second = whole.contents().chunks[1];
   file[second.offset + second.length - 4] ^= 1;
