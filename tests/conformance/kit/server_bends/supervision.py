@@ -71,6 +71,13 @@ def _(connection, message):
         refill(message.request.move, "position", (list(map(finite, message.request.move.position)) + [0.0] * 3)[:3])
 
 
+@said("joints-anyhow")
+def _(connection, message):
+    if message.request.HasField("set_joint"):
+        set_joint = message.request.set_joint
+        set_joint.position, set_joint.velocity = finite(set_joint.position), min(set_joint.velocity, 1e6)
+
+
 SAID["turns-back"] = in_kind("request", lambda _, request: refill(
     request.move, "orientation", request.move.orientation or [1, 0, 0, 0]) if request.HasField("move") else None)
 SAID["reasons-lost"] = in_kind("request", lambda _, request: request.shutdown.ClearField("reason")
@@ -97,7 +104,7 @@ def done_without(kind):
     return bend
 
 
-for _kind in ("move", "spawn", "remove", "shutdown", "snapshot", "resume"):
+for _kind in ("move", "set_joint", "spawn", "remove", "shutdown", "snapshot", "resume"):
     SAID[f"{_kind}-not-done"] = done_without(_kind)
 TOLD["removed-not-told"] = drop("error", E.NOT_YOURS)
 
