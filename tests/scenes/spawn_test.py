@@ -81,7 +81,7 @@ class Spawn(SceneTest):
         self.ctl("step", 2)
         self.assertRegex(self.ctl("set-joint", "r0", "knee", 0, code=FAULT), "'r0' has no joint 'knee'; write one of 'shoulder'")
         self.assertRegex(self.ctl("set-joint", "r0", "shoulder", "far", code=FAULT), "position .*far")
-        self.assertRegex(self.ctl("set-joint", "nobody", "shoulder", 0, code=FAULT), "no entity 'nobody'")
+        self.assertRegex(self.ctl("set-joint", "r7", "shoulder", 0, code=FAULT), "no entity 'r7'")
         self.ctl("shutdown", "--reason", "seen")
         self.assertEqual(self.finish(process).code, 0)
         outcome = self.ziggurat("verify", recording)

@@ -71,11 +71,12 @@ def _(connection, message):
         refill(message.request.move, "position", (list(map(finite, message.request.move.position)) + [0.0] * 3)[:3])
 
 
-@said("joints-anyhow")
-def _(connection, message):
-    if message.request.HasField("set_joint"):
-        set_joint = message.request.set_joint
-        set_joint.position, set_joint.velocity = finite(set_joint.position), min(set_joint.velocity, 1e6)
+for _name in ("unknown-place-is-free", "unknown-joint-is-set"):
+    TOLD[_name] = TOLD["unknown-entity-is-none"]
+SAID["joints-at-no-number"] = in_kind("request", lambda _, request: setattr(
+    request.set_joint, "position", finite(request.set_joint.position)) if request.HasField("set_joint") else None)
+SAID["joints-at-any-speed"] = in_kind("request", lambda _, request: setattr(
+    request.set_joint, "velocity", min(request.set_joint.velocity, 1e6)) if request.HasField("set_joint") else None)
 
 
 SAID["turns-back"] = in_kind("request", lambda _, request: refill(
