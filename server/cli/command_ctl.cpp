@@ -171,6 +171,17 @@ Request move(const Given& given) {
   };
 }
 
+Request set_joint(const Given& given) {
+  double position = 0, velocity = 0;
+  text::to_numbers("position", given.words[2], "a number in metres or radians, as 0.5", {&position, 1});
+  if (given.words.size() == 4) {
+    text::to_numbers("velocity", given.words[3], "a number in m/s or rad/s, as -1", {&velocity, 1});
+  }
+  return [entity = given.words[0], joint = given.words[1], position, velocity](const Call& call) {
+    print_result(call, "set", call.server.set_joint(entity, joint, position, velocity));
+  };
+}
+
 Request is_free(const Given& given) {
   return [what = given.words[0], place = place_of(given)](const Call& call) {
     const auto overlapped = call.server.overlapped(what, place.position, place.orientation);
@@ -230,6 +241,8 @@ constexpr Verb verbs[] = {
     {"remove", "ENTITY", 1, 1, "remove it from the world", remove},
     {"move", "ENTITY x,y,z [z,y,x]", 2, 3,
      "put it at rest there [m], with this orientation [degrees], if the place is free; --may-overlap: also if not", move},
+    {"set-joint", "ENTITY JOINT POSITION [VELOCITY]", 3, 4,
+     "put a revolute or prismatic joint there [rad, m], with this velocity [rad/s, m/s]; what hangs on it follows", set_joint},
     {"is-free", "ENTITY|XML x,y,z [z,y,x]", 2, 3,
      "whether it would overlap nothing there; XML is one element, as '<box size=\"1,1,1\"/>'", is_free},
     {"read", "[ID|GLOB]...", 0, any_number, "poses of entities: x y z, and the quaternion w x y z",

@@ -192,8 +192,10 @@ po::options_description run_options() {
 }
 
 po::options_description serve_options() {
+  po::options_description directors("Directors", width);
+  directors.add_options()("start-directors", "start the scene's directors, as 'ziggurat run' does; controllers connect from outside");
   po::options_description options("", width);
-  options.add(world_options()).add(hil_options()).add(output_options()).add(record_options()).add(
+  options.add(world_options()).add(hil_options()).add(directors).add(output_options()).add(record_options()).add(
       scene_options());
   return options;
 }

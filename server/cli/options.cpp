@@ -151,6 +151,7 @@ void read_network(const Values& values, run::Options& options) {
   }
   options.insecure = values.has("insecure");
   options.allows_directors = values.has("allow-director");
+  options.starts_directors = values.has("start-directors");
   options.paused = values.has("paused");
   options.ends_with_input = values.has("end-with-input");
   options.spawned_script_folders = values.texts("allow-spawned-scripts");

@@ -72,6 +72,10 @@ void Core::set_target(JointIndex joint, double target) {
   with(core_, [&](auto& core) { core.set_target(joint, target); });
 }
 
+void Core::set_joint(JointIndex joint, double position, double velocity) {
+  physics::set_joint(*std::get<std::unique_ptr<NewtonCore>>(core_), joint, position, velocity);
+}
+
 double Core::position(JointIndex joint) const {
   return with(core_, [&](const auto& core) { return core.position(joint); });
 }

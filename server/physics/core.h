@@ -49,6 +49,8 @@ class Core {
   JointIndex joint(std::size_t entity, std::size_t joint) const;
   void add_motor(JointIndex joint, scene::JointMode mode, double max_impulse);
   void set_target(JointIndex joint, double target);
+  /// Puts a joint there, moving so; its body remembers no contact. @pre it is Newton's core
+  void set_joint(JointIndex joint, double position, double velocity);
   double position(JointIndex joint) const;  ///< [m] or [rad]
   double velocity(JointIndex joint) const;  ///< [m/s] or [rad/s]
 

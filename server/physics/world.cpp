@@ -152,6 +152,13 @@ void set_pushes(World& world, std::span<const world::Push> pushes) {
   world.parts_->pushes->set(std::move(list));
 }
 
+void set_joint(World& world, std::size_t entity, JointIndex joint, double position, double velocity) {
+  World::Parts& p = *world.parts_;
+  p.core.set_joint(joint, position, velocity);
+  p.plugins.move(p.bodies[entity]);
+  p.stepped = std::max(p.stepped, entity + 1);  // its links are no longer where they were placed
+}
+
 void World::watch_contacts(std::size_t entity, std::size_t link) {
   Body& body = parts_->bodies[entity];
   body.watched = true;

@@ -77,6 +77,12 @@ class World {
   /// before.
   friend void set_pushes(World& world, std::span<const world::Push> pushes);
 
+  /// Puts a joint of an entity that is present to a position [m] or [rad] and a speed [m/s] or [rad/s]. What hangs on
+  /// it follows; its other joints and its root stay as they are.
+  /// @param joint  of joint()
+  /// @pre the solver is newton
+  friend void set_joint(World& world, std::size_t entity, JointIndex joint, double position, double velocity);
+
   /// Begins to watch what touches a link of an entity added before.
   /// @param link  index into Entity::links
   void watch_contacts(std::size_t entity, std::size_t link);

@@ -134,11 +134,9 @@ ControllerProcess start(const Launch& launch, const world::Layout& layout,
   }
 }
 
-}  // namespace
-
-std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Layout& layout,
-                                     const std::vector<std::string>& scripts,
-                                     const LaunchSettings& settings) {
+/// The processes of the scene's robots.
+std::vector<Launch> plan_robots(const scene::Scene& scene, const world::Layout& layout,
+                                const std::vector<std::string>& scripts, const LaunchSettings& settings) {
   std::vector<std::size_t> lua;
   std::vector<std::vector<std::size_t>> others(scene.controllers.size());
   for (std::size_t r = 0; r < layout.robots.size(); ++r) {
@@ -160,6 +158,16 @@ std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Lay
     add_environment(settings, "ZIGGURAT_CONTROLLER", controller.id, launch.program);
     launches.push_back(std::move(launch));
   }
+  return launches;
+}
+
+}  // namespace
+
+std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Layout& layout,
+                                     const std::vector<std::string>& scripts,
+                                     const LaunchSettings& settings) {
+  std::vector<Launch> launches;
+  if (!settings.only_directors) launches = plan_robots(scene, layout, scripts, settings);
   for (const scene::Director& director : settings.directors) {
     if (!director.script.empty() || !director.command.empty()) {
       launches.push_back(plan_director(director, settings));

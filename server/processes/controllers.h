@@ -58,6 +58,7 @@ struct LaunchSettings {
   std::vector<std::string> lua_arguments;  ///< more arguments for ziggurat-lua
   const Guardian* guardian = nullptr;      ///< ends them if this program is killed; null: none
   std::vector<scene::Director> directors = {};  ///< to start, too; their scripts are resolved paths
+  bool only_directors = false;    ///< of what is in the scene; spawned Lua robots are started, too
   std::string scene_folder = {};  ///< ZIGGURAT_SCENE_FOLDER of commands
   std::string python_path = {};   ///< PYTHONPATH of commands; empty: that of this program
 };

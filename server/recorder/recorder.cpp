@@ -211,6 +211,16 @@ void Recorder::moved(const std::string& entity, const math::Pose& pose) {
   add(std::move(act));
 }
 
+void Recorder::joint_set(const std::string& entity, const std::string& joint, double position, double velocity) {
+  v1::Act act;
+  v1::Act::SetJoint& set = *act.mutable_set_joint();
+  set.set_entity(v1::valid_utf8(entity));
+  set.set_joint(v1::valid_utf8(joint));
+  set.set_position(position);
+  set.set_velocity(velocity);
+  add(std::move(act));
+}
+
 void Recorder::spawned(const std::string& xml, std::vector<EmbeddedFile> files) {
   for (EmbeddedFile& file : files) {
     const std::size_t size = file.text.size();

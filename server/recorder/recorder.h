@@ -40,6 +40,9 @@ class Recorder {
   void populate(const channels::Population& population);
   void tick(const channels::Moment& moment);
   void moved(const std::string& entity, const math::Pose& pose);
+  /// @param position  [m] or [rad]
+  /// @param velocity  [m/s] or [rad/s]
+  void joint_set(const std::string& entity, const std::string& joint, double position, double velocity);
   /// @param files  that were read for it
   void spawned(const std::string& xml, std::vector<EmbeddedFile> files);
   void removed(const std::string& entity);

@@ -10,6 +10,7 @@
 #include "recording/inputs.h"
 #include "replay/recording_error.h"
 #include "scene/reader.h"
+#include "simulation/joints.h"
 #include "simulation/show.h"
 #include "ziggurat/v1/run.pb.h"
 
@@ -20,6 +21,14 @@ constexpr std::size_t most_spawned_bytes = std::size_t{64} << 20;  // since a re
 constexpr std::size_t most_snapshots = 1024;  // as the server keeps
 constexpr std::size_t most_snapshot_bytes = std::size_t{1} << 30;  // of all of them
 constexpr double farthest = 1e6;                                   // [m], as in scenes
+
+/// Sets a joint, or tells why it can't be.
+std::optional<simulation::JointFault> set_joint(simulation::Simulation& world, std::size_t entity, const v1::Act::SetJoint& set) {
+  const simulation::JointMotion wanted{set.joint(), set.position(), set.velocity()};
+  auto fault = simulation::fault_of(world, entity, wanted);
+  if (!fault) simulation::set_joint(world, entity, wanted);
+  return fault;
+}
 
 }  // namespace
 
@@ -89,6 +98,12 @@ void Replay::apply(const v1::Act& act) {
   switch (act.act_case()) {
     case v1::Act::kMove:
       return move(act.move());
+    case v1::Act::kSetJoint:
+      if (const auto fault = set_joint(world_.simulation, entity_named(act.set_joint().entity()), act.set_joint())) {
+        fail(fmt::format("a joint cannot be set: {}", fault->text));
+      }
+      ++changes_;
+      return;
     case v1::Act::kSpawn:
       return spawn(act.spawn().xml());
     case v1::Act::kRemove:

@@ -248,6 +248,8 @@ void RecordedRun::act(const supervision::Act& done) {
         using Type = std::decay_t<decltype(act)>;
         if constexpr (std::is_same_v<Type, supervision::Moved>) {
           to.moved(act.entity, act.pose);
+        } else if constexpr (std::is_same_v<Type, supervision::JointSet>) {
+          to.joint_set(act.entity, act.joint, act.position, act.velocity);
         } else if constexpr (std::is_same_v<Type, supervision::Spawned>) {
           std::vector<recorder::EmbeddedFile> files;
           for (const auto& [name, text] : act.files) files.push_back({name, text});

@@ -186,7 +186,7 @@ network::Config Run::complete_config() {
   check_askers(options_, askers, config_);
   check_gate(options_.gate, {std::span(config_.deadlines).first(controllers.size()), askers.clients,
                              plan_.real_time.has_value()});
-  if (service_ == Service::run) config_.private_endpoint = "ipc://" + folder_.path() + "/run";
+  if (service_ == Service::run || options_.starts_directors) config_.private_endpoint = "ipc://" + folder_.path() + "/run";
   return config_;
 }
 
@@ -213,7 +213,8 @@ processes::Controllers Run::start_controllers() {
   run.directors = directors;
   server_.open(std::move(run), complete_config());
   server_.remove_robots(robots_without_controller());
-  if (service_ == Service::serve || !with_controllers_) return {};
+  if (options_.starts_directors) check_programs(world_.scene);
+  if (!with_controllers_ || (service_ == Service::serve && !options_.starts_directors)) return {};
   return {world_.scene, world_.simulation.layout(), scripts_, launch_settings(std::move(directors))};
 }
 
@@ -222,6 +223,7 @@ processes::LaunchSettings Run::launch_settings(std::vector<scene::Director> dire
                                      processes::find_lua_runner(), options_.lua_processes,
                                      options_.lua_arguments,       signals_.guardian(),
                                      std::move(directors)};
+  settings.only_directors = service_ == Service::serve;
   settings.scene_folder = past_ ? folder_.path() + "/files" : processes::scene_folder(path_);
   settings.python_path = processes::python_path(folder_.path());
   const auto allow = [&](const std::string& folder) {

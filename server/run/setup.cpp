@@ -111,6 +111,7 @@ void tell_how_to_connect(const Options& options, const std::string& endpoint, co
     add(processes::runs_script(controller) ? lua : program("ZIGGURAT_CONTROLLER", controller.id, controller.command));
   }
   for (const scene::Director& director : world.scene.directors) {
+    if (options.starts_directors) break;
     add(director.script.empty() ? program("ZIGGURAT_DIRECTOR", director.id, director.command)
                                 : lua + " --director " + text::shell_word(director.id));
   }
@@ -128,6 +129,18 @@ wire::Run description_of(const supervision::World& world, const std::vector<std:
   run.scene_hash = world.scene_hash;
   run.server_version = version;
   return run;
+}
+
+void check_programs(const scene::Scene& scene) {
+  std::vector<scene::Problem> problems;
+  for (const scene::Director& director : scene.directors) {
+    if (!director.script.empty() || !director.command.empty()) continue;
+    problems.push_back({scene::Problem::Severity::fault, scene::file_of(scene, director.where), director.where,
+                        fmt::format("director '{}' has no program that can be started; write script=\"FILE.lua\" or "
+                                    "command=\"PROGRAM\", or remove it",
+                                    director.id)});
+  }
+  if (!problems.empty()) throw scene::SceneError(std::move(problems));
 }
 
 std::vector<scene::Director> directors_of(const supervision::World& world) {

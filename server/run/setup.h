@@ -44,6 +44,9 @@ void tell_how_to_connect(const Options& options, const std::string& endpoint, co
 /// @param scripts  per robot of the scene; empty = none
 wire::Run description_of(const supervision::World& world, const std::vector<std::string>& scripts);
 
+/// Checks that directors can be started. @throws scene::SceneError that names those without script and command
+void check_programs(const scene::Scene& scene);
+
 /// Those of the scene, with the paths of their scripts.
 std::vector<scene::Director> directors_of(const supervision::World& world);
 

@@ -21,6 +21,9 @@
 
 namespace ziggurat::simulation {
 
+struct JointFault;
+struct JointMotion;
+
 struct Options {
   std::uint64_t seed = 1;  ///< of every random stream; not 0
   TellStep tell = {};      ///< may be empty
@@ -114,6 +117,10 @@ class Simulation {
   // show.h
   friend void show(Simulation& to, std::uint64_t tick, std::span<const world::LinkState> links);
   friend void repeat(Simulation& to, const scene::Scene& scene, const Act& act);
+
+  // joints.h
+  friend std::optional<JointFault> fault_of(const Simulation& world, std::size_t entity, const JointMotion& wanted);
+  friend void set_joint(Simulation& to, std::size_t entity, const JointMotion& wanted);
 
   friend std::optional<std::size_t> overlapped_by(const Simulation& in, const scene::Entity& entity,
                                                   const math::Pose& pose, std::optional<std::size_t> except);

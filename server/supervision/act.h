@@ -17,6 +17,10 @@ struct Moved {
   std::string entity;
   math::Pose pose;  ///< X_WE, as it was applied
 };
+struct JointSet {
+  std::string entity, joint;
+  double position = 0, velocity = 0;  ///< [m] or [rad], [m/s] or [rad/s]
+};
 struct Spawned {
   std::string xml;
   /// Path, as it was asked for, and text of each file that was read for it.
@@ -42,7 +46,7 @@ struct Kept {
 struct Paused {};
 struct Resumed {};
 
-using Act = std::variant<Moved, Spawned, Removed, WasReset, Restored, Kept, Paused, Resumed>;
+using Act = std::variant<Moved, JointSet, Spawned, Removed, WasReset, Restored, Kept, Paused, Resumed>;
 using TellAct = std::function<void(const Act&)>;
 
 }  // namespace ziggurat::supervision

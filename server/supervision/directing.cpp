@@ -120,7 +120,14 @@ const std::string& id_of(const wire::DirectorAct& act) {
 const char* name_of(const wire::DirectorAct& act) {
   if (std::holds_alternative<wire::Show>(act)) return "show";
   if (std::holds_alternative<wire::Push>(act)) return "push";
-  return std::get<wire::Request>(act).kind == wire::Request::Kind::move ? "move" : "remove";
+  switch (std::get<wire::Request>(act).kind) {
+    case wire::Request::Kind::move:
+      return "move";
+    case wire::Request::Kind::set_joint:
+      return "set_joint";
+    default:
+      return "remove";
+  }
 }
 
 bool is_spawn(const wire::DirectorAct& act) {
@@ -145,7 +152,9 @@ std::optional<wire::Fault> check_act(const simulation::Simulation& world, std::s
     return std::nullopt;
   }
   if (is_removal(act)) return std::nullopt;
-  auto pose = pose_of(world.state().origins[entity], std::get<wire::Request>(act));
+  const wire::Request& request = std::get<wire::Request>(act);
+  if (request.kind == wire::Request::Kind::set_joint) return check_joint(world, entity, request);
+  auto pose = pose_of(world.state().origins[entity], request);
   if (auto* fault = std::get_if<wire::Fault>(&pose)) return std::move(*fault);
   return std::nullopt;
 }

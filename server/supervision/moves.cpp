@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "simulation/joints.h"
 #include "wire/fault.h"
 
 namespace ziggurat::supervision {
@@ -36,8 +37,47 @@ std::variant<math::Pose, wire::Fault> pose_of(const math::Pose& now, const wire:
   return pose;
 }
 
+namespace {
+
+simulation::JointMotion motion_of(const wire::Request& request) {
+  return {request.joint, request.joint_position, request.joint_velocity};
+}
+
+}  // namespace
+
+std::optional<wire::Fault> check_joint(const simulation::Simulation& world, std::size_t entity,
+                                       const wire::Request& request) {
+  using Of = simulation::JointFault::Of;
+  const auto fault = simulation::fault_of(world, entity, motion_of(request));
+  if (!fault) return std::nullopt;
+  switch (fault->of) {
+    case Of::joint:
+      return wire::make_fault(ErrorCode::unknown_entity, "set_joint.joint", fault->text);
+    case Of::position:
+      return wire::make_fault(ErrorCode::bad_value, "set_joint.position", fault->text);
+    case Of::velocity:
+      return wire::make_fault(ErrorCode::bad_value, "set_joint.velocity", fault->text);
+    case Of::solver:
+      break;
+  }
+  return wire::make_fault(ErrorCode::out_of_state, "set_joint", fault->text);
+}
+
+namespace {
+
+std::optional<wire::Fault> set_joint(simulation::Simulation& world, const Callers& callers, std::size_t entity,
+                                     const wire::Request& request) {
+  if (auto fault = check_joint(world, entity, request)) return fault;
+  simulation::set_joint(world, entity, motion_of(request));
+  callers.tell(JointSet{request.text, request.joint, request.joint_position, request.joint_velocity});
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::optional<wire::Fault> move(simulation::Simulation& world, const Callers& callers, std::size_t entity,
                                 const wire::Request& request) {
+  if (request.kind == wire::Request::Kind::set_joint) return set_joint(world, callers, entity, request);
   auto pose = pose_of(world.state().origins[entity], request);
   if (auto* fault = std::get_if<wire::Fault>(&pose)) return std::move(*fault);
   const math::Pose& to = std::get<math::Pose>(pose);

@@ -123,6 +123,7 @@ Reply Supervision::handle(const network::Call& call) {
     case Kind::reset:
       return reset(call);
     case Kind::move:
+    case Kind::set_joint:
       return move(call);
     case Kind::is_free: {
       auto overlapped = population_.overlapped(call.request);
@@ -244,11 +245,11 @@ Reply Supervision::read(const network::Call& call) {
 
 Reply Supervision::move(const network::Call& call) {
   const auto entity = entity_named(world_.simulation, call.request.text);
-  if (!entity) return fail(call, no_entity("move.entity", call.request.text, &world_.simulation));
+  const bool is_move = call.request.kind == Kind::move;
+  if (!entity) return fail(call, no_entity(is_move ? "move.entity" : "set_joint.entity", call.request.text, &world_.simulation));
   auto fault = supervision::move(world_.simulation, callers_, *entity, call.request);
   return fault ? fail(call, std::move(*fault)) : done(call);
 }
-
 
 Reply Supervision::spawn(const network::Call& call) {
   auto fault = population_.spawn(call.request.text);

@@ -77,6 +77,7 @@ DirectorAct read(const v1::DirectorAct& from) {
     return Push{push.entity(), push.link(), vector_of(push.force()), vector_of(push.torque())};
   }
   if (from.has_move()) return wire::read(from.move());
+  if (from.has_set_joint()) return wire::read(from.set_joint());
   Request request;
   if (from.has_spawn()) {
     request.kind = Request::Kind::spawn;

@@ -27,12 +27,13 @@ struct Request {
     snapshot,
     restore,
     is_free,
+    set_joint,
   };
   std::uint64_t id = 0;  ///< the client's own
   Kind kind = Kind::none;
   std::uint64_t ticks = 0;            ///< step
   std::optional<std::uint64_t> seed;  ///< reset
-  /// spawn: XML; remove, move: id of an entity; snapshot, restore: its name; shutdown: the reason, or
+  /// spawn: XML; remove, move, set_joint: id of an entity; snapshot, restore: its name; shutdown: the reason, or
   /// nothing; is_free: one of the first two
   std::string text;
   bool is_element = false;   ///< is_free: the text is XML
@@ -41,6 +42,9 @@ struct Request {
   std::vector<std::string> held_up;   ///< ids of robots or directors whose sessions can't answer before the Response
   std::vector<double> position;       ///< move, is_free: as given; x, y, z [m] if it is right
   std::vector<double> orientation;    ///< move, is_free: as given; w, x, y, z or nothing
+  std::string joint;                  ///< set_joint: its id
+  double joint_position = 0;          ///< set_joint: as given [m] or [rad]
+  double joint_velocity = 0;          ///< set_joint: as given [m/s] or [rad/s]
 };
 
 /// Of wall time [s].

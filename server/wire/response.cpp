@@ -50,8 +50,20 @@ Request read(const v1::MoveRequest& from) {
   return request;
 }
 
+Request read(const v1::SetJointRequest& from) {
+  Request request;
+  request.kind = Request::Kind::set_joint;
+  request.text = from.entity();
+  request.joint = from.joint();
+  request.joint_position = from.position();
+  request.joint_velocity = from.velocity();
+  return request;
+}
+
 Request read(const v1::Request& from) {
-  Request request = from.has_move() ? read(from.move()) : Request();
+  Request request = from.has_move()        ? read(from.move())
+                    : from.has_set_joint() ? read(from.set_joint())
+                                           : Request();
   request.id = from.id();
   // The numbers of the fields from 2 on are those of Kind from 1 on.
   request.kind = from.request_case() == v1::Request::REQUEST_NOT_SET

@@ -11,6 +11,7 @@ namespace ziggurat::wire {
 
 Request read(const v1::Request& request);
 Request read(const v1::MoveRequest& request);
+Request read(const v1::SetJointRequest& request);
 
 void fill(const Status& status, v1::Status& to);
 

@@ -217,6 +217,29 @@ class Acts(Directing):
             world.finish()
         self.end()
 
+    def test_a_joint_is_set_and_a_wrong_one_refused(self):
+        self.begin()
+        with self.direct(tell=("poses", "joints")) as world:
+            next(world)
+            world.spawn('<prototype id="arm" movable="false"><body position="8,8,0"/><links ref="base"><link id="base" geometry="box" '
+                        'size="0.1,0.1,0.1" mass="1"/><link id="hand" geometry="box" size="0.1,0.1,0.1" mass="1"/></links><joints>'
+                        '<joint id="hinge" type="revolute" axis="0,0,1"><parent link="base" position="0,0,0.1"/>'
+                        '<child link="hand" position="0,0,0"/></joint></joints></prototype>')
+            next(world)
+            arm = world.entities["arm"]
+            arm.set_joint("hinge", 1.25, 0.5)
+            world.set_joint("arm", "knee", 0)
+            with self.assertRaisesRegex(ziggurat.ProtocolError, "'arm' has no joint 'knee'; write one of 'hinge'") as raised:
+                next(world)
+            self.assertEqual((raised.exception.code, raised.exception.field), ("UNKNOWN_ENTITY", "acts[1].set_joint.joint"))
+            self.assertEqual(arm.joints["hinge"].position, 0, "nothing of it was done")
+            arm.set_joint("hinge", 1.25, -0.5)
+            next(world)
+            self.assertAlmostEqual(arm.joints["hinge"].position, 1.25 - 0.5 * world.tick_seconds, delta=1e-3)
+            self.assertAlmostEqual(arm.joints["hinge"].velocity, -0.5, delta=1e-2)
+            world.finish()
+        self.end()
+
     def test_a_director_may_ask_more_than_a_thousand_times_a_second(self):
         self.begin()
         with self.direct() as world:

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import re
 import subprocess
 
@@ -64,6 +65,31 @@ class Spawn(SceneTest):
         tick = int(self.read_until(process.stdout, r"^\[(\d+) r0\]")[1])
         self.read_until(process.stdout, rf"^\[{tick + 20} r0\]")
         self.assertNotIn("late", self.end(process).out)
+
+    def test_a_joint_is_set_and_the_recording_repeats_it(self):
+        recording = self.folder / "run.mcap"
+        process = self.begin_without_controllers("--record", recording)
+        self.assertEqual(self.ctl("set-joint", "r0", "shoulder", -0.75, 2), "set at tick 0\n")
+        arm = next(link for link in self.read("r0")["entities"][0]["links"] if link["id"] == "arm")
+        self.assertAlmostEqual(2 * math.atan2(arm["orientation"][3], arm["orientation"][0]), -0.75, places=12)
+        self.assertAlmostEqual(arm["angularVelocity"][2], 2, places=12)
+        self.ctl("step", 5)
+        self.ctl("snapshot", "here")
+        self.ctl("set-joint", "r1", "shoulder", 1)
+        self.ctl("step", 3)
+        self.ctl("restore", "here")
+        self.ctl("step", 2)
+        self.assertRegex(self.ctl("set-joint", "r0", "knee", 0, code=FAULT), "'r0' has no joint 'knee'; write one of 'shoulder'")
+        self.assertRegex(self.ctl("set-joint", "r0", "shoulder", "far", code=FAULT), "position .*far")
+        self.assertRegex(self.ctl("set-joint", "r7", "shoulder", 0, code=FAULT), "no entity 'r7'")
+        self.ctl("shutdown", "--reason", "seen")
+        self.assertEqual(self.finish(process).code, 0)
+        outcome = self.ziggurat("verify", recording)
+        self.assertEqual(outcome.code, 0, outcome.err)
+        self.assertRegex(outcome.out, "^identical")
+        outcome = self.ziggurat("fork", recording, "--at", 3, "--ticks", 6, "--without-controllers", "--set",
+                                "physics_engines/*/gravity/@g=5")
+        self.assertEqual(outcome.code, 0, outcome.err)
 
     def test_a_move_onto_another_needs_a_word(self):
         process = self.begin_without_controllers()

@@ -107,6 +107,28 @@ class Tables(SweepTest):
         with sqlite3.connect(self.out / "sweep.sqlite") as database:
             self.assertEqual(database.execute("SELECT count(*), avg(gain) FROM results").fetchone(), (12, 1.25))
 
+    def test_results_take_several_axes_and_metrics(self):
+        """Of four combinations with three runs each, 3 ticks of 0.1 s."""
+        self.sweep(self.scene, *self.grid)
+        for by in (["--by", "gain,iterations"], ["--by", "gain", "--by", ITERATIONS]):
+            for metric in (["--metric", "ticks,simulated_s"], ["--metric", "ticks", "--metric", "simulated_s"]):
+                outcome = self.sweep("results", self.out, *by, *metric, "--csv", out=False)
+                self.assertEqual(outcome.lines, [f"gain,{ITERATIONS},runs,failed,ticks,+-95%,simulated_s,+-95%",
+                                                 "0.5,5,3,0,3,0,0.3,0", "0.5,10,3,0,3,0,0.3,0",
+                                                 "2,5,3,0,3,0,0.3,0", "2,10,3,0,3,0,0.3,0"])
+        outcome = self.sweep("results", self.out, "--by", "gain,iteratoins", out=False, code=FAULT)
+        self.assert_is_sentence(outcome, "iteratoins")
+        outcome = self.sweep("results", self.out, "--metric", "ticks,tikcs", out=False, code=FAULT)
+        self.assert_is_sentence(outcome, r"no run has a metric .tikcs.; did you mean 'ticks'\?")
+
+    def test_means_of_too_few_runs_have_their_number(self):
+        """Only robots with a gain of 2 have the metric, and each combination has one run."""
+        self.change('speed="2"', 'speed="${gain}"')
+        self.write("swing.lua", "function init() end function step() if robot.params.speed == '2' then metric('high', 7) end end")
+        self.sweep(self.scene, "--seeds", "1", "--param", "gain=0.5|2", "--ticks", "3")
+        outcome = self.sweep("results", self.out, "--metric", "r0/high,ticks", "--csv", out=False)
+        self.assertEqual(outcome.lines, ["gain,runs,failed,r0/high,+-95%,ticks,+-95%", "0.5,1,0,n=0,n=0,3,n=1", "2,1,0,7,n=1,3,n=1"])
+
     def test_plots_with_error_bars(self):
         self.sweep(self.scene, *self.grid)
         arguments = ("plot", self.out, "--y", "wall_s", "--x", "gain", "--by", "iterations")

@@ -1,5 +1,6 @@
 #include "ziggurat/director.h"
 
+#include <cmath>
 #include <cstdlib>
 #include <exception>
 #include <stdexcept>
@@ -121,6 +122,18 @@ void Director::move(std::string_view entity, const std::array<double, 3>& positi
   if (orientation) add_numbers(*orientation, "the orientation of", entity, *move.mutable_orientation());
   move.set_may_overlap(onto == Onto::others);
   state_->part.add_act(entity.size()).mutable_move()->Swap(&move);
+}
+
+void Director::set_joint(std::string_view entity, std::string_view joint, double position, double velocity) {
+  if (!std::isfinite(position) || !std::isfinite(velocity)) {
+    throw std::invalid_argument("joint '" + std::string(joint) + "' of '" + std::string(entity) +
+                                "' must have a position and a velocity that are finite");
+  }
+  v1::SetJointRequest& set = *state_->part.add_act(entity.size() + joint.size()).mutable_set_joint();
+  set.set_entity(v1::valid_utf8(entity));
+  set.set_joint(v1::valid_utf8(joint));
+  set.set_position(position);
+  set.set_velocity(velocity);
 }
 
 void Director::spawn(std::string_view xml) {

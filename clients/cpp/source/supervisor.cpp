@@ -263,6 +263,15 @@ std::uint64_t Supervisor::move(std::string_view entity, const std::array<double,
   return state_->ask().tick();
 }
 
+std::uint64_t Supervisor::set_joint(std::string_view entity, std::string_view joint, double position, double velocity) {
+  v1::SetJointRequest& set = *state_->request().mutable_set_joint();
+  set.set_entity(v1::valid_utf8(entity));
+  set.set_joint(v1::valid_utf8(joint));
+  set.set_position(position);
+  set.set_velocity(velocity);
+  return state_->ask().tick();
+}
+
 std::optional<std::string> Supervisor::overlapped(std::string_view what, const std::array<double, 3>& position,
                                                   const std::optional<std::array<double, 4>>& orientation) {
   ask_for_place(what, position, orientation, *state_->request().mutable_is_free());

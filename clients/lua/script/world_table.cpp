@@ -100,6 +100,16 @@ int move(lua_State* state) {
   return 0;
 }
 
+int set_joint(lua_State* state) {
+  check_count(state, 3, 4, "world.set_joint(entity, joint, position [, velocity])");
+  const std::string_view entity = check_entity(state, 1);
+  const std::string_view joint = check_text(state, 2);
+  const double position = check_number(state, 3);
+  director_of(state).set_joint(entity, joint, position, lua_isnoneornil(state, 4) ? 0 : check_number(state, 4));
+  note_act(state);
+  return 0;
+}
+
 /// True, or false and the id of what is there.
 int is_free(lua_State* state) {
   check_count(state, 2, 3, "world.is_free(entity or xml, position [, orientation])");
@@ -312,6 +322,7 @@ void push_world(lua_State* state, const WorldParts& parts) {
   lua_setfield(state, -2, "entities");
   set_log_functions(state, parts.log);
   set_function<move>(state, "move", &director);
+  set_function<set_joint>(state, "set_joint", &director);
   set_function<is_free>(state, "is_free", &director);
   set_function<spawn>(state, "spawn", &director);
   set_function<remove>(state, "remove", &director);

@@ -132,6 +132,11 @@ class Entity:
         is left out (`left_out`), unless it may overlap them: they are pushed apart."""
         self._world.move(self.id, position, orientation, may_overlap=may_overlap)
 
+    def set_joint(self, joint: str, position: float, velocity: float = 0.0) -> None:
+        """A revolute or prismatic joint is put to a position [m, rad] from the assembled pose, within its limits, and a
+        velocity [m/s, rad/s]. What hangs on it follows; other joints and the root stay."""
+        self._world.set_joint(self.id, joint, position, velocity)
+
     def is_free(self, position: Sequence[float], orientation: Sequence[float] = ()) -> bool:
         """Whether it would overlap nothing there."""
         return self._world.is_free(self.id, position, orientation)
@@ -250,6 +255,9 @@ class World(Session):
              may_overlap: bool = False) -> None:
         self._act(move=v1.MoveRequest(entity=entity, position=position, orientation=orientation,
                                       may_overlap=may_overlap))
+
+    def set_joint(self, entity: str, joint: str, position: float, velocity: float = 0.0) -> None:
+        self._act(set_joint=v1.SetJointRequest(entity=entity, joint=joint, position=position, velocity=velocity))
 
     def overlapped(self, what: str, position: Sequence[float],
                    orientation: Sequence[float] = ()) -> Optional[str]:

@@ -6,15 +6,16 @@ import os
 import pathlib
 import socket
 import stat
+from typing import Mapping
 
 
-def find_server() -> str:
-    """The endpoint in ZIGGURAT_ENDPOINT, otherwise that of the only server of this user that
+def find_server(environment: Mapping[str, str] = os.environ) -> str:
+    """The endpoint in ZIGGURAT_ENDPOINT of this environment, otherwise that of the only server of this user that
     `ziggurat serve` has started on this machine without --endpoint.
 
     Raises ValueError if there is none, or more than one.
     """
-    named = os.environ.get("ZIGGURAT_ENDPOINT")
+    named = environment.get("ZIGGURAT_ENDPOINT")
     if named:
         return named
     runtime = os.environ.get("XDG_RUNTIME_DIR", "")

@@ -8,6 +8,7 @@ from typing import Callable, MutableMapping, Optional, Sequence, Union
 
 from . import protocol_pb2 as v1
 from .curve import Curve
+from .find_server import find_server
 from .session import Session
 
 _TOKEN = "ZIGGURAT_SESSION_TOKEN"
@@ -48,13 +49,14 @@ def connect(endpoint: str = "", robots: Union[str, Sequence[str]] = (), *, contr
     wait_timeout     wall time to wait for each observation [s]; None: forever
     resume_timeout   wall time for which a session whose connection was lost is tried to resume [s]; None: as
                      long as the server reserves the robots, at least 10 s; 0: never
-    environment      {}: nothing but the endpoint is taken from there
+    environment      {}: nothing is taken from there; without endpoint it is then that of the only server
     has_ended        whether the server is known to have ended: then it is not waited for
 
     Raises ConnectionLost if no server answers, and Refused if the server refuses the session.
     """
     curve = curve or Curve.from_environment(environment)
     token = take_token(endpoint, environment)
+    endpoint = endpoint or find_server(environment)
     controller = controller or environment.get("ZIGGURAT_CONTROLLER", "")
     wanted = [robots] if isinstance(robots, str) else list(robots)
     if not wanted and not controller:

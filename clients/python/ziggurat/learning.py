@@ -59,6 +59,12 @@ def tell_of_nothing(observation: Any, robot: Robot) -> None:
                       "of values; enable one in the scene, or pass observe=…", stacklevel=4)
 
 
+def world_seed(seed: int) -> int:
+    """The server's seed of an episode. A server draws one where a scene or --seed says 0, so no run has that: in its place
+    is the largest that programs in every language can count with, 2^53 - 1."""
+    return seed or 2 ** 53 - 1
+
+
 class World:
     """A run with episodes, each from a seed: of a server of its own for `scene`, or of the one at `endpoint`.
 
@@ -99,8 +105,9 @@ class World:
         if self._scene is None:
             self.session = connect(self._endpoint, self._robots, can_restore=True, name=self._name)
         else:
-            seeds = [] if seed is None else ["--seed", str(seed)]
-            self.server = Server(self._scene, command=self._command, arguments=[*self._arguments, *seeds])
+            seeds = [] if seed is None else ["--seed", str(world_seed(seed))]
+            self.server = Server(self._scene, command=self._command,
+                                 arguments=["--start-directors", *self._arguments, *seeds])
             # All robots: no other program would connect for the rest, for which the world waits.
             self.session = self.server.session(can_restore=True, name=self._name)
         try:
@@ -109,30 +116,28 @@ class World:
             if not self.agents:
                 raise ValueError(f"robots={self._robots}: the scene has no robot with such an id; it has "
                                  + ", ".join(robot.id for robot in list(self.session.robots)[:8]))
-            if self._scene is not None:
-                self._refuse_directors()
             self.advance()
         except BaseException:
             self.close()
             raise
         self.seed, self._fresh_tick, self._begin_seed = self.session.seed, self.session.tick.number, None
 
-    def _refuse_directors(self) -> None:
-        """The world would wait for them: only `ziggurat run` starts them."""
-        try:
-            with Supervisor(self.session.endpoint, observer=True, name=self._name) as observer:
-                directors = observer.status().free_directors
-        except (ProtocolError, Refused):
-            return  # this server has no observers
-        if directors:
-            raise ValueError(f"{self._scene} has the director {directors[0]!r}, which nothing starts here; start 'ziggurat run "
-                             f"{self._scene} --endpoint URL' and attach parallel_env(endpoint=URL), or remove the director")
+    def goes_on(self) -> bool:
+        """To the tick whose command was sent, or is sent now. False: the run was finished instead, by a director."""
+        if next(self.session, None) is not None:
+            return True
+        if self.session.ending.reason == "finished":
+            return False
+        raise self._early_end()
 
     def advance(self) -> None:
-        """To the tick whose command was sent, or is sent now."""
-        if next(self.session, None) is None:
-            ending = self.session.ending
-            raise RuntimeError(f"the run ended at tick {ending.tick}: {ending.reason} {ending.message}")
+        """As goes_on(), where there must be another tick."""
+        if not self.goes_on():
+            raise self._early_end()
+
+    def _early_end(self) -> RuntimeError:
+        ending = self.session.ending
+        return RuntimeError(f"the run ended at tick {ending.tick}: {ending.reason} {ending.message}")
 
     def begin(self, seed: Optional[int] = None) -> None:
         """An episode at tick 0: of this seed, or of the next one of the stream that the last given seed began."""
@@ -145,9 +150,9 @@ class World:
             self._stream = random.Random(seed)
         else:
             seed = 1 + self._stream.getrandbits(52)
-        if is_given and seed == self._begin_seed:
-            return self.restore(self._begin)
-        if self.session.tick.number != self._fresh_tick or seed != self.seed:
+        if is_given and seed == self._begin_seed and self.session.ending is None and self._restored_begin():
+            return
+        if self.session.tick.number != self._fresh_tick or world_seed(seed) != self.session.seed:
             self._reset(seed)
         self.seed, self._fresh_tick = seed, None
         if self._randomize is not None:
@@ -155,6 +160,17 @@ class World:
         if is_given and self._keeps_begin:
             self.supervisor.snapshot(self._begin)  # in place of that of another seed
             self._begin_seed = seed
+
+    def _restored_begin(self) -> bool:
+        """Whether the world has gone back. Not if a director can't, as Lua scripts: then it is built."""
+        try:
+            self.restore(self._begin)
+            return True
+        except ProtocolError as error:
+            if error.code != "OUT_OF_STATE":
+                raise
+            self._keeps_begin = False
+            return False
 
     def _change(self) -> None:
         """By the program's function. What it changed is sensed at the next tick."""
@@ -166,7 +182,7 @@ class World:
         """By a supervisor, or, if the run has ended or the server allows none, by another server."""
         if self.session.ending is None:
             try:
-                self.supervisor.reset(seed)
+                self.supervisor.reset(world_seed(seed))
                 self.session.expect_reset()
                 return self.advance()
             except (ProtocolError, Refused) as error:

@@ -191,6 +191,13 @@ class Supervisor:
         return self._ask(move=v1.MoveRequest(entity=entity, position=position, orientation=orientation,
                                              may_overlap=may_overlap)).tick
 
+    def set_joint(self, entity: str, joint: str, position: float, velocity: float = 0.0) -> int:
+        """A revolute or prismatic joint is put to a position [m, rad] from the assembled pose, within its limits, and a
+        velocity [m/s, rad/s]. What hangs on it follows; other joints and the root of the entity stay, and motors keep
+        their targets."""
+        return self._ask(set_joint=v1.SetJointRequest(entity=entity, joint=joint, position=position,
+                                                      velocity=velocity)).tick
+
     def overlapped(self, what: str, position: Sequence[float],
                    orientation: Sequence[float] = ()) -> Optional[str]:
         """What an entity, or an element as in <arena>, would overlap there: the first entity's id; None: the place is

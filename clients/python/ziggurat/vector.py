@@ -171,13 +171,13 @@ class VectorEnv:
         rewards, terminations = numpy.zeros(shape), numpy.zeros(shape, bool)
         truncations = numpy.zeros(shape, bool)
         for number, world in enumerate(self._worlds):
-            world.advance()
+            goes_on = world.goes_on()
             self._read(number)
             robots = world.agents
             rewards[number] = [self._reward(robot) for robot in robots]
             terminations[number] = [self._terminated(robot) for robot in robots]
             tick = world.session.tick.number - world.first_tick
-            truncations[number] = self._max_ticks is not None and tick >= self._max_ticks
+            truncations[number] = not goes_on or (self._max_ticks is not None and tick >= self._max_ticks)
         over = terminations.all(axis=1) | truncations.all(axis=1)
         infos = {}
         if self._autoreset and over.any():

@@ -97,6 +97,16 @@ def _still_turned(stage) -> str:
     return "" if found == expected else f"arm0 is at {found}; expected {expected}"
 
 
+def _bent(stage) -> str:
+    """The hinge of arm0 is at an angle about z: its lamp's link has turned by it."""
+    stage.play((ask("s", 8, read={"entities": ["arm0"]}),))
+    entity = stage.peer("s").hear(stage.patience).response.states.entities[0]
+    hand = next(link for link in entity.links if link.id == "hand")
+    found = [round(v, 9) for v in (*entity.position, *hand.orientation, *hand.angular_velocity)]
+    expected = [0.3, 0.3, 0.0, *_TURNED, 0.0, 0.0, 2.5]
+    return "" if found == expected else f"arm0 and its hand are at {found}; expected {expected}"
+
+
 def _v(name: str, title: str, *steps, level: Level = Level.RECONNECT, **more) -> Case:
     return Case(name, title, tuple(steps), level, **more)
 
@@ -221,6 +231,16 @@ CASES = [
     _v("V8.may-overlap", "A move that may overlap is done", *_paused(), *_spawned(2, _BOX),
        ask("s", 3, move={"entity": "arm0", "position": [1.5, 1.5, 0.0], "may_overlap": True}), told("s", 3), *_resumed(),
        fresh=True),
+    _v("V20.set", "A joint may be set to a position and a speed; the rest stays", *_paused(version=_V14),
+       ask("s", 2, set_joint={"entity": "arm0", "joint": "hinge", "position": 2 * math.atan2(0.6, 0.8), "velocity": 2.5}),
+       told("s", 2), Check("bent", _bent), *_resumed(), fresh=True),
+    _v("V20.unknown", "An entity or a joint that is not there is UNKNOWN_ENTITY", *_paused(version=_V14),
+       ask("s", 2, set_joint={"entity": "nobody", "joint": "hinge"}), failed("s", 2, "UNKNOWN_ENTITY"),
+       ask("s", 3, set_joint={"entity": "arm0", "joint": "knee"}), failed("s", 3, "UNKNOWN_ENTITY"), *_resumed()),
+    *[_v(f"V20.{name}", f"A {what} is BAD_VALUE", *_paused(version=_V14),
+         ask("s", 2, set_joint={"entity": "arm0", "joint": "hinge", **motion}), failed("s", 2, "BAD_VALUE"), *_resumed())
+      for name, what, motion in (("nan", "position that is no number", {"position": math.nan}),
+                                 ("fast", "velocity beyond 10^6", {"velocity": 1.1e6}))],
     _v("V18.free", "A place with nothing in it is free", *_paused(),
        ask("s", 2, is_free={"entity": "arm0", "position": [1.5, 1.5, 0.0]}), told("s", 2, place={"overlapped": ""}),
        *_resumed()),

@@ -103,16 +103,31 @@ void NewtonCore::move(Body& body) {
   dynamics::Tree tree(old, base_pose(body));
   tree.gravity = old.gravity;
   old = std::move(tree);
-  for (CoordinateJoint& joint : joints_of(body.entity, joints_)) {
+  begin_anew(*this, body.entity);
+}
+
+void begin_anew(NewtonCore& core, std::size_t entity) {
+  for (CoordinateJoint& joint : joints_of(entity, core.joints_)) {
     joint.limit_impulse = joint.motor_impulse = 0;
   }
-  for (Held& held : held_) {
-    if (held.entity == body.entity) held.impulses = {};
+  for (NewtonCore::Held& held : core.held_) {
+    if (held.entity == entity) held.impulses = {};
   }
-  contacts_.forget(body.entity, system_);
-  lags_.of_tree[body.entity] = Lags::unknown;
-  system_.wake(static_cast<int>(body.entity));
-  colliders_.moved(body.entity, old);
+  core.contacts_.forget(entity, core.system_);
+  core.lags_.of_tree[entity] = Lags::unknown;
+  core.system_.wake(static_cast<int>(entity));
+  core.colliders_.moved(entity, core.system_.trees[entity]);
+}
+
+void set_joint(NewtonCore& core, JointIndex index, double position, double velocity) {
+  const CoordinateJoint& joint = core.joints_[index.value];
+  dynamics::Tree& tree = core.system_.trees[joint.entity];
+  tree.q[place_of(tree, joint.part)] = position;
+  tree.v[dof_of(tree, joint.part)] = velocity;
+  tree.flight_step = 0;
+  dynamics::place(tree);
+  dynamics::move(tree);
+  begin_anew(core, joint.entity);
 }
 
 std::optional<std::size_t> NewtonCore::overlapped_by(

@@ -48,6 +48,9 @@ class NewtonCore {
   void substep(std::span<Body> bodies, double length, int splits, Plugin* stiff);
   void contacts(std::vector<Contact>& out) const { contacts_.tell(out); }
   Convergence convergence() const { return convergence_; }
+  friend void set_joint(NewtonCore& core, JointIndex joint, double position, double velocity);
+  /// Forgets of an entity that was put somewhere else what it remembers of contacts, joints and steps.
+  friend void begin_anew(NewtonCore& core, std::size_t entity);
   friend void archive_fields(math::Archive& archive, NewtonCore& core);
 
  private:
@@ -100,5 +103,8 @@ class NewtonCore {
   dynamics::Foresight foresight_;
   Convergence convergence_;
 };
+
+/// Puts a joint to a position [m] or [rad] and a speed [m/s] or [rad/s].
+void set_joint(NewtonCore& core, JointIndex joint, double position, double velocity);
 
 }  // namespace ziggurat::physics

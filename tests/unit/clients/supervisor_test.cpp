@@ -56,6 +56,22 @@ TEST(Supervisor, ListsTheSessions) {
   EXPECT_NE(supervisor.last_answer_json().find("ROLE_OBSERVER"), std::string::npos);
 }
 
+TEST(Supervisor, SetsAJoint) {
+  FakeServer server([](FakeServer& self) {
+    self.welcome();
+    const v1::ClientMessage question = self.receive();
+    const v1::SetJointRequest& set = question.request().set_joint();
+    EXPECT_EQ(set.entity() + "." + set.joint(), "arm.hinge");
+    EXPECT_EQ(set.position(), 0.5);
+    EXPECT_EQ(set.velocity(), -2);
+    auto message = answer(question);
+    message.mutable_response()->set_tick(7);
+    self.send(message);
+  });
+  Supervisor supervisor(supervise(server));
+  EXPECT_EQ(supervisor.set_joint("arm", "hinge", 0.5, -2), 7U);
+}
+
 TEST(Supervisor, HeartbeatsDoNotExtendTheTimeOut) {
   FakeServer server([](FakeServer& self) {
     self.welcome();

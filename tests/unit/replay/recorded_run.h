@@ -13,6 +13,7 @@
 #include "replay/embedded_files.h"
 #include "replay/replay.h"
 #include "replay/scene.h"
+#include "simulation/joints.h"
 #include "simulation/simulation.h"
 #include "ziggurat/v1/run.pb.h"
 
@@ -106,6 +107,14 @@ class Recorder {
     const math::Quaternion& q = pose.orientation;
     for (const double v : {q.w(), q.x(), q.y(), q.z()}) move.add_orientation(v);
     simulation().move(entity(id), pose);
+  }
+  void set_joint(const std::string& id, const simulation::JointMotion& motion) {
+    auto& set = *inputs().add_acts()->mutable_set_joint();
+    set.set_entity(id);
+    set.set_joint(motion.joint);
+    set.set_position(motion.position);
+    set.set_velocity(motion.velocity);
+    simulation::set_joint(simulation(), entity(id), motion);
   }
   void spawn(const std::string& xml) {
     inputs().add_acts()->mutable_spawn()->set_xml(xml);

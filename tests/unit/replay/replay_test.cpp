@@ -196,6 +196,28 @@ TEST(Replay, RefusesInputsThatThisWorldCannotHaveHad) {
   EXPECT_NE(error_of(bad).find("seed 0"), std::string::npos);
 }
 
+TEST(Replay, SetsJointsAgain) {
+  testing::Recorder run;
+  run.set_joint("r", {"hinge", 1.25, -3});
+  for (int i = 0; i < 3; ++i) run.step();
+  run.snapshot("here");
+  run.set_joint("r", {"hinge", -0.5, 0});
+  run.step();
+  run.restore("here");
+  run.step();
+  EXPECT_EQ(same_states(run.recording), run.recording.inputs.size());
+
+  Recording bad = run.recording;
+  auto& set = *bad.inputs[0].mutable_acts(0)->mutable_set_joint();
+  set.set_position(std::nan(""));
+  EXPECT_EQ(error_of(bad), "the recording's inputs of tick 0: a joint cannot be set: The position of joint 'hinge' of 'r' is nan; "
+                           "it must be from -1e+06 to 1e+06 rad.");
+  set.set_joint("knee");
+  EXPECT_NE(error_of(bad).find("'r' has no joint 'knee'; write one of 'hinge'."), std::string::npos) << error_of(bad);
+  set.set_entity("ghost");
+  EXPECT_EQ(error_of(bad), "the recording's inputs of tick 0: there is no entity 'ghost'");
+}
+
 TEST(Replay, SpawnsReadNoFileFromTheDisk) {
   Recording bad = eventful_run();
   bad.inputs[1].add_acts()->mutable_spawn()->set_xml(

@@ -65,22 +65,6 @@ TEST(Bodies, SurfaceAndDampingDefaults) {
   EXPECT_EQ(read_one(box, engine).links[0].surface.rolling_friction, 0.2);
 }
 
-std::string link(const std::string& id) {
-  return "<link id=\"" + id + "\" geometry=\"sphere\" radius=\"1\" mass=\"1\"/>";
-}
-
-std::string joint(const std::string& id, const std::string& parent, const std::string& child,
-                  const std::string& more = "type=\"fixed\"") {
-  return "<joint id=\"" + id + "\" " + more + "><parent link=\"" + parent + "\"/><child link=\"" +
-         child + "\"/></joint>\n";
-}
-
-std::string tree(const std::string& links, const std::string& joints, const std::string& rest = "",
-                 const std::string& attributes = "id=\"p\"") {
-  return "<prototype " + attributes + "><body/><links ref=\"base\">" + links + "</links><joints>" +
-         joints + "</joints>" + rest + "</prototype>";
-}
-
 TEST(Joints, AreOrderedFromTheRootOutwards) {
   const Entity entity =
       read_one(tree(link("tip") + link("arm") + link("base") + link("other"),

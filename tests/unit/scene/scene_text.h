@@ -73,4 +73,23 @@ inline std::string arena_with(const std::string& elements) {
   return "<arena size=\"4,4,2\" center=\"0,0,1\">" + elements + "</arena>";
 }
 
+/// A ball of 1 m and 1 kg.
+inline std::string link(const std::string& id) {
+  return "<link id=\"" + id + "\" geometry=\"sphere\" radius=\"1\" mass=\"1\"/>";
+}
+
+/// A joint at the origins of two links.
+inline std::string joint(const std::string& id, const std::string& parent, const std::string& child,
+                         const std::string& more = "type=\"fixed\"") {
+  return "<joint id=\"" + id + "\" " + more + "><parent link=\"" + parent + "\"/><child link=\"" +
+         child + "\"/></joint>\n";
+}
+
+/// A prototype whose reference link is `base`.
+inline std::string tree(const std::string& links, const std::string& joints, const std::string& rest = "",
+                        const std::string& attributes = "id=\"p\"") {
+  return "<prototype " + attributes + "><body/><links ref=\"base\">" + links + "</links><joints>" +
+         joints + "</joints>" + rest + "</prototype>";
+}
+
 }  // namespace ziggurat::scene

@@ -96,6 +96,9 @@ class Director {
   /// others are then it is left out (take_warnings), unless it may overlap them: they are pushed apart.
   void move(std::string_view entity, const std::array<double, 3>& position,
             const std::optional<std::array<double, 4>>& orientation = std::nullopt, Onto onto = Onto::free_place);
+  /// A revolute or prismatic joint is put to a position [m, rad] from the assembled pose, within its limits, and a velocity
+  /// [m/s, rad/s]. What hangs on it follows; other joints and the root of the entity stay, and motors keep their targets.
+  void set_joint(std::string_view entity, std::string_view joint, double position, double velocity = 0);
   /// The overlap of an entity, or an element as in <arena>, now at a pose of its origin: the first other entity's id, or
   /// nothing where the place is free. Asks the server and waits for its answer; acts that were asked for since the last
   /// next() are not done yet. The floor does not count, nor does the entity itself.

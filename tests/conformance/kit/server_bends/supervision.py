@@ -58,7 +58,7 @@ TOLD["states-reversed"] = _of_states(lambda states: refill(states, "entities", r
 TOLD["no-state-hash"] = _of_states(lambda states: states.ClearField("hash"))
 
 
-@told("unknown-entity-is-none", "place-of-none")
+@told("unknown-entity-is-none")
 def _(connection, message):
     if message.HasField("response") and message.response.error.code == E.UNKNOWN_ENTITY:
         message.response.ClearField("error")
@@ -69,6 +69,14 @@ def _(connection, message):
 def _(connection, message):
     if message.request.HasField("move"):
         refill(message.request.move, "position", (list(map(finite, message.request.move.position)) + [0.0] * 3)[:3])
+
+
+for _name in ("unknown-place-is-free", "unknown-joint-is-set"):
+    TOLD[_name] = TOLD["unknown-entity-is-none"]
+SAID["joints-at-no-number"] = in_kind("request", lambda _, request: setattr(
+    request.set_joint, "position", finite(request.set_joint.position)) if request.HasField("set_joint") else None)
+SAID["joints-at-any-speed"] = in_kind("request", lambda _, request: setattr(
+    request.set_joint, "velocity", min(request.set_joint.velocity, 1e6)) if request.HasField("set_joint") else None)
 
 
 SAID["turns-back"] = in_kind("request", lambda _, request: refill(
@@ -97,7 +105,7 @@ def done_without(kind):
     return bend
 
 
-for _kind in ("move", "spawn", "remove", "shutdown", "snapshot", "resume"):
+for _kind in ("move", "set_joint", "spawn", "remove", "shutdown", "snapshot", "resume"):
     SAID[f"{_kind}-not-done"] = done_without(_kind)
 TOLD["removed-not-told"] = drop("error", E.NOT_YOURS)
 

@@ -154,13 +154,15 @@ TEST(DirectorScript, ActsInTheOrderOfItsCalls) {
       world.push("arm", {x = 1, y = 0, z = 0}, nil, "tip")
       world.set_leds("arm", "blue")
       world.set_leds("arm", {"red", "0,1,2,255"})
+      world.set_joint("arm", "hinge", -0.5)
+      world.set_joint(world.entities.arm, "hinge", 1, 2.5)
       world.metric("height", 0.5)
       metric("width", 2)
     end
   )", 0);
   ASSERT_EQ(directed.directions.size(), 1U) << directed.leave.message();
   const v1::Direction& all = directed.directions[0];
-  ASSERT_EQ(all.acts_size(), 7);
+  ASSERT_EQ(all.acts_size(), 9);
   EXPECT_NEAR(all.acts(0).move().orientation(0), 0, 1e-15);
   EXPECT_NEAR(all.acts(0).move().orientation(3), 1, 1e-15);
   EXPECT_EQ(all.acts(1).move().orientation_size(), 0);
@@ -170,6 +172,11 @@ TEST(DirectorScript, ActsInTheOrderOfItsCalls) {
   EXPECT_EQ(all.acts(4).push().torque(0), 0);
   EXPECT_EQ(all.acts(5).show().led_colors(1), 0x0000ffU);
   EXPECT_EQ(all.acts(6).show().led_colors(1), 0x000102U);
+  EXPECT_EQ(all.acts(7).set_joint().entity(), "arm");
+  EXPECT_EQ(all.acts(7).set_joint().joint(), "hinge");
+  EXPECT_EQ(all.acts(7).set_joint().position(), -0.5);
+  EXPECT_EQ(all.acts(7).set_joint().velocity(), 0);
+  EXPECT_EQ(all.acts(8).set_joint().velocity(), 2.5);
   ASSERT_EQ(all.metrics_size(), 2);
   EXPECT_EQ(all.metrics(1).name(), "width");
 }
@@ -185,6 +192,9 @@ TEST(DirectorScript, SaysWhatIsWrong) {
   has("world.move('box', {x = 0/0, y = 2, z = 3})", "finite numbers");
   has("world.move(nil, {x = 1, y = 2, z = 3})", "an entity or its id expected");
   has("world.move('box', {x = 1, y = 2, z = 3}, {angle = 1, axis = {x = 0, y = 0, z = 0}})", "must have a length");
+  has("world.set_joint('arm', 'hinge')", "world.set_joint(entity, joint, position [, velocity])");
+  has("world.set_joint('arm', 'hinge', 0/0)", "finite number expected");
+  has("world.set_joint('arm', 7, 0)", "string expected");
   has("world.spawn(7)", "string expected");
   has("world.set_leds('box', {'red'})", "'box' has no LEDs");
   has("world.set_directional_leds('box', 'red')", "'box' has no directional LEDs");

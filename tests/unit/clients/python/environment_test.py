@@ -53,6 +53,16 @@ class Environment(SessionCase):
                            SESSION_TOKEN="00ff")
         self.assertEqual((hello.controller, list(hello.robots), hello.session_token), ("", ["*"], b""))
 
+    def test_an_empty_environment_names_no_endpoint(self):
+        with tempfile.TemporaryDirectory() as folder:
+            names = {"ZIGGURAT_ENDPOINT": "tcp://127.0.0.1:1", "XDG_RUNTIME_DIR": folder}
+            with unittest.mock.patch.dict(os.environ, names):
+                self.assertEqual(ziggurat.find_server(), "tcp://127.0.0.1:1")
+                with unittest.mock.patch("pathlib.Path.iterdir", lambda _: iter(())):  # servers of this user below /tmp
+                    for look in (lambda: ziggurat.find_server({}), lambda: ziggurat.connect(environment={})):
+                        with self.assertRaisesRegex(ValueError, "no server of this user runs here"):
+                            look()
+
     def test_the_token_is_of_a_session_at_the_endpoint_of_the_environment(self):
         at = self.server.endpoint
         for client, token, left in ((ziggurat.connect, b"\0\xff", None), (lambda: ziggurat.connect(at), b"\0\xff", None)):

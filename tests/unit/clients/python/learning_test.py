@@ -137,6 +137,44 @@ class Learning(unittest.TestCase):
         found = env.supervisors()[0].read("arm0")["arm0"].position
         self.assertAlmostEqual(found[0], places[0][0], places=6)
 
+    def test_joints_are_set_at_the_beginning_of_an_episode(self):
+        angles = []
+
+        def randomize(world, rng):
+            angles.append(rng.uniform(-3, 3))
+            world.set_joint("arm0", "hinge", angles[-1], velocity=2)
+
+        env = self.parallel(ARMS, randomize=randomize, robots="arm0", arguments=["--duration", "0"])
+        for seed in (0, 5, None):
+            env.reset(seed=seed)
+            found = env._robot("arm0").joints["hinge"].position
+            # A motor stops the hand of 8e-5 kg m^2 in the first substep, by at most 0.01 N m s.
+            self.assertAlmostEqual(found, angles[-1], delta=2 * 0.05 + 1e-9)
+        worlds = self.vector(ARMS, 2, randomize=randomize, robots="arm0")
+        observations, _ = worlds.reset(seed=0)
+        self.assertEqual(angles[3], angles[0])
+        for world in (0, 1):
+            self.assertLess(min(abs(observations[world] - angles[3 + world])), 0.1 + 1e-9, "the encoder's")
+        with self.assertRaisesRegex(ziggurat.ProtocolError, "UNKNOWN_ENTITY.*write one of 'hinge'"):
+            worlds.supervisors()[0].set_joint("arm0", "knee", 0)
+
+    def test_a_seed_of_0_begins_an_episode_as_any_other(self):
+        """No world has it: 0 in a scene or in --seed is one that is drawn."""
+        env = self.parallel(ARMS, arguments=["--ticks", "2"])
+        seeds = []
+        for seed in (0, None, 0):
+            env.reset(seed=seed)
+            seeds.append(self.seed_of(env))
+            while env.agents:  # the next reset starts another server
+                env.step({})
+        self.assertEqual((seeds[0], seeds[2]), (2 ** 53 - 1, 2 ** 53 - 1))
+        self.assertNotEqual(seeds[1], seeds[0])
+        worlds = self.vector(ARMS, 2)
+        for _ in range(2):
+            worlds.reset(seed=0)
+            self.assertEqual([each.status().seed for each in worlds.supervisors()], [2 ** 53 - 1, 1])
+            worlds.step(numpy.zeros(worlds.action_space.shape))
+
     def test_an_empty_observation_is_told(self):
         env = self.parallel(ARMS, observe=lambda robot: [])
         with self.assertWarnsRegex(UserWarning, "observation of robot 'arm0' is empty"):
@@ -158,11 +196,48 @@ class Learning(unittest.TestCase):
         for make in (lambda: self.vector(scene, 2), lambda: self.parallel(scene).reset()):
             self.quickly(make, RuntimeError, r"^ziggurat serve has ended: .*changed.argos:\d+:\d+: .*arm0")
 
-    def test_a_director_that_nothing_would_start_is_told_at_once(self):
-        scene = self.changed(ARMS, "</framework>", "</framework>" + DIRECTOR)
-        pathlib.Path(scene).with_name("judge.lua").write_text("function step() end")
+    def with_director(self, element, script=""):
+        scene = self.changed(ARMS, "</framework>", "</framework>" + element)
+        pathlib.Path(scene).with_name("judge.lua").write_text(script)
+        return scene
+
+    def test_directors_of_the_scene_are_started(self):
+        """This one moves the first arm at each tick, and ends each episode in place of tick 4."""
+        scene = self.with_director(DIRECTOR, """
+            function post_step(tick)
+              world.move("arm0", {x = 1, y = tick / 10, z = 0})
+              if tick == 3 then world.finish("enough") end
+            end""")
+
+        def place(robot):
+            return robot.pose.position if robot.pose else (0, 0, 0)
+
+        env = self.parallel(scene, observe=place)
+        worlds = self.vector(scene, 2, robots="arm0", observe=place)
+        for seed in (4, 4, 5, None):
+            observations, _ = env.reset(seed=seed)
+            for _ in range(4):
+                observations, _, _, truncations, _ = env.step({})
+            self.assertAlmostEqual(observations["arm0"][1], 0.2, places=6)
+            self.assertTrue(truncations["arm0"])
+            self.assertEqual(env.agents, [])
+            worlds.reset(seed=seed)
+            over = [worlds.step(numpy.zeros(worlds.action_space.shape))[3].tolist() for _ in range(4)]
+            self.assertEqual(over, [[False] * 2] * 3 + [[True] * 2])
+
+    def test_a_world_with_a_lua_director_is_built_again_for_the_same_seed(self):
+        scene = self.with_director(DIRECTOR, "function post_step(tick) end")
+        worlds = self.vector(scene, 1, robots="arm0")
+        for _ in range(3):
+            _, infos = worlds.reset(seed=6)
+            self.assertEqual(infos["tick"].tolist(), [0])
+            self.assertEqual(worlds.supervisors()[0].status().seed, 6)
+            worlds.step(numpy.zeros(worlds.action_space.shape))
+
+    def test_a_director_that_nothing_can_start_is_told_at_once(self):
+        scene = self.with_director('<director id="judge"/>')
         for make in (lambda: self.vector(scene, 1), lambda: self.parallel(scene).reset()):
-            self.quickly(make, ValueError, r"changed.argos has the director 'judge', which nothing starts here; .*--endpoint")
+            self.quickly(make, RuntimeError, r"changed.argos:\d+:\d+: director 'judge' has no program that can be started; write script=")
 
 
 if __name__ == "__main__":

@@ -55,6 +55,13 @@ class Supervision(SessionCase):
         self.assertEqual(list(self.request.move.position), [1, 2, 3])
         self.assertEqual(list(self.request.move.orientation), [])
 
+    def test_set_joint(self):
+        self.assertEqual(self.ask(lambda world: world.set_joint("arm", "hinge", 0.5), {"tick": 4}), 4)
+        sent = self.request.set_joint
+        self.assertEqual((sent.entity, sent.joint, sent.position, sent.velocity), ("arm", "hinge", 0.5, 0))
+        self.ask(lambda world: world.set_joint("arm", "hinge", -1, velocity=2.5), {})
+        self.assertEqual((self.request.set_joint.position, self.request.set_joint.velocity), (-1, 2.5))
+
     def test_read(self):
         link = v1.States.Link(id="base", position=[1, 2, 3], velocity=[4, 5, 6])
         entity = v1.States.Entity(id="box", position=[0, 0, 1], orientation=[1, 0, 0, 0],
