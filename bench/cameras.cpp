@@ -20,7 +20,7 @@
 #include "devices/kind.h"
 #include "scene/reader.h"
 #include "simulation/layout.h"
-#include "simulation/place.h"
+#include "simulation/placement.h"
 
 namespace ziggurat::devices {
 std::unique_ptr<Kind> make_cameras();  // camera.cpp

@@ -14,7 +14,7 @@
 #include "run/loading.h"
 #include "scene/tag_pattern.h"
 #include "scene/values.h"
-#include "simulation/doubts.h"
+#include "simulation/scene_warnings.h"
 #include "simulation/simulation.h"
 #include "text/numbers.h"
 

@@ -25,7 +25,7 @@ struct Workspace {
   std::array<double, 6> drift{};     ///< by momentum_after()
   double bending = 0;                ///< relative change of a tree's speeds by Coriolis forces, by momentum_after()
   bool late = false;                 ///< a flight ran out of steps before the end of its substep
-  std::vector<double> stages;        ///< of the integrator, see flight.h
+  std::vector<double> stages;        ///< of the integrator, see free_motion.h
   std::vector<double> before;        ///< q and v, kept while a flight is tried
 };
 

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "dynamics/equations.h"
-#include "dynamics/excess.h"
-#include "dynamics/flight.h"
-#include "dynamics/impact.h"
-#include "dynamics/nutation.h"
+#include "dynamics/energy_error.h"
+#include "dynamics/free_motion.h"
+#include "dynamics/restitution_timing.h"
+#include "dynamics/gyroscopic_stiffness.h"
 #include "dynamics/system.h"
 
 namespace ziggurat::dynamics {

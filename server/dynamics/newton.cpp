@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "dynamics/slope.h"
+#include "dynamics/constraint_hessian.h"
 
 namespace ziggurat::dynamics {
 namespace {
@@ -102,7 +102,7 @@ double miss_beyond(const Problem& problem, const Speeds& speeds, double enough) 
   return worst;
 }
 
-/// Of all blocks, see law.h [J].
+/// Of all blocks, see contact_law.h [J].
 double wrong_energy(const Problem& problem, const Speeds& speeds) {
   double sum = 0;
   for (std::size_t i = 0; i < problem.blocks.size(); ++i) {

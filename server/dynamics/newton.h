@@ -12,8 +12,8 @@
 #include <algorithm>
 
 #include "dynamics/block_matrix.h"
-#include "dynamics/law.h"
-#include "dynamics/sweeps.h"
+#include "dynamics/contact_law.h"
+#include "dynamics/gauss_seidel.h"
 
 namespace ziggurat::dynamics {
 

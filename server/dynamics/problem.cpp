@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/flight.h"
+#include "dynamics/free_motion.h"
 
 namespace ziggurat::dynamics {
 namespace {

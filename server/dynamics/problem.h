@@ -36,7 +36,7 @@ struct Block {
 
   double yield = 0;  ///< of a contact: the speed into each other that a normal impulse leaves [1/kg]
 
-  std::array<double, most_rows> anchor{};  ///< of the softened law, see law.h [N s], [N m s]
+  std::array<double, most_rows> anchor{};  ///< of the softened law, see contact_law.h [N s], [N m s]
 
   double gap = 0;                   ///< of contacts and limits [m] or [rad]
   double bend = 0;                  ///< of a contact that turns: by how much faster its surfaces part in a second without forces [m/s^2]

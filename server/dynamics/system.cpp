@@ -4,8 +4,8 @@
 #include <tuple>
 #include <utility>
 
-#include "dynamics/excess.h"
-#include "dynamics/fetch.h"
+#include "dynamics/energy_error.h"
+#include "dynamics/prefetch.h"
 
 namespace ziggurat::dynamics {
 namespace {

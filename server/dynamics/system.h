@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "dynamics/drive.h"
-#include "dynamics/excess.h"
+#include "dynamics/prescribed_joints.h"
+#include "dynamics/energy_error.h"
 #include "dynamics/newton.h"
-#include "dynamics/rebound.h"
-#include "dynamics/tension.h"
-#include "dynamics/unheld.h"
+#include "dynamics/restitution_energy.h"
+#include "dynamics/geometric_stiffness.h"
+#include "dynamics/unconstrained_trees.h"
 
 namespace ziggurat::dynamics {
 
@@ -83,7 +83,7 @@ class System {
   double softness = usual_softness;
   static constexpr double usual_softness = 5e-5;
   double allowed_overlap = 1e-6;  ///< it may remain, because rounding must not move bodies [m]
-  /// Into how many parts step() may ask to divide itself for an island, see tension.h and nutation.h. 1: it may not.
+  /// Into how many parts step() may ask to divide itself for an island, see geometric_stiffness.h and gyroscopic_stiffness.h. 1: it may not.
   int most_parts = 1;
   bool is_part = false;  ///< step() takes one of these parts
   LeftIslands left;      ///< by the last step()

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "dynamics/fetch.h"
+#include "dynamics/prefetch.h"
 #include "dynamics/rotation.h"
 
 namespace ziggurat::dynamics {

@@ -141,7 +141,7 @@ class Tree {
   friend void place(Tree& tree);
 };
 
-/// Asks for the memory of a tree's state and of what follows from it: see fetch.h.
+/// Asks for the memory of a tree's state and of what follows from it: see prefetch.h.
 void fetch(const Tree& tree);
 
 /// Poses, axes and origin from q.

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "math/pose.h"
-#include "physics/motion.h"
+#include "physics/twist.h"
 #include "physics/newton/articulation.h"
 #include "physics/values.h"
 #include "scene/scene.h"

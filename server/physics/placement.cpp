@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "physics/nearby.h"
+#include "physics/sphere_grid.h"
 #include "physics/overlap.h"
 
 namespace ziggurat::physics {

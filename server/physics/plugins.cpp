@@ -7,7 +7,7 @@
 
 #include "physics/forces.h"
 #include "physics/magnets.h"
-#include "physics/touch.h"
+#include "physics/contact_sensing.h"
 #include "physics/wheels.h"
 
 namespace ziggurat::physics {

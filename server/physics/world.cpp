@@ -9,7 +9,7 @@
 #include "physics/core.h"
 #include "physics/magnets.h"
 #include "physics/plugins.h"
-#include "physics/pushes.h"
+#include "physics/external_forces.h"
 
 namespace ziggurat::physics {
 

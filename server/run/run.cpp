@@ -21,7 +21,7 @@
 #include "run/loading.h"
 #include "run/setup.h"
 #include "run/version.h"
-#include "simulation/doubts.h"
+#include "simulation/scene_warnings.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {

@@ -10,7 +10,7 @@
 #include "simulation/finite.h"
 #include "simulation/layout.h"
 #include "simulation/parts.h"
-#include "simulation/place.h"
+#include "simulation/placement.h"
 
 namespace ziggurat::simulation {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "physics/values.h"
 #include "scene/scene.h"
-#include "simulation/place.h"
+#include "simulation/placement.h"
 #include "simulation/snapshot.h"
 #include "world/commands.h"
 #include "world/contact.h"

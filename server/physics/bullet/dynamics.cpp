@@ -4,7 +4,7 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
 #include "physics/contact/algorithm.h"
-#include "physics/most_contacts.h"
+#include "physics/contact_limits.h"
 
 namespace ziggurat::physics {
 namespace {

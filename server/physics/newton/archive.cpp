@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "physics/most_contacts.h"
+#include "physics/contact_limits.h"
 #include "physics/newton/core.h"
 
 namespace ziggurat::physics {

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-#include "physics/motion.h"
+#include "physics/twist.h"
 
 namespace ziggurat::dynamics {
 class System;

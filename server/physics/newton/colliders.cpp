@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <tuple>
 
-#include "dynamics/fetch.h"
+#include "dynamics/prefetch.h"
 #include "physics/bit_reversed.h"
 #include "physics/convert.h"
 #include "physics/make_room.h"
-#include "physics/most_contacts.h"
+#include "physics/contact_limits.h"
 #include "physics/newton/tree.h"
 #include "physics/shape.h"
 

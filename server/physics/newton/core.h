@@ -9,9 +9,9 @@
 
 #include "dynamics/system.h"
 #include "physics/bodies.h"
-#include "physics/newton/contacts.h"
-#include "physics/newton/division.h"
-#include "physics/newton/lags.h"
+#include "physics/newton/contact_cache.h"
+#include "physics/newton/substep_partition.h"
+#include "physics/newton/leapfrog_sync.h"
 #include "physics/newton/motors.h"
 #include "physics/overlap.h"
 #include "physics/plugin.h"

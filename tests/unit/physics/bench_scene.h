@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "physics/most_contacts.h"
+#include "physics/contact_limits.h"
 #include "physics/world.h"
 #include "scene/scene.h"
 

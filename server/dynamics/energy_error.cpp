@@ -1,0 +1,432 @@
+#include "dynamics/energy_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace ziggurat::dynamics {
+namespace {
+
+constexpr double far = 0.1;         // [rad] per substep
+constexpr double least = 1e-10;     // of the kinetic energy
+constexpr double wild = 0.1;        // likewise, of a gain that servos have not made
+constexpr double most_given = 0.1;  // of the joints' energy: more is lost in an impact
+
+// The relative error of a substep's energy is about the square of an angle or of a relative change of speed. By how
+// much these may grow in a second, so that short substeps do not add up to more than long ones [1/s]:
+constexpr double near = 1e-3;   // the angle, of what is struck
+constexpr double bends = 1e-5;  // the change by Coriolis forces
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// Velocities of a free root with which the tree, stiff, has the same momentum and angular momentum.
+/// @param energy  then [J]
+Vector6 stiff_motion(const Tree& tree, Workspace& work, double& energy) {
+  compute_mass(tree, work);
+  Vector6 momentum = Vector6::Zero();
+  Matrix6 root;
+  for (int i = 0; i < 6; ++i) {
+    const double* row = work.mass.data() + i * tree.dofs;
+    for (int k = 0; k < tree.dofs; ++k) momentum[i] += row[k] * tree.v[k];
+    for (int k = 0; k < 6; ++k) root(i, k) = row[k];
+  }
+  const Vector6 motion = root.llt().solve(momentum);
+  energy = momentum.dot(motion) / 2;
+  return motion;
+}
+
+Vector3 mean_velocity(const Tree& tree, double& mass) {
+  Vector3 momentum = Vector3::Zero();
+  mass = 0;
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    mass += tree.links[i].mass;
+    momentum += tree.links[i].mass * tree.velocity(static_cast<int>(i));
+  }
+  return momentum / mass;
+}
+
+/// Of the part of the speeds that has this energy, what is left without the excess.
+double share_left(double energy, double excess) {
+  return energy > excess ? std::sqrt(1 - excess / energy) : 0;
+}
+
+/// Whether links turn further than that within a substep.
+/// @param after  velocities that were found;  @param angle  [rad]
+bool turns(const Tree& tree, std::span<const double> after, double length, double angle) {
+  const double most = angle * angle / (length * length);
+  for (int k = 0; k < tree.dofs; ++k) {
+    if (tree.axes[k].angular.squaredNorm() * after[k] * after[k] > most) return true;
+  }
+  return std::any_of(tree.motion.begin(), tree.motion.end(), [&](const Motion& motion) {
+    return motion.angular.squaredNorm() > most;
+  });
+}
+
+/// Whether contacts and servos change a tree's speeds by much.
+/// @param mass  its matrix, dofs x dofs
+bool is_struck(const Tree& tree, const double* mass, std::span<const double> after) {
+  constexpr double little = 1e-3;  // of the energy, so to speak
+  double all = 0, change = 0;
+  for (int k = 0; k < tree.dofs; ++k) {
+    const double own = mass[k * tree.dofs + k], step = after[k] - tree.v[k];
+    all += own * after[k] * after[k];
+    change += own * step * step;
+  }
+  return change > little * all;
+}
+
+/// @param after  velocities that were found
+Excess::Kind kind_of(const Problem& problem, std::size_t i, std::span<const double> after) {
+  const Tree& tree = *problem.trees[i];
+  if (turns(tree, after, problem.length, far)) return Excess::Kind::turns_far;
+  const double length = problem.length;
+  const bool bent = problem.bending[i] > std::sqrt(bends * length) ||
+                    (is_struck(tree, problem.mass_of(i), after) &&
+                     turns(tree, after, length, std::sqrt(near * length)));
+  return bent ? Excess::Kind::bends : Excess::Kind::none;
+}
+
+/// What turning alone adds to a momentum that a problem is solved with; work.scratch must have the forces from outside.
+/// @param momentum  of the dof, see momentum_after();  @param after  velocity of the dof that was found
+double added(const Tree& tree, const Workspace& work, const double* mass, double momentum, double after,
+             double length, int dof) {
+  double before = 0;
+  for (int k = 0; k < tree.dofs; ++k) before += mass[dof * tree.dofs + k] * tree.v[k];
+  return momentum - before - length * (work.scratch[dof] + tree.damping[dof] * after);
+}
+
+/// The excess, less the kinetic energy that the tree has at the end; at its state of the beginning.
+/// @param mass      its matrix, dofs x dofs
+/// @param momentum  that it was solved with, see momentum_after()
+/// @param after     velocities that were found
+/// @return          [J]
+double excess_before(const Tree& tree, Workspace& work, const double* mass,
+                     std::span<const double> momentum, std::span<const double> after,
+                     double length) {
+  // With b = M (after - before) - h (forces) - J^T g, what turning alone adds to the momentum, the work
+  // b (before + after) / 2 and the change of after^T M after / 2 with the pose should cancel.
+  work.scratch.resize(tree.dofs);
+  external_forces(tree, work, work.scratch, true, true);
+  double sum = 0;
+  for (int i = 0; i < tree.dofs; ++i) {
+    double energy = 0;
+    for (int k = 0; k < tree.dofs; ++k) energy += mass[i * tree.dofs + k] * after[k] / 2;
+    const double of_turning = added(tree, work, mass, momentum[i], after[i], length, i);
+    sum += of_turning * (tree.v[i] + after[i]) / 2 - energy * after[i];
+  }
+  return sum;
+}
+
+bool is_free_joint(const Tree& tree, std::span<const unsigned char> held, int dof) {
+  return dof >= tree.dof_count[0] && held[dof] == Excesses::free;
+}
+
+bool is_driven(std::span<const unsigned char> held) {
+  return std::find(held.begin(), held.end(), Excesses::driven) != held.end();
+}
+
+bool has_free_joint(const Tree& tree, std::span<const unsigned char> held) {
+  for (int k = 0; k < tree.dofs; ++k) {
+    if (is_free_joint(tree, held, k)) return true;
+  }
+  return false;
+}
+
+/// Twice the kinetic energy of free joints while nothing else moves [J].
+double square_of_free(const Tree& tree, std::span<const unsigned char> held, const double* mass,
+                      std::span<const double> speeds) {
+  double sum = 0;
+  for (int i = 0; i < tree.dofs; ++i) {
+    for (int k = 0; k < tree.dofs && is_free_joint(tree, held, i); ++k) {
+      if (is_free_joint(tree, held, k)) sum += speeds[i] * mass[i * tree.dofs + k] * speeds[k];
+    }
+  }
+  return sum;
+}
+
+/// The bias forces of a part of a tree's speeds, which stay.
+/// @param of_free  of its free joints, or of all else
+void bias_of_part(Tree& tree, Workspace& work, std::span<const unsigned char> held, bool of_free,
+                  std::vector<double>& speeds, std::vector<double>& out) {
+  speeds.assign(tree.v.begin(), tree.v.end());
+  for (int k = 0; k < tree.dofs; ++k) {
+    if (is_free_joint(tree, held, k) != of_free) tree.v[k] = 0;
+  }
+  move(tree);
+  out.resize(tree.dofs);
+  bias_forces(tree, work, out);
+  std::copy(speeds.begin(), speeds.end(), tree.v.begin());
+  move(tree);
+}
+
+/// The same of the free joints of a tree that servos hold. What moves as servos tell it has all the power that it
+/// takes; what free joints get of that alone, as centrifugal forces, is no excess: it swings as in a potential. Where
+/// it changes their inertia it does work, half of what the forces say that depend on both, and that is none either.
+double excess_of_free(Tree& tree, Workspace& work, const double* mass, std::span<const double> momentum,
+                      std::span<const double> after, double length, std::span<const unsigned char> held,
+                      Excesses& memory) {
+  bias_of_part(tree, work, held, false, memory.speeds, memory.bias_of_held);
+  bias_of_part(tree, work, held, true, memory.speeds, memory.bias_of_free);
+  work.scratch.resize(tree.dofs);
+  external_forces(tree, work, work.scratch, true, true);
+  double sum = -square_of_free(tree, held, mass, after) / 2;
+  for (int i = 0; i < tree.dofs; ++i) {
+    if (!is_free_joint(tree, held, i)) continue;
+    const double own = added(tree, work, mass, momentum[i], after[i], length, i) + length * memory.bias_of_held[i];
+    const double of_both = own + length * memory.bias_of_free[i];
+    sum += own * (tree.v[i] + after[i]) / 2 - of_both * tree.v[i] / 2;
+  }
+  return sum;
+}
+
+/// The potential energy that a displacement gives a tree, if it is lifted.
+/// @param by  of each dof [m], [rad]
+/// @return    [J], >= 0
+double lift(const Tree& tree, Workspace& work, const double* by) {
+  work.scratch.resize(tree.dofs);
+  external_forces(tree, work, work.scratch, false, true);
+  double sum = 0;
+  for (int k = 0; k < tree.dofs; ++k) sum -= work.scratch[k] * by[k];
+  return std::max(0.0, sum);
+}
+
+/// See Excesses.
+void note_held(const Problem& problem, std::vector<unsigned char>& held) {
+  static_assert(Excesses::apart == 1, "spins is 0 or 1");
+  held.clear();
+  for (const Tree* tree : problem.trees) held.insert(held.end(), tree->spins.begin(), tree->spins.end());
+  for (const Block& block : problem.blocks) {
+    if (block.kind == Block::Source::contact) continue;
+    if (block.impulse[0] <= block.lower || block.impulse[0] >= block.upper) continue;
+    const bool drives = block.kind == Block::Source::servo;
+    for (const int k : block.dofs_a) {
+      unsigned char& dof = held[problem.offset[block.a] + k];
+      dof = drives ? Excesses::driven : std::max(dof, Excesses::apart);
+    }
+  }
+}
+
+/// The part of a tree's speeds that joints have which nothing holds, and with it the root so that the tree has no
+/// momentum and no angular momentum.
+/// @param of_joints  out: of each dof;  @param momentum  out: that it has, of each dof
+void find_inner_motion(const Tree& tree, Workspace& work, std::span<const unsigned char> held,
+                       std::vector<double>& of_joints, std::vector<double>& momentum) {
+  const int n = tree.dofs, root = tree.dof_count[0];
+  compute_mass(tree, work);
+  of_joints.assign(n, 0.0);
+  momentum.assign(n, 0.0);
+  for (int k = root; k < n; ++k) of_joints[k] = held[k] == Excesses::free ? tree.v[k] : 0;
+  const auto add = [&](int from, int to) {
+    for (int i = 0; i < n; ++i) {
+      for (int k = from; k < to; ++k) momentum[i] += work.mass[i * n + k] * of_joints[k];
+    }
+  };
+  add(root, n);
+  if (root == 0) return;
+  Matrix6 mass = Matrix6::Identity();
+  Vector6 change = Vector6::Zero();
+  for (int i = 0; i < root; ++i) {
+    change[i] = -momentum[i];
+    for (int k = 0; k < root; ++k) mass(i, k) = work.mass[i * n + k];
+  }
+  change = mass.llt().solve(change);
+  std::copy_n(change.data(), root, of_joints.begin());
+  add(0, root);
+}
+
+/// Takes energy from the joints that nothing holds, or gives it to them. Momentum and angular momentum stay if the tree
+/// is free.
+/// @param excess  [J]; < 0: what it should get
+/// @return        what it took [J]
+double take_from_joints(Tree& tree, Workspace& work, std::span<const unsigned char> held, double excess) {
+  if (std::abs(excess) <= least * kinetic_energy(tree)) return 0;
+  find_inner_motion(tree, work, held, work.scratch, work.before);
+  double slope = 0, curve = 0;  // of the energy, along that motion
+  for (int k = 0; k < tree.dofs; ++k) {
+    slope += work.before[k] * tree.v[k];
+    curve += work.before[k] * work.scratch[k] / 2;
+  }
+  if (slope <= 0 || curve <= 0 || -excess > most_given * curve) return 0;
+  const double square = slope * slope - 4 * curve * excess;
+  const double way = square > 0 ? -2 * excess / (slope + std::sqrt(square)) : -slope / (2 * curve);
+  for (int k = 0; k < tree.dofs; ++k) tree.v[k] += way * work.scratch[k];
+  move(tree);
+  return square > 0 ? excess : slope * slope / (4 * curve);
+}
+
+/// Takes energy from the free joints of a tree that servos hold, or gives it to them.
+/// @param before  see Excess
+void undo_excess_of_free(Tree& tree, Workspace& work, std::span<const unsigned char> held, double before) {
+  find_inner_motion(tree, work, held, work.scratch, work.before);
+  const double all = square_of_free(tree, held, work.mass.data(), tree.v) / 2;
+  const double excess = std::clamp(before + all, -most_given * all, most_given * all);
+  if (std::abs(excess) <= least * all) return;
+  const double more = std::sqrt(1 - excess / all) - 1;
+  for (int k = 0; k < tree.dofs; ++k) tree.v[k] += more * work.scratch[k];
+  move(tree);
+}
+
+/// Gives a single body what turning took from it.
+/// @param excess  [J]; nothing happens where it is a gain
+void give_back_turning(Tree& tree, double excess) {
+  const Vector3 drift = tree.velocity(0);
+  const double turning = kinetic_energy(tree) - tree.links[0].mass * drift.squaredNorm() / 2;
+  if (excess >= 0 || -excess > most_given * turning) return;
+  const double share = std::sqrt(1 - excess / turning);
+  for (int k = 0; k < 3; ++k) tree.v[k] *= share;
+  move(tree);
+}
+
+/// Takes what is left of an excess from all speeds: the world may have turned spinning into flying.
+/// @param most  kinetic energy [J]
+void slow_down(Tree& tree, double most) {
+  const double all = kinetic_energy(tree);
+  if (all <= 0 || all - most <= least * all) return;
+  const double share = std::sqrt(std::max(0.0, most) / all);
+  for (double& speed : tree.v) speed *= share;
+  move(tree);
+}
+
+}  // namespace
+
+void note_excesses(const Problem& problem, Workspace& work, Excesses& out) {
+  out.of_trees.assign(problem.trees.size(), {});
+  bool any = false;
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    const auto after = std::span(problem.velocity).subspan(problem.offset[i], problem.trees[i]->dofs);
+    out.of_trees[i].kind = kind_of(problem, i, after);
+    any |= out.of_trees[i].kind != Excess::Kind::none;
+  }
+  if (!any) return;
+  note_held(problem, out.held);
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    Excess& excess = out.of_trees[i];
+    if (excess.kind == Excess::Kind::none) continue;
+    Tree& tree = *problem.trees[i];
+    const std::size_t first = problem.offset[i], dofs = tree.dofs;
+    const auto after = std::span(problem.velocity).subspan(first, dofs);
+    const auto momentum = std::span(problem.momentum).subspan(first, dofs);
+    const auto held = std::span(out.held).subspan(first, dofs);
+    excess.of_free_joints = is_driven(held) && has_free_joint(tree, held);
+    if (is_driven(held) && !excess.of_free_joints && excess.kind == Excess::Kind::bends) {
+      excess.kind = Excess::Kind::none;
+      continue;
+    }
+    excess.before = excess.of_free_joints
+                        ? excess_of_free(tree, work, problem.mass_of(i), momentum, after, problem.length, held, out)
+                        : excess_before(tree, work, problem.mass_of(i), momentum, after, problem.length);
+  }
+}
+
+void add_lifts(const Problem& problem, Workspace& work, Excesses& out) {
+  const auto bounces = [](const Block& block) { return block.bounces; };
+  if (std::any_of(problem.blocks.begin(), problem.blocks.end(), bounces)) return;
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    Excess& excess = out.of_trees[i];
+    if (excess.kind == Excess::Kind::none || excess.of_free_joints) continue;
+    excess.before += lift(*problem.trees[i], work, problem.velocity.data() + problem.offset[i]);
+  }
+}
+
+void undo_excess(Tree& tree, Workspace& work, const Excess& excess, std::span<const unsigned char> held,
+                 bool grounded) {
+  if (excess.kind == Excess::Kind::none) return;
+  if (excess.of_free_joints) return undo_excess_of_free(tree, work, held, excess.before);
+  double sum = excess.before + kinetic_energy(tree);
+  if (is_driven(held) && sum < wild * kinetic_energy(tree)) return;
+  if (tree.single) {
+    if (grounded) give_back_turning(tree, sum);
+  } else {
+    sum -= take_from_joints(tree, work, held, sum);
+    if (!grounded && tree.free_root) return;  // its momentum is right, and with that the energy of its turning
+  }
+  const double most = kinetic_energy(tree) - sum;
+  take_excess(tree, work, sum);
+  if (grounded) slow_down(tree, most);
+}
+
+bool gains_much(const Tree& tree, double excess) {
+  return excess > least * kinetic_energy(tree);
+}
+
+void take_excess(Tree& tree, Workspace& work, double excess) {
+  if (!gains_much(tree, excess)) return;
+  const double all = kinetic_energy(tree);
+  if (!tree.free_root) {
+    const double share = share_left(all, excess);
+    for (double& speed : tree.v) speed *= share;
+    return move(tree);
+  }
+  if (!tree.single) {
+    double stiff = 0;
+    const Vector6 motion = stiff_motion(tree, work, stiff);
+    const double joints = std::max(0.0, all - stiff), share = share_left(joints, excess);
+    for (int k = 0; k < tree.dofs; ++k) {
+      const double kept = k < 6 ? motion[k] : 0;
+      tree.v[k] = kept + share * (tree.v[k] - kept);
+    }
+    move(tree);
+    excess -= joints;
+    if (excess <= 0) return;
+  }
+  double mass = 0;
+  const Vector3 drift = mean_velocity(tree, mass);
+  const double turning = kinetic_energy(tree) - mass * drift.squaredNorm() / 2;
+  const double share = share_left(turning, excess);
+  for (double& speed : tree.v) speed *= share;
+  for (int k = 0; k < 3; ++k) tree.v[3 + k] += (1 - share) * drift[k];
+  move(tree);
+}
+
+void take_excess(std::span<Tree* const> trees, Workspace& work, double excess) {
+  double all = 0;
+  for (const Tree* tree : trees) all += kinetic_energy(*tree);
+  if (excess <= 0 || all <= 0) return;
+  const double share = excess / all;
+  for (Tree* tree : trees) take_excess(*tree, work, share * kinetic_energy(*tree));
+}
+
+double energy(std::span<Tree* const> trees) {
+  double sum = 0;
+  for (const Tree* tree : trees) {
+    sum += kinetic_energy(*tree);
+    for (std::size_t i = 0; i < tree->links.size(); ++i) {
+      sum -= tree->links[i].mass * tree->gravity.dot(tree->position[i]);
+    }
+  }
+  return sum;
+}
+
+double energy_if_passive(const Problem& problem) {
+  const auto acts = [](const Wrench& push) { return !push.moment.isZero(0) || !push.force.isZero(0); };
+  const auto drives = [](const Block& block) { return block.kind == Block::Source::servo; };
+  const auto has_joints = [](const Tree* tree) { return tree->dofs > tree->dof_count[0]; };
+  const auto is_pushed = [&](const Tree* tree) { return std::ranges::any_of(tree->external, acts); };
+  const bool is_passive = std::ranges::any_of(problem.trees, has_joints) && std::ranges::none_of(problem.blocks, drives) &&
+                          std::ranges::none_of(problem.trees, is_pushed);
+  return is_passive ? energy(problem.trees) : std::numeric_limits<double>::infinity();
+}
+
+void bound_gain(const Problem& problem, Workspace& work, double before, bool grounded, bool is_part) {
+  constexpr double much = 0.02;
+  if (before == std::numeric_limits<double>::infinity()) return;
+  double kinetic = 0, mass = 0;
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    kinetic += kinetic_energy(*problem.trees[i]);
+    mass += problem.total_mass[i];
+  }
+  const double along = problem.length * problem.weight * std::sqrt(2 * kinetic / mass) / 2;
+  const double allowed = is_part ? least * kinetic : along + much * kinetic;
+  const double gain = energy(problem.trees) - before;
+  if (!(gain > allowed)) return;
+  if (!grounded) return take_excess(problem.trees, work, gain);
+  const double share = share_left(kinetic, gain);
+  for (Tree* tree : problem.trees) {
+    for (double& speed : tree->v) speed *= share;
+    move(*tree);
+  }
+}
+
+}  // namespace ziggurat::dynamics

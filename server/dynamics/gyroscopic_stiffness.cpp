@@ -1,0 +1,110 @@
+#include "dynamics/gyroscopic_stiffness.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace ziggurat::dynamics {
+namespace {
+
+/// How far an axis may turn by itself within a step that is not divided, and how far in a part of one that is [rad].
+constexpr double too_far = 0.2, of_a_part = 0.12;
+/// Of an island that is divided: a heap need not know.
+constexpr std::size_t most_trees = 8;
+/// What is nearer than this touches: a step that is too long for it may say that it lifts off [m].
+constexpr double close = 1e-4;
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// How fast the axis of a body may turn by itself [rad/s]; 0 where it spins about a principal one.
+/// @param inertia  principal;  @param spin  along these axes
+double nutation(const Vector3& inertia, const Vector3& spin) {
+  constexpr double little = 1e-4;  // sine of the angle between spin and angular momentum
+  const Vector3 momentum = spin.cwiseProduct(inertia);
+  if (!(spin.cross(momentum).norm() > little * spin.norm() * momentum.norm())) return 0;
+  Vector3 sorted = inertia;
+  std::sort(sorted.begin(), sorted.end());
+  return spin.norm() * (sorted[2] - sorted[0]) / sorted[1];
+}
+
+/// How fast the axis of a tree that turns as one may turn by itself [rad/s].
+/// @param slow  what need not be known
+double nutation_of_whole(const Problem& problem, std::size_t place, double slow) {
+  const Tree& tree = *problem.trees[place];
+  const Vector3 spin = tree.motion[0].angular;
+  if (!tree.free_root || spin.norm() <= slow) return 0;
+  const double* mass = problem.mass_of(place);
+  Matrix6 root;
+  for (int i = 0; i < 6; ++i) root.row(i) = Eigen::Map<const Vector6>(mass + i * tree.dofs);
+  // About the centre of mass: what is left while it moves freely.
+  const Matrix3 coupling = root.topRightCorner<3, 3>();
+  const Matrix3 inertia = root.topLeftCorner<3, 3>() - coupling * coupling.transpose() / root(3, 3);
+  const Eigen::SelfAdjointEigenSolver<Matrix3> principal(inertia);
+  return nutation(principal.eigenvalues(), principal.eigenvectors().transpose() * spin);
+}
+
+/// What a torque on a link changes of its angular velocity, in a plane: the root of the determinant [1/(kg m^2)].
+/// @param normal  of the plane;  @param work  with the tree's factors;  @param memory  of each dof
+double mobility_across(const Tree& tree, std::size_t link, const Vector3& normal, const Workspace& work, std::vector<double>& memory) {
+  const Vector3 one = normal.unitOrthogonal(), other = normal.cross(one);
+  const auto turn = [&](const Vector3& torque) {
+    memory.assign(tree.dofs, 0.0);
+    for (const int k : tree.dofs_of(static_cast<int>(link))) memory[k] = torque.dot(tree.axes[k].angular);
+    solve_mass(tree, work, memory.data());
+    Vector3 change = Vector3::Zero();
+    for (const int k : tree.dofs_of(static_cast<int>(link))) change += tree.axes[k].angular * memory[k];
+    return change;
+  };
+  const Vector3 by_one = turn(one), by_other = turn(other);
+  return std::sqrt(std::max(0.0, one.dot(by_one) * other.dot(by_other) - one.dot(by_other) * other.dot(by_one)));
+}
+
+/// How fast the axes of a tree's rotors may turn by themselves [rad/s]: what turns on a revolute joint, by the most angular momentum
+/// that it has in the step, because a motor may spin it up within one.
+/// @param slow  what need not be known exactly
+double nutation_of_rotors(const Problem& problem, std::size_t place, double slow, Workspace& work) {
+  const Tree& tree = *problem.trees[place];
+  double fastest = 0;
+  bool factored = false;
+  for (std::size_t i = 1; i < tree.links.size(); ++i) {
+    const Link& link = tree.links[i];
+    const Link& carrier = tree.links[link.parent];
+    if (link.joint != JointType::revolute || carrier.joint == JointType::fixed) continue;
+    const int dof = tree.first_dof[i];
+    const Vector3 axis = tree.rotation[i].transpose() * tree.axes[dof].angular;
+    const double speed = std::max(std::abs(tree.v[dof]), std::abs(problem.velocity[problem.offset[place] + dof]));
+    const double momentum = link.inertia.dot(axis.cwiseAbs2()) * speed;
+    if (momentum <= slow * (link.inertia.minCoeff() + carrier.inertia.minCoeff())) continue;
+    if (!std::exchange(factored, true)) {
+      work.mass.assign(problem.mass_of(place), problem.mass_of(place) + tree.dofs * tree.dofs);
+      factor_mass(tree, work, problem.length);
+    }
+    fastest = std::max(fastest, momentum * mobility_across(tree, i, tree.axes[dof].angular, work, work.before));
+  }
+  return fastest;
+}
+
+}  // namespace
+
+int parts_for_nutation(const Problem& problem, Workspace& work) {
+  if (problem.trees.size() > most_trees) return 1;
+  double fastest = 0;
+  for (std::size_t place = 0; place < problem.trees.size(); ++place) {
+    const Tree& tree = *problem.trees[place];
+    const auto touches = [&](const Block& block) {
+      const int it = static_cast<int>(place);
+      return block.kind == Block::Source::contact && (block.a == it || block.b == it) && (block.impulse[0] != 0 || block.gap < close);
+    };
+    const double slow = too_far / problem.length;
+    const double its = tree.single ? nutation(tree.links[0].inertia, tree.rotation[0].transpose() * tree.motion[0].angular)
+                                   : std::max(nutation_of_whole(problem, place, slow), nutation_of_rotors(problem, place, slow, work));
+    if (its > fastest && std::ranges::any_of(problem.blocks, touches)) fastest = its;
+  }
+  const double most = problem.length * fastest;
+  return most > too_far ? static_cast<int>(std::min(std::ceil(most / of_a_part), 1e6)) : 1;
+}
+
+}  // namespace ziggurat::dynamics

@@ -1,0 +1,104 @@
+// Where colliders stand flush beside each other, in the world or in one body, their inner edges are none.
+
+#include <algorithm>
+
+#include "physics/convert.h"
+#include "physics/newton/contact_cache.h"
+
+namespace ziggurat::physics {
+namespace {
+
+constexpr btScalar flush = 1e-5;  // steps in a surface that are none [m]
+constexpr btScalar slack = 1e-4;  // how far beside a collider a point may lie in it [m]
+
+/// How far a collider reaches along a direction, from the world's origin [m].
+btScalar top_of(const Collider& collider, const btVector3& up) {
+  const btVector3 in_it = collider.pose.getBasis().transpose() * up;
+  return up.dot(collider.pose.getOrigin()) + contact::reach_along(collider.shape, in_it);
+}
+
+}  // namespace
+
+/// Whether a point on the base of `cover` is inside of another collider of the base than that of `hidden`, which ends flush with it:
+/// of those near the mover. Notes the pair with it, rather one without contacts.
+/// @param height  of the surface of `cover` along `up` [m]
+bool Contacts::is_inside_base(const Collider& cover, const Pair& hidden, std::size_t mover, const btVector3& up, btScalar height,
+                              const btVector3& point) {
+  neighbours_.clear();
+  lists_.collect(mover, neighbours_);
+  Pair* carrier = nullptr;
+  for (const int number : neighbours_) {
+    Pair& pair = pairs_[number];
+    const Collider& other = colliders_.all[pair.a == mover ? pair.b : pair.a];
+    const bool same_base = cover.moves ? other.entity == cover.entity && other.part == cover.part : !other.moves;
+    if (!same_base || !other.present || &pair == &hidden || btFabs(top_of(other, up) - height) > flush ||
+        !contact::holds(other.shape, other.pose.invXform(point), slack)) {
+      continue;
+    }
+    if (pair.count == 0) return true;
+    carrier = &pair;
+  }
+  if (carrier != nullptr) carriers_.push_back(carrier);
+  return carrier != nullptr;
+}
+
+/// Whether contacts of a collider with `hidden` lie in a seam that its contacts with `seen` cover:
+/// `hidden` is nowhere above the surface of `seen`, which goes on where they touch, in its neighbours too. Both are of one
+/// body, or stand. Then it drops them, and what covers them is not dropped any more: where four tiles meet two would hide each other.
+bool Contacts::drops(Pair& seen, Pair& hidden, std::size_t mover) {
+  if (hidden.covers) return false;
+  carriers_.assign(1, &seen);
+  const bool seen_first = seen.b == mover, hidden_first = hidden.b == mover;
+  const Collider& cover = colliders_.all[seen_first ? seen.a : seen.b];
+  const Collider& other = colliders_.all[hidden_first ? hidden.a : hidden.b];
+  const btVector3 up = to_bullet(seen_first ? math::Vector3(-seen.normal) : seen.normal);
+  const Remembered& on = seen.points[0];
+  const btScalar height = up.dot(cover.pose * to_bullet(seen_first ? on.on_a : on.on_b));
+  if (top_of(other, up) > height + flush) return false;
+  for (int i = 0; i < hidden.count; ++i) {
+    const Remembered& point = hidden.points[i];
+    const btVector3 at = other.pose * to_bullet(hidden_first ? point.on_a : point.on_b);
+    if (contact::holds(cover.shape, cover.pose.invXform(at), slack)) continue;
+    if (!is_inside_base(cover, hidden, mover, up, height, at)) return false;
+  }
+  for (Pair* carrier : carriers_) carrier->covers = true;
+  hidden.count = 0;
+  return true;
+}
+
+/// Notes a pair that touches for each of its sides that moves, where the other may have others beside it.
+void Contacts::note_bases(const Pair& pair) {
+  const int number = static_cast<int>(&pair - pairs_.data());
+  const auto note = [&](std::size_t mover, std::size_t on) {
+    const Collider& base = colliders_.all[on];
+    if (!base.moves) {
+      on_bases_.push_back({mover, Collider::floor, 0, on, number});
+    } else if (colliders_.groups[base.group].count > 1) {
+      on_bases_.push_back({mover, base.entity, base.part, on, number});
+    }
+  };
+  if (colliders_.all[pair.a].moves) note(pair.a, pair.b);
+  if (colliders_.all[pair.b].moves) note(pair.b, pair.a);
+}
+
+/// Drops contacts with inner edges: those between colliders that stand flush beside each other, in
+/// the world or in one body.
+void Contacts::drop_hidden() {
+  if (!std::ranges::is_sorted(on_bases_)) std::ranges::sort(on_bases_);
+  const auto same_base = [](const OnBase& a, const OnBase& b) {
+    return a.mover == b.mover && a.entity == b.entity && a.part == b.part;
+  };
+  bool dropped = false;
+  for (std::size_t i = 0; i < on_bases_.size(); ++i) {
+    const OnBase& one = on_bases_[i];
+    Pair& pair = pairs_[one.pair];
+    for (std::size_t j = i; j-- > 0 && same_base(on_bases_[j], one) && pair.count > 0;) {
+      Pair& other = pairs_[on_bases_[j].pair];
+      if (other.count == 0) continue;
+      dropped |= drops(other, pair, one.mover) || drops(pair, other, one.mover);
+    }
+  }
+  if (dropped) keep_if([](const Pair& pair) { return pair.count > 0; });
+}
+
+}  // namespace ziggurat::physics

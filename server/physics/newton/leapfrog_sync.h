@@ -1,0 +1,30 @@
+#pragma once
+// At which time the speeds of trees are that forces change too fast for whole substeps.
+
+#include <span>
+#include <vector>
+
+#include "dynamics/system.h"
+#include "physics/newton/substep_partition.h"
+
+namespace ziggurat::physics {
+
+/// Of each tree.
+struct Lags {
+  enum Lag : unsigned char {
+    unknown,  ///< it met something, was driven, or is new
+    half,     ///< of half a substep before
+    none      ///< of now
+  };
+  std::vector<unsigned char> of_tree, meets;  ///< the second is working memory
+};
+
+/// A whole substep takes what pushes as an impulse at its beginning, so that speeds are those of half a substep before; in parts
+/// they are those of now. What flies freely from one to the other keeps its energy if its speeds change by what pushes in that half.
+/// To be called before a substep, with what pushes in it.
+/// @param length    of the substep [s]
+/// @param division  of it; null: nothing is divided
+void change_lags(Lags& lags, dynamics::System& system, dynamics::Workspace& work, double length, const Division* division,
+                 std::span<const dynamics::Contact> contacts, std::span<const dynamics::Servo> servos);
+
+}  // namespace ziggurat::physics

@@ -1,0 +1,62 @@
+// A contact is linear in the displacement. What turns far in a substep, as when it strikes a floor
+// with a corner, may overlap by a part of its size at the end, with corners that were far away. So may
+// what is struck or pushed out of an overlap to where its velocity did not lead.
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/convert.h"
+#include "physics/newton/contact_cache.h"
+
+namespace ziggurat::physics {
+namespace {
+
+constexpr btScalar close = btScalar(1e-3);  // points that must not come to overlap, either [m]
+constexpr double deep = 2e-5;               // [m]
+
+bool is_deep(const contact::Contacts& found) {
+  return std::any_of(found.points.begin(), found.points.begin() + found.count,
+                     [](const contact::Point& point) { return point.distance < -deep; });
+}
+
+/// How far a point of a collider may be from where its velocity before the substep would have brought it [m].
+/// @param now     its pose behind it
+/// @param length  of the substep [s]
+double stray(const Collider& moving, const btTransform& now, double length) {
+  const btVector3 way = now.getOrigin() - moving.pose.getOrigin() - length * moving.velocity;
+  double turn = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const btVector3 before = moving.pose.getBasis().getColumn(axis);
+    turn += (now.getBasis().getColumn(axis) - before - length * moving.angular_velocity.cross(before)).length2();
+  }
+  return way.length() + moving.radius * std::sqrt(turn / 2);
+}
+
+}  // namespace
+
+std::span<dynamics::Contact> Contacts::find_turned(const dynamics::System& system) {
+  const double known = least_reach(colliders_, length_);  // contacts were looked for as far
+  overlaps_.clear();
+  for (const Turned& turned : turned_) {
+    const Pair& pair = pairs_[turned.pair];
+    if (pair.count == 0 && !turned.flies) continue;  // hidden
+    const Collider& a = colliders_.all[pair.a];
+    const Collider& b = colliders_.all[pair.b];
+    const btTransform of_a = a.moves ? colliders_.pose(a, system) : a.pose;
+    const btTransform of_b = b.moves ? colliders_.pose(b, system) : b.pose;
+    if (!turned.turns && stray(a.moves ? a : b, a.moves ? of_a : of_b, length_) <= known) continue;
+    const contact::Contacts found =
+        contact::find(a.shape, of_a, b.shape, of_b, close, contact::Support::all);
+    if (!is_deep(found)) continue;
+    const dynamics::Contact law = law_of(a, b, turned.flies ? from_bullet(found.normal) : pair.normal, std::max(pair.count, 1));
+    for (int i = 0; i < found.count; ++i) {
+      dynamics::Contact& contact = overlaps_.emplace_back(law);
+      contact.normal = from_bullet(found.normal);
+      contact.point = from_bullet(found.points[i].on_b);
+      contact.gap = found.points[i].distance;
+    }
+  }
+  return overlaps_;
+}
+
+}  // namespace ziggurat::physics

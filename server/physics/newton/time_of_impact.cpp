@@ -1,0 +1,155 @@
+#include "physics/newton/time_of_impact.h"
+
+#include <LinearMath/btTransformUtil.h>
+
+#include <algorithm>
+
+#include "dynamics/rotation.h"
+#include "physics/convert.h"
+
+namespace ziggurat::physics {
+namespace {
+
+bool is_round(const Collider& collider) {
+  return std::holds_alternative<contact::Sphere>(collider.shape) ||
+         std::holds_alternative<contact::Cylinder>(collider.shape) ||
+         std::holds_alternative<contact::Capsule>(collider.shape);
+}
+
+/// How its surface turns [rad/s]: what is round about an axis is the same however it turns about
+/// it. The points of a ball that turns would be carried back to its side or its top.
+btVector3 turning_of(const Collider& collider) {
+  if (std::holds_alternative<contact::Sphere>(collider.shape)) return {0, 0, 0};
+  const btVector3& turning = collider.angular_velocity;
+  if (!is_round(collider)) return turning;
+  const btVector3 axis = collider.pose.getBasis().getColumn(2);
+  return turning - axis * axis.dot(turning);
+}
+
+/// Where a collider's surface is after some time. What swings goes on in the screw motion that it
+/// is in.
+btTransform pose_after(const Collider& collider, double time) {
+  if (!collider.moves) return collider.pose;
+  const math::Quaternion turn = dynamics::exponential(from_bullet(turning_of(collider)) * time);
+  btVector3 way = collider.velocity * time;
+  const btVector3& w = collider.angular_velocity;
+  if (swing_of(collider, time) > 0) {
+    const btVector3 to_axis = w.cross(collider.velocity) / w.length2();
+    const btMatrix3x3 turned(to_bullet(dynamics::exponential(from_bullet(w) * time)));
+    way = to_axis - turned * to_axis + w * (w.dot(collider.velocity) / w.length2() * time);
+  }
+  return btTransform(btMatrix3x3(to_bullet(turn)) * collider.pose.getBasis(),
+                     collider.pose.getOrigin() + way);
+}
+
+/// The fastest that two surfaces can approach each other along a normal from b to a, also later
+/// where they swing [m/s].
+double fastest_approach(const Collider& a, const Collider& b, const btVector3& normal) {
+  const auto centre = [](const Collider& collider, const btVector3& towards) {
+    return collider.swings ? collider.velocity.length() : towards.dot(collider.velocity);
+  };
+  return centre(b, normal) + centre(a, -normal) + turning_of(a).cross(normal).length() * a.radius +
+         turning_of(b).cross(normal).length() * b.radius;
+}
+
+double least_distance(const contact::Contacts& found) {
+  double least = BT_LARGE_FLOAT;
+  for (int i = 0; i < found.count; ++i) least = std::min(least, double(found.points[i].distance));
+  return least;
+}
+
+/// A collider, and where it is when it meets another one.
+struct Met {
+  const Collider& collider;
+  const btTransform& then;
+
+  /// Where a point of its surface is now.
+  btVector3 now(const btVector3& point) const { return collider.pose * then.invXform(point); }
+  /// Where it would be now if it had the lever already that it has then.
+  btVector3 turned(const btVector3& point) const {
+    return point - then.getOrigin() + collider.pose.getOrigin();
+  }
+  /// The velocity that it has then.
+  btVector3 velocity(const btVector3& point) const {
+    return collider.velocity + collider.angular_velocity.cross(point - then.getOrigin());
+  }
+};
+
+/// Carries points that are found later back to where they are now. Where they rebound, with the
+/// levers of the touch, as far apart as their speeds then bring together in that time.
+/// @param time  until then [s]
+void carry_back(contact::Contacts& found, const Met& a, const Met& b, double time) {
+  const bool turned = rebound_turned(a.collider, b.collider);
+  for (int i = 0; i < found.count; ++i) {
+    contact::Point& point = found.points[i];
+    const btVector3 then_a = point.on_b + found.normal * point.distance, then_b = point.on_b;
+    const btVector3 on_a = turned ? a.turned(then_a) : a.now(then_a),
+                    on_b = turned ? b.turned(then_b) : b.now(then_b);
+    point.distance =
+        turned ? point.distance - time * found.normal.dot(a.velocity(then_a) - b.velocity(then_b))
+               : found.normal.dot(on_a - on_b);
+    // Opposite the point of the body that moves, or of the first one.
+    point.on_b = a.collider.moves ? on_a - found.normal * point.distance : on_b;
+    point.until_met =
+        a.collider.moves ? on_b - point.on_b : on_a - (on_b + found.normal * point.distance);
+  }
+}
+
+}  // namespace
+
+bool normal_turns(const Collider& a, const Collider& b) {
+  const auto is_plane = [](const Collider& c) {
+    return std::holds_alternative<contact::HalfSpace>(c.shape);
+  };
+  return (is_round(a) || is_round(b)) && !is_plane(a) && !is_plane(b);
+}
+
+bool rebound_turned(const Collider& a, const Collider& b) {
+  const auto is_alone = [](const Collider& collider) {
+    return collider.is_alone || !collider.moves;
+  };
+  return std::max(a.surface.restitution, b.surface.restitution) > 0 && is_alone(a) && is_alone(b);
+}
+
+double swing_of(const Collider& collider, double time) {
+  constexpr double on_axis = 1e-3;  // of its size: what is so near the axis only turns
+  if (!collider.swings) return 0;
+  const double turning = collider.angular_velocity.length();
+  return time * (collider.velocity.length() > on_axis * turning * collider.radius
+                     ? turning
+                     : double(turning_of(collider).length()));
+}
+
+contact::Contacts first_meeting(const Collider& a, const Collider& b, double length, double near,
+                                double& time) {
+  constexpr int most_steps = 256;  // what turns much faster than it comes takes many
+  constexpr int most_near = 12;    // what is followed to the touch, nearer than `near`
+  constexpr double touch = 1e-7;   // [m]
+  int left = normal_turns(a, b) || rebound_turned(a, b) ? most_near : 0;
+  contact::Contacts met;
+  double now = time = 0;
+  for (int step = 0; step < most_steps; ++step) {
+    const btTransform pose_a = pose_after(a, now), pose_b = pose_after(b, now);
+    contact::Contacts found =
+        contact::find(a.shape, pose_a, b.shape, pose_b, a.reach + b.reach, contact::Support::all);
+    const double distance = least_distance(found);
+    if (found.count == 0) return met;  // out of reach
+    const double approach = fastest_approach(a, b, found.normal);
+    const double follow = left > 0 ? touch : near;
+    if (distance <= near ||
+        met.count > 0) {  // also when they have passed each other: then the normal says so
+      met = found;
+      time = now;
+      carry_back(met, {a, pose_a}, {b, pose_b}, now);
+      if (distance <= touch || --left <= 0) break;
+    }
+    if (approach <= 0) break;
+    const double next = now + (distance - follow / 2) / approach;
+    const bool ends_near = distance - approach * (length - now) <= near;  // what falls may meet where its speed alone does not lead
+    if (next >= length && (met.count > 0 || !ends_near)) break;
+    now = std::min(next, length);
+  }
+  return met;
+}
+
+}  // namespace ziggurat::physics
