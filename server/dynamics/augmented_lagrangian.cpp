@@ -10,33 +10,33 @@
 namespace ziggurat::dynamics {
 
 /// out += J^T impulse of a block.
-void add_impulse(const Problem& problem, const Block& block, const double* impulse,
+void add_impulse(const Problem& problem, const Constraint& constraint, const double* impulse,
                  std::vector<double>& out) {
-  const auto add_side = [&](int place, int first, std::span<const int> dofs) {
-    if (place < 0) return;
-    by_rows(block.rows, [&](auto rows) {
+  const auto add_side = [&](int index, int first, std::span<const int> dofs) {
+    if (index < 0) return;
+    dispatch_rows(constraint.rows, [&](auto rows) {
       constexpr int R = rows();
       const double* columns = problem.jacobian.data() + first;
-      double* to = out.data() + problem.offset[place];
+      double* to = out.data() + problem.offset[index];
       const auto add = [&](int k) {
         double sum = columns[k * R] * impulse[0];
         for (int r = 1; r < R; ++r) sum += columns[k * R + r] * impulse[r];
         to[k] += sum;
       };
-      const bool leading = leads(dofs);
+      const bool leading = begins_with_floating_base(dofs);
       for (int k = 0; k < 6 && leading; ++k) add(k);
       for (std::size_t e = leading ? 6 : 0; e < dofs.size(); ++e) add(dofs[e]);
     });
   };
-  add_side(block.a, block.ja, block.dofs_a);
-  add_side(block.b, block.jb, block.dofs_b);
+  add_side(constraint.a, constraint.jacobian_a, constraint.dofs_a);
+  add_side(constraint.b, constraint.jacobian_b, constraint.dofs_b);
 }
 
 namespace {
 
 /// Whether a block has an impulse.
-bool gives(const Block& block) {
-  return std::any_of(block.impulse.begin(), block.impulse.begin() + block.rows,
+bool has_impulse(const Constraint& constraint) {
+  return std::any_of(constraint.impulse.begin(), constraint.impulse.begin() + constraint.rows,
                      [](double impulse) { return impulse != 0; });
 }
 
@@ -44,10 +44,10 @@ bool gives(const Block& block) {
 
 /// out := p + J^T g - M v, with the joints' damping in M.
 /// @return  the largest change of a coordinate's speed that is missing, about [m/s] or [rad/s]
-double imbalance(const Problem& problem, std::vector<double>& out) {
+double momentum_residual(const Problem& problem, std::vector<double>& out) {
   out = problem.momentum;
-  for (const Block& block : problem.blocks) {
-    if (gives(block)) add_impulse(problem, block, block.impulse.data(), out);
+  for (const Constraint& constraint : problem.constraints) {
+    if (has_impulse(constraint)) add_impulse(problem, constraint, constraint.impulse.data(), out);
   }
   double worst = 0;
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
@@ -57,7 +57,7 @@ double imbalance(const Problem& problem, std::vector<double>& out) {
     const double* v = problem.velocity.data() + problem.offset[i];
     double* to = out.data() + problem.offset[i];
     for (int r = 0; r < n; ++r) {
-      double sum = problem.length * tree.damping[r] * v[r];
+      double sum = problem.time_step * tree.damping[r] * v[r];
       for (int c = 0; c < n; ++c) sum += mass[r * n + c] * v[c];
       to[r] -= sum;
       worst = std::max(worst, std::abs(to[r]) / mass[r * n + r]);
@@ -66,25 +66,25 @@ double imbalance(const Problem& problem, std::vector<double>& out) {
   return worst;
 }
 
-bool is_balanced(const Problem& problem, std::span<const double> missing, double share, double least, std::vector<double>& given) {
-  given.assign(problem.momentum.size(), 0.0);
-  const auto add_side = [&](const Block& block, int place, int first, std::span<const int> dofs) {
-    for (std::size_t e = 0; place >= 0 && e < dofs.size(); ++e) {
-      double& sum = given[problem.offset[place] + dofs[e]];
-      for (int r = 0; r < block.rows; ++r) sum += std::abs(problem.jacobian[first + dofs[e] * block.rows + r] * block.impulse[r]);
+bool is_momentum_balanced(const Problem& problem, std::span<const double> residual, double share, double least, std::vector<double>& impulse_sum) {
+  impulse_sum.assign(problem.momentum.size(), 0.0);
+  const auto add_side = [&](const Constraint& constraint, int index, int first, std::span<const int> dofs) {
+    for (std::size_t e = 0; index >= 0 && e < dofs.size(); ++e) {
+      double& sum = impulse_sum[problem.offset[index] + dofs[e]];
+      for (int r = 0; r < constraint.rows; ++r) sum += std::abs(problem.jacobian[first + dofs[e] * constraint.rows + r] * constraint.impulse[r]);
     }
   };
-  for (const Block& block : problem.blocks) {
-    if (!gives(block)) continue;
-    add_side(block, block.a, block.ja, block.dofs_a);
-    add_side(block, block.b, block.jb, block.dofs_b);
+  for (const Constraint& constraint : problem.constraints) {
+    if (!has_impulse(constraint)) continue;
+    add_side(constraint, constraint.a, constraint.jacobian_a, constraint.dofs_a);
+    add_side(constraint, constraint.b, constraint.jacobian_b, constraint.dofs_b);
   }
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const int n = problem.trees[i]->dofs;
     for (int k = 0; k < n; ++k) {
-      const int place = problem.offset[i] + k;
-      const double enough = share * (given[place] + std::abs(problem.momentum[place])) + least * problem.mass_of(i)[k * n + k];
-      if (std::abs(missing[place]) > enough) return false;
+      const int index = problem.offset[i] + k;
+      const double enough = share * (impulse_sum[index] + std::abs(problem.momentum[index])) + least * problem.mass_of(i)[k * n + k];
+      if (std::abs(residual[index]) > enough) return false;
     }
   }
   return true;
@@ -94,11 +94,11 @@ namespace {
 
 /// Impulses of the softened law at speeds.
 /// @param linear  out: its linearisations; may be null
-void soften(Problem& problem, std::span<const std::array<double, Block::most_rows>> speeds,
-            double softness, bool anchors, Linear* linear) {
-  for (std::size_t k = 0; k < problem.blocks.size(); ++k) {
-    Block& block = problem.blocks[k];
-    soften(block, speeds[k].data(), softness, anchors, block.impulse.data(), linear ? linear + k : nullptr);
+void regularise(Problem& problem, std::span<const std::array<double, Constraint::most_rows>> speeds,
+            double regularisation, bool about_multipliers, LinearisedLaw* linear) {
+  for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
+    Constraint& constraint = problem.constraints[k];
+    regularise(constraint, speeds[k].data(), regularisation, about_multipliers, constraint.impulse.data(), linear ? linear + k : nullptr);
   }
 }
 
@@ -117,62 +117,62 @@ double square(const Problem& problem, const std::vector<double>& missing) {
 /// @param shortest    part of the way; below 1 it goes as far as it leaves less momentum missing
 /// @param unbalanced  out: the largest change of a coordinate's speed that is missing
 /// @return            false if no step does
-bool Solver::proximal_step(Problem& problem, double softness, bool anchors, double shortest, double& unbalanced) {
+bool VelocitySolver::augmented_lagrangian_step(Problem& problem, double regularisation, bool about_multipliers, double shortest, double& unbalanced) {
   constexpr double enough = 0.1;
-  start_matrix(problem, matrix_);
-  soften(problem, speeds_, softness, anchors, linear_.data());
-  for (std::size_t k = 0; k < problem.blocks.size(); ++k) {
-    add_slope(problem, problem.blocks[k], linear_[k], sloped_, matrix_);
+  assemble_mass(problem, matrix_);
+  regularise(problem, constraint_velocities_, regularisation, about_multipliers, laws_.data());
+  for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
+    add_constraint_hessian(problem, problem.constraints[k], laws_[k], hessian_jacobian_, matrix_);
   }
-  unbalanced = imbalance(problem, residual_);
+  unbalanced = momentum_residual(problem, residual_);
   const double before = square(problem, residual_);
   if (before == 0) return true;
   direction_ = residual_;
   if (!matrix_.factor()) return false;
   matrix_.solve(direction_.data());
   kept_velocity_ = problem.velocity;
-  for (double way = 1; way >= shortest; way /= 2) {
+  for (double step_length = 1; step_length >= shortest; step_length /= 2) {
     for (std::size_t k = 0; k < direction_.size(); ++k) {
-      problem.velocity[k] = kept_velocity_[k] + way * direction_[k];
+      problem.velocity[k] = kept_velocity_[k] + step_length * direction_[k];
     }
-    take_speeds(problem);
-    soften(problem, speeds_, softness, anchors, nullptr);
-    unbalanced = imbalance(problem, residual_);
+    compute_constraint_velocities(problem);
+    regularise(problem, constraint_velocities_, regularisation, about_multipliers, nullptr);
+    unbalanced = momentum_residual(problem, residual_);
     if (shortest == 1) return true;
-    if (square(problem, residual_) < (1 - enough * way) * before) return true;
+    if (square(problem, residual_) < (1 - enough * step_length) * before) return true;
   }
   return false;
 }
 
 /// Full steps as long as they lead nearer to the law.
 /// @return  whether the miss became small; otherwise the problem holds the best state met
-bool Solver::proximal(Problem& problem, Outcome& outcome) {
+bool VelocitySolver::augmented_lagrangian(Problem& problem, SolverResult& outcome) {
   double scale = 0, unbalanced = 0;
-  take_speeds(problem);
-  double before = std::max(miss_now(problem, scale), imbalance(problem, residual_));
-  snapshot_.take(problem);
+  compute_constraint_velocities(problem);
+  double before = std::max(current_residual(problem, scale), momentum_residual(problem, residual_));
+  best_.save(problem);
   double best = before;
-  for (Block& block : problem.blocks) block.anchor = block.impulse;
+  for (Constraint& constraint : problem.constraints) constraint.multiplier = constraint.impulse;
   bool enough = false;
-  for (int i = 0; i < options.most_descents; ++i) {
-    ++outcome.descents;
-    if (!proximal_step(problem, options.softness, true, 1, unbalanced)) break;
-    const double law = miss_now(problem, scale), now = std::max(law, unbalanced);
+  for (int i = 0; i < options.most_augmented_lagrangian_steps; ++i) {
+    ++outcome.augmented_lagrangian_steps;
+    if (!augmented_lagrangian_step(problem, options.regularisation, true, 1, unbalanced)) break;
+    const double law = current_residual(problem, scale), now = std::max(law, unbalanced);
     if (!(now < HUGE_VAL)) break;
     if (now < best) {
       best = now;
-      snapshot_.take(problem);
+      best_.save(problem);
     }
-    if (now <= options.tolerance(scale)) return outcome.miss = now, true;
-    enough = best <= options.tolerance_of_softened(beginning_, scale);
+    if (now <= options.tolerance(scale)) return outcome.residual = now, true;
+    enough = best <= options.tolerance_of_regularised(initial_, scale);
     if (i > 0 && now > 0.3 * before) break;
     before = now;
     if (unbalanced <= 0.1 * law) {
-      for (Block& block : problem.blocks) block.anchor = block.impulse;
+      for (Constraint& constraint : problem.constraints) constraint.multiplier = constraint.impulse;
     }
   }
-  snapshot_.give_back(problem);
-  outcome.miss = best;
+  best_.restore(problem);
+  outcome.residual = best;
   return enough;
 }
 
@@ -180,59 +180,59 @@ bool Solver::proximal(Problem& problem, Outcome& outcome) {
 /// are enough for one, and more where many are not.
 /// What strikes need not be as exact as what stands and must not creep.
 /// @return  whether the miss became small; otherwise the problem holds the best state met
-bool Solver::patient_proximal(Problem& problem, Outcome& outcome) {
+bool VelocitySolver::damped_augmented_lagrangian(Problem& problem, SolverResult& outcome) {
   constexpr int few = 5, many = 15;
   constexpr double hardest = 1e-7, softest = 1, shortest = 1e-4;
-  double scale = 0, unbalanced = 0, softness = options.softness;
-  take_speeds(problem);
-  double best = std::max(miss_now(problem, scale), imbalance(problem, residual_));
+  double scale = 0, unbalanced = 0, regularisation = options.regularisation;
+  compute_constraint_velocities(problem);
+  double best = std::max(current_residual(problem, scale), momentum_residual(problem, residual_));
   double at_anchor = HUGE_VAL;
-  snapshot_.take(problem);
-  anchored_ = problem.velocity;
-  for (Block& block : problem.blocks) block.anchor = block.impulse;
+  best_.save(problem);
+  multiplier_velocity_ = problem.velocity;
+  for (Constraint& constraint : problem.constraints) constraint.multiplier = constraint.impulse;
   bool enough = false;
-  for (int i = 0, steps = 1; i < options.most_patient; ++i, ++steps) {
-    ++outcome.descents;
-    const bool nearer = proximal_step(problem, softness, true, shortest, unbalanced);
-    const double law = miss_now(problem, scale), now = std::max(law, unbalanced);
+  for (int i = 0, steps = 1; i < options.most_damped_steps; ++i, ++steps) {
+    ++outcome.augmented_lagrangian_steps;
+    const bool nearer = augmented_lagrangian_step(problem, regularisation, true, shortest, unbalanced);
+    const double law = current_residual(problem, scale), now = std::max(law, unbalanced);
     if (nearer && now < best) {
       best = now;
-      snapshot_.take(problem);
+      best_.save(problem);
     }
-    if (nearer && now <= options.tolerance(scale)) return outcome.miss = now, true;
-    enough = best <= options.tolerance_of_softened(beginning_, scale);
-    if (enough && beginning_.strikes()) break;
+    if (nearer && now <= options.tolerance(scale)) return outcome.residual = now, true;
+    enough = best <= options.tolerance_of_regularised(initial_, scale);
+    if (enough && initial_.has_impact()) break;
     if (!nearer || steps > many) {
-      if (enough || softness >= softest) break;
-      softness *= 10, steps = 0;
-      problem.velocity = anchored_;
-      take_speeds(problem);
+      if (enough || regularisation >= softest) break;
+      regularisation *= 10, steps = 0;
+      problem.velocity = multiplier_velocity_;
+      compute_constraint_velocities(problem);
     } else if (unbalanced <= 0.1 * law) {
       if (enough && law > 0.3 * at_anchor) break;  // no nearer
       at_anchor = law;
-      for (Block& block : problem.blocks) block.anchor = block.impulse;
-      anchored_ = problem.velocity;
-      if (steps <= few) softness = std::max(hardest, softness / 10);
+      for (Constraint& constraint : problem.constraints) constraint.multiplier = constraint.impulse;
+      multiplier_velocity_ = problem.velocity;
+      if (steps <= few) regularisation = std::max(hardest, regularisation / 10);
       steps = 0;
     }
   }
-  snapshot_.give_back(problem);
-  outcome.miss = best;
+  best_.restore(problem);
+  outcome.residual = best;
   return enough;
 }
 
 /// The softened problem about no anchor, less and less soft, so friction is viscous until it slides: what slides by a little, as the
 /// two ends of a wheel's line do, sticks and slides by turns in steps that know of no friction between.
-void Solver::ease(Problem& problem, Outcome& outcome) {
+void VelocitySolver::continuation(Problem& problem, SolverResult& outcome) {
   constexpr double softest = 1, hardest = 1e-5, shortest = 1e-3, balanced = 1e-2;
   constexpr int most = 10;
-  take_speeds(problem);
-  for (double softness = softest; softness > 0.9 * hardest; softness /= 3) {
+  compute_constraint_velocities(problem);
+  for (double regularisation = softest; regularisation > 0.9 * hardest; regularisation /= 3) {
     for (int i = 0; i < most; ++i) {
       double unbalanced = 0, scale = 0;
-      ++outcome.descents;
-      if (!proximal_step(problem, softness, false, shortest, unbalanced)) break;
-      miss_now(problem, scale);
+      ++outcome.augmented_lagrangian_steps;
+      if (!augmented_lagrangian_step(problem, regularisation, false, shortest, unbalanced)) break;
+      current_residual(problem, scale);
       if (unbalanced <= balanced * scale) break;
     }
   }

@@ -7,16 +7,16 @@ namespace {
 
 /// One side of a block of R rows.
 struct Side {
-  int place = -1;                   // of its tree in the island
+  int index = -1;                   // of its tree in the island
   int dofs = 0;                     // of the tree
   const double* columns = nullptr;  // R values per dof
   std::span<const int> touched;     // dofs whose columns are not zero, ascending
   int leading = 0;                  // 6 of a free root, or 0
 };
 
-Side side_of(const Problem& problem, int place, int first, std::span<const int> dofs) {
-  const Tree& tree = *problem.trees[place];
-  return {place, tree.dofs, problem.jacobian.data() + first, dofs, tree.free_root && leads(dofs) ? 6 : 0};
+Side side_of(const Problem& problem, int index, int first, std::span<const int> dofs) {
+  const Tree& tree = *problem.trees[index];
+  return {index, tree.dofs, problem.jacobian.data() + first, dofs, tree.has_floating_base && begins_with_floating_base(dofs) ? 6 : 0};
 }
 
 /// Whether a block's impulse along row r may change with the speed along row c. Normal and tangents
@@ -41,10 +41,10 @@ void add_any(const Side& s, const Side (&sides)[2], const double* slope,
     }
   }
   for (const Side& t : sides) {
-    if (t.place < 0) continue;
+    if (t.index < 0) continue;
     for (const int k : t.touched) {
       const double* column = t.columns + k * R;
-      double* row = matrix.block(t.place, s.place) + k * s.dofs;
+      double* row = matrix.block(t.index, s.index) + k * s.dofs;
       for (std::size_t e = 0; e < count; ++e) {
         double sum = row[s.touched[e]];
         for (int r = 0; r < R; ++r) sum += column[r] * sloped[r * count + e];
@@ -82,8 +82,8 @@ void add_leading(const Side& s, const Side (&sides)[2], const double* slope, Blo
     }
   }
   for (const Side& t : sides) {
-    if (t.place < 0) continue;
-    double* out = matrix.block(t.place, s.place);
+    if (t.index < 0) continue;
+    double* out = matrix.block(t.index, s.index);
     const auto add = [&](int k, auto rows_of_dof) {
       const double* column = t.columns + k * R;
       double* row = out + k * s.dofs;
@@ -107,13 +107,13 @@ void add_leading(const Side& s, const Side (&sides)[2], const double* slope, Blo
 
 /// Adds J^T slope J of a block of R rows to the matrix.
 template <int R>
-void add_slope_of(const Problem& problem, const Block& block, const double* slope,
+void add_slope_of(const Problem& problem, const Constraint& constraint, const double* slope,
                   std::vector<double>& sloped, BlockMatrix& matrix) {
   Side sides[2];
-  if (block.a >= 0) sides[0] = side_of(problem, block.a, block.ja, block.dofs_a);
-  if (block.b >= 0) sides[1] = side_of(problem, block.b, block.jb, block.dofs_b);
+  if (constraint.a >= 0) sides[0] = side_of(problem, constraint.a, constraint.jacobian_a, constraint.dofs_a);
+  if (constraint.b >= 0) sides[1] = side_of(problem, constraint.b, constraint.jacobian_b, constraint.dofs_b);
   for (const Side& s : sides) {
-    if (s.place < 0) continue;
+    if (s.index < 0) continue;
     const std::size_t more = s.touched.size() - s.leading;
     if (s.leading == 6 && more == 0) {
       add_leading<R, 0>(s, sides, slope, matrix);
@@ -127,11 +127,11 @@ void add_slope_of(const Problem& problem, const Block& block, const double* slop
 
 }  // namespace
 
-void add_slope(const Problem& problem, const Block& block, const Linear& linear,
+void add_constraint_hessian(const Problem& problem, const Constraint& constraint, const LinearisedLaw& linear,
                std::vector<double>& memory, BlockMatrix& matrix) {
-  if (linear.zero) return;
-  by_rows(block.rows, [&](auto rows) {
-    add_slope_of<rows()>(problem, block, linear.slope.data(), memory, matrix);
+  if (linear.is_zero) return;
+  dispatch_rows(constraint.rows, [&](auto rows) {
+    add_slope_of<rows()>(problem, constraint, linear.hessian.data(), memory, matrix);
   });
 }
 

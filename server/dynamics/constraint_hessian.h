@@ -11,7 +11,7 @@ namespace ziggurat::dynamics {
 
 /// matrix += J^T slope J, in the blocks of the one or two trees that the block acts on.
 /// @param memory  to work in
-void add_slope(const Problem& problem, const Block& block, const Linear& linear,
+void add_constraint_hessian(const Problem& problem, const Constraint& constraint, const LinearisedLaw& linear,
                std::vector<double>& memory, BlockMatrix& matrix);
 
 }  // namespace ziggurat::dynamics

@@ -23,8 +23,8 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /// Velocities of a free root with which the tree, stiff, has the same momentum and angular momentum.
 /// @param energy  then [J]
-Vector6 stiff_motion(const Tree& tree, Workspace& work, double& energy) {
-  compute_mass(tree, work);
+Vector6 rigid_motion(const Tree& tree, Workspace& work, double& energy) {
+  compute_mass_matrix(tree, work);
   Vector6 momentum = Vector6::Zero();
   Matrix6 root;
   for (int i = 0; i < 6; ++i) {
@@ -48,18 +48,18 @@ Vector3 mean_velocity(const Tree& tree, double& mass) {
 }
 
 /// Of the part of the speeds that has this energy, what is left without the excess.
-double share_left(double energy, double excess) {
+double velocity_scale(double energy, double excess) {
   return energy > excess ? std::sqrt(1 - excess / energy) : 0;
 }
 
 /// Whether links turn further than that within a substep.
 /// @param after  velocities that were found;  @param angle  [rad]
-bool turns(const Tree& tree, std::span<const double> after, double length, double angle) {
-  const double most = angle * angle / (length * length);
+bool rotates(const Tree& tree, std::span<const double> after, double time_step, double angle) {
+  const double most = angle * angle / (time_step * time_step);
   for (int k = 0; k < tree.dofs; ++k) {
-    if (tree.axes[k].angular.squaredNorm() * after[k] * after[k] > most) return true;
+    if (tree.motion_subspace[k].angular.squaredNorm() * after[k] * after[k] > most) return true;
   }
-  return std::any_of(tree.motion.begin(), tree.motion.end(), [&](const Motion& motion) {
+  return std::any_of(tree.spatial_velocity.begin(), tree.spatial_velocity.end(), [&](const Motion& motion) {
     return motion.angular.squaredNorm() > most;
   });
 }
@@ -78,33 +78,33 @@ bool is_struck(const Tree& tree, const double* mass, std::span<const double> aft
 }
 
 /// @param after  velocities that were found
-Excess::Kind kind_of(const Problem& problem, std::size_t i, std::span<const double> after) {
+EnergyError::Kind kind_of(const Problem& problem, std::size_t i, std::span<const double> after) {
   const Tree& tree = *problem.trees[i];
-  if (turns(tree, after, problem.length, far)) return Excess::Kind::turns_far;
-  const double length = problem.length;
-  const bool bent = problem.bending[i] > std::sqrt(bends * length) ||
+  if (rotates(tree, after, problem.time_step, far)) return EnergyError::Kind::large_rotation;
+  const double time_step = problem.time_step;
+  const bool bent = problem.bias_velocity_change[i] > std::sqrt(bends * time_step) ||
                     (is_struck(tree, problem.mass_of(i), after) &&
-                     turns(tree, after, length, std::sqrt(near * length)));
-  return bent ? Excess::Kind::bends : Excess::Kind::none;
+                     rotates(tree, after, time_step, std::sqrt(near * time_step)));
+  return bent ? EnergyError::Kind::coriolis : EnergyError::Kind::none;
 }
 
 /// What turning alone adds to a momentum that a problem is solved with; work.scratch must have the forces from outside.
-/// @param momentum  of the dof, see momentum_after();  @param after  velocity of the dof that was found
-double added(const Tree& tree, const Workspace& work, const double* mass, double momentum, double after,
-             double length, int dof) {
+/// @param momentum  of the dof, see predict_momentum();  @param after  velocity of the dof that was found
+double bias_impulse(const Tree& tree, const Workspace& work, const double* mass, double momentum, double after,
+             double time_step, int dof) {
   double before = 0;
   for (int k = 0; k < tree.dofs; ++k) before += mass[dof * tree.dofs + k] * tree.v[k];
-  return momentum - before - length * (work.scratch[dof] + tree.damping[dof] * after);
+  return momentum - before - time_step * (work.scratch[dof] + tree.damping[dof] * after);
 }
 
 /// The excess, less the kinetic energy that the tree has at the end; at its state of the beginning.
 /// @param mass      its matrix, dofs x dofs
-/// @param momentum  that it was solved with, see momentum_after()
+/// @param momentum  that it was solved with, see predict_momentum()
 /// @param after     velocities that were found
 /// @return          [J]
-double excess_before(const Tree& tree, Workspace& work, const double* mass,
+double error_before_kinetic(const Tree& tree, Workspace& work, const double* mass,
                      std::span<const double> momentum, std::span<const double> after,
-                     double length) {
+                     double time_step) {
   // With b = M (after - before) - h (forces) - J^T g, what turning alone adds to the momentum, the work
   // b (before + after) / 2 and the change of after^T M after / 2 with the pose should cancel.
   work.scratch.resize(tree.dofs);
@@ -113,18 +113,18 @@ double excess_before(const Tree& tree, Workspace& work, const double* mass,
   for (int i = 0; i < tree.dofs; ++i) {
     double energy = 0;
     for (int k = 0; k < tree.dofs; ++k) energy += mass[i * tree.dofs + k] * after[k] / 2;
-    const double of_turning = added(tree, work, mass, momentum[i], after[i], length, i);
+    const double of_turning = bias_impulse(tree, work, mass, momentum[i], after[i], time_step, i);
     sum += of_turning * (tree.v[i] + after[i]) / 2 - energy * after[i];
   }
   return sum;
 }
 
 bool is_free_joint(const Tree& tree, std::span<const unsigned char> held, int dof) {
-  return dof >= tree.dof_count[0] && held[dof] == Excesses::free;
+  return dof >= tree.dof_count[0] && held[dof] == IslandEnergyErrors::free;
 }
 
 bool is_driven(std::span<const unsigned char> held) {
-  return std::find(held.begin(), held.end(), Excesses::driven) != held.end();
+  return std::find(held.begin(), held.end(), IslandEnergyErrors::driven) != held.end();
 }
 
 bool has_free_joint(const Tree& tree, std::span<const unsigned char> held) {
@@ -148,34 +148,34 @@ double square_of_free(const Tree& tree, std::span<const unsigned char> held, con
 
 /// The bias forces of a part of a tree's speeds, which stay.
 /// @param of_free  of its free joints, or of all else
-void bias_of_part(Tree& tree, Workspace& work, std::span<const unsigned char> held, bool of_free,
+void bias_of_joints(Tree& tree, Workspace& work, std::span<const unsigned char> held, bool of_free,
                   std::vector<double>& speeds, std::vector<double>& out) {
   speeds.assign(tree.v.begin(), tree.v.end());
   for (int k = 0; k < tree.dofs; ++k) {
     if (is_free_joint(tree, held, k) != of_free) tree.v[k] = 0;
   }
-  move(tree);
+  velocity_kinematics(tree);
   out.resize(tree.dofs);
   bias_forces(tree, work, out);
   std::copy(speeds.begin(), speeds.end(), tree.v.begin());
-  move(tree);
+  velocity_kinematics(tree);
 }
 
 /// The same of the free joints of a tree that servos hold. What moves as servos tell it has all the power that it
 /// takes; what free joints get of that alone, as centrifugal forces, is no excess: it swings as in a potential. Where
 /// it changes their inertia it does work, half of what the forces say that depend on both, and that is none either.
-double excess_of_free(Tree& tree, Workspace& work, const double* mass, std::span<const double> momentum,
-                      std::span<const double> after, double length, std::span<const unsigned char> held,
-                      Excesses& memory) {
-  bias_of_part(tree, work, held, false, memory.speeds, memory.bias_of_held);
-  bias_of_part(tree, work, held, true, memory.speeds, memory.bias_of_free);
+double error_of_free_joints(Tree& tree, Workspace& work, const double* mass, std::span<const double> momentum,
+                      std::span<const double> after, double time_step, std::span<const unsigned char> held,
+                      IslandEnergyErrors& memory) {
+  bias_of_joints(tree, work, held, false, memory.velocities, memory.bias_of_held);
+  bias_of_joints(tree, work, held, true, memory.velocities, memory.bias_of_free);
   work.scratch.resize(tree.dofs);
   external_forces(tree, work, work.scratch, true, true);
   double sum = -square_of_free(tree, held, mass, after) / 2;
   for (int i = 0; i < tree.dofs; ++i) {
     if (!is_free_joint(tree, held, i)) continue;
-    const double own = added(tree, work, mass, momentum[i], after[i], length, i) + length * memory.bias_of_held[i];
-    const double of_both = own + length * memory.bias_of_free[i];
+    const double own = bias_impulse(tree, work, mass, momentum[i], after[i], time_step, i) + time_step * memory.bias_of_held[i];
+    const double of_both = own + time_step * memory.bias_of_free[i];
     sum += own * (tree.v[i] + after[i]) / 2 - of_both * tree.v[i] / 2;
   }
   return sum;
@@ -184,7 +184,7 @@ double excess_of_free(Tree& tree, Workspace& work, const double* mass, std::span
 /// The potential energy that a displacement gives a tree, if it is lifted.
 /// @param by  of each dof [m], [rad]
 /// @return    [J], >= 0
-double lift(const Tree& tree, Workspace& work, const double* by) {
+double lift_energy(const Tree& tree, Workspace& work, const double* by) {
   work.scratch.resize(tree.dofs);
   external_forces(tree, work, work.scratch, false, true);
   double sum = 0;
@@ -192,18 +192,18 @@ double lift(const Tree& tree, Workspace& work, const double* by) {
   return std::max(0.0, sum);
 }
 
-/// See Excesses.
-void note_held(const Problem& problem, std::vector<unsigned char>& held) {
-  static_assert(Excesses::apart == 1, "spins is 0 or 1");
+/// See IslandEnergyErrors.
+void list_held_dofs(const Problem& problem, std::vector<unsigned char>& held) {
+  static_assert(IslandEnergyErrors::separate == 1, "spins is 0 or 1");
   held.clear();
-  for (const Tree* tree : problem.trees) held.insert(held.end(), tree->spins.begin(), tree->spins.end());
-  for (const Block& block : problem.blocks) {
-    if (block.kind == Block::Source::contact) continue;
-    if (block.impulse[0] <= block.lower || block.impulse[0] >= block.upper) continue;
-    const bool drives = block.kind == Block::Source::servo;
-    for (const int k : block.dofs_a) {
-      unsigned char& dof = held[problem.offset[block.a] + k];
-      dof = drives ? Excesses::driven : std::max(dof, Excesses::apart);
+  for (const Tree* tree : problem.trees) held.insert(held.end(), tree->is_symmetric_rotor.begin(), tree->is_symmetric_rotor.end());
+  for (const Constraint& constraint : problem.constraints) {
+    if (constraint.kind == Constraint::Kind::contact) continue;
+    if (constraint.impulse[0] <= constraint.lower || constraint.impulse[0] >= constraint.upper) continue;
+    const bool drives = constraint.kind == Constraint::Kind::servo;
+    for (const int k : constraint.dofs_a) {
+      unsigned char& dof = held[problem.offset[constraint.a] + k];
+      dof = drives ? IslandEnergyErrors::driven : std::max(dof, IslandEnergyErrors::separate);
     }
   }
 }
@@ -211,13 +211,13 @@ void note_held(const Problem& problem, std::vector<unsigned char>& held) {
 /// The part of a tree's speeds that joints have which nothing holds, and with it the root so that the tree has no
 /// momentum and no angular momentum.
 /// @param of_joints  out: of each dof;  @param momentum  out: that it has, of each dof
-void find_inner_motion(const Tree& tree, Workspace& work, std::span<const unsigned char> held,
+void find_internal_motion(const Tree& tree, Workspace& work, std::span<const unsigned char> held,
                        std::vector<double>& of_joints, std::vector<double>& momentum) {
   const int n = tree.dofs, root = tree.dof_count[0];
-  compute_mass(tree, work);
+  compute_mass_matrix(tree, work);
   of_joints.assign(n, 0.0);
   momentum.assign(n, 0.0);
-  for (int k = root; k < n; ++k) of_joints[k] = held[k] == Excesses::free ? tree.v[k] : 0;
+  for (int k = root; k < n; ++k) of_joints[k] = held[k] == IslandEnergyErrors::free ? tree.v[k] : 0;
   const auto add = [&](int from, int to) {
     for (int i = 0; i < n; ++i) {
       for (int k = from; k < to; ++k) momentum[i] += work.mass[i * n + k] * of_joints[k];
@@ -240,152 +240,152 @@ void find_inner_motion(const Tree& tree, Workspace& work, std::span<const unsign
 /// is free.
 /// @param excess  [J]; < 0: what it should get
 /// @return        what it took [J]
-double take_from_joints(Tree& tree, Workspace& work, std::span<const unsigned char> held, double excess) {
+double correct_joint_energy(Tree& tree, Workspace& work, std::span<const unsigned char> held, double excess) {
   if (std::abs(excess) <= least * kinetic_energy(tree)) return 0;
-  find_inner_motion(tree, work, held, work.scratch, work.before);
+  find_internal_motion(tree, work, held, work.scratch, work.saved_state);
   double slope = 0, curve = 0;  // of the energy, along that motion
   for (int k = 0; k < tree.dofs; ++k) {
-    slope += work.before[k] * tree.v[k];
-    curve += work.before[k] * work.scratch[k] / 2;
+    slope += work.saved_state[k] * tree.v[k];
+    curve += work.saved_state[k] * work.scratch[k] / 2;
   }
   if (slope <= 0 || curve <= 0 || -excess > most_given * curve) return 0;
   const double square = slope * slope - 4 * curve * excess;
   const double way = square > 0 ? -2 * excess / (slope + std::sqrt(square)) : -slope / (2 * curve);
   for (int k = 0; k < tree.dofs; ++k) tree.v[k] += way * work.scratch[k];
-  move(tree);
+  velocity_kinematics(tree);
   return square > 0 ? excess : slope * slope / (4 * curve);
 }
 
 /// Takes energy from the free joints of a tree that servos hold, or gives it to them.
-/// @param before  see Excess
-void undo_excess_of_free(Tree& tree, Workspace& work, std::span<const unsigned char> held, double before) {
-  find_inner_motion(tree, work, held, work.scratch, work.before);
+/// @param before  see EnergyError
+void correct_free_joint_energy(Tree& tree, Workspace& work, std::span<const unsigned char> held, double before) {
+  find_internal_motion(tree, work, held, work.scratch, work.saved_state);
   const double all = square_of_free(tree, held, work.mass.data(), tree.v) / 2;
   const double excess = std::clamp(before + all, -most_given * all, most_given * all);
   if (std::abs(excess) <= least * all) return;
   const double more = std::sqrt(1 - excess / all) - 1;
   for (int k = 0; k < tree.dofs; ++k) tree.v[k] += more * work.scratch[k];
-  move(tree);
+  velocity_kinematics(tree);
 }
 
 /// Gives a single body what turning took from it.
 /// @param excess  [J]; nothing happens where it is a gain
-void give_back_turning(Tree& tree, double excess) {
+void restore_rotation_energy(Tree& tree, double excess) {
   const Vector3 drift = tree.velocity(0);
   const double turning = kinetic_energy(tree) - tree.links[0].mass * drift.squaredNorm() / 2;
   if (excess >= 0 || -excess > most_given * turning) return;
   const double share = std::sqrt(1 - excess / turning);
   for (int k = 0; k < 3; ++k) tree.v[k] *= share;
-  move(tree);
+  velocity_kinematics(tree);
 }
 
 /// Takes what is left of an excess from all speeds: the world may have turned spinning into flying.
 /// @param most  kinetic energy [J]
-void slow_down(Tree& tree, double most) {
+void scale_velocities(Tree& tree, double most) {
   const double all = kinetic_energy(tree);
   if (all <= 0 || all - most <= least * all) return;
   const double share = std::sqrt(std::max(0.0, most) / all);
   for (double& speed : tree.v) speed *= share;
-  move(tree);
+  velocity_kinematics(tree);
 }
 
 }  // namespace
 
-void note_excesses(const Problem& problem, Workspace& work, Excesses& out) {
+void compute_energy_errors(const Problem& problem, Workspace& work, IslandEnergyErrors& out) {
   out.of_trees.assign(problem.trees.size(), {});
   bool any = false;
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const auto after = std::span(problem.velocity).subspan(problem.offset[i], problem.trees[i]->dofs);
     out.of_trees[i].kind = kind_of(problem, i, after);
-    any |= out.of_trees[i].kind != Excess::Kind::none;
+    any |= out.of_trees[i].kind != EnergyError::Kind::none;
   }
   if (!any) return;
-  note_held(problem, out.held);
+  list_held_dofs(problem, out.held);
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    Excess& excess = out.of_trees[i];
-    if (excess.kind == Excess::Kind::none) continue;
+    EnergyError& excess = out.of_trees[i];
+    if (excess.kind == EnergyError::Kind::none) continue;
     Tree& tree = *problem.trees[i];
     const std::size_t first = problem.offset[i], dofs = tree.dofs;
     const auto after = std::span(problem.velocity).subspan(first, dofs);
     const auto momentum = std::span(problem.momentum).subspan(first, dofs);
     const auto held = std::span(out.held).subspan(first, dofs);
     excess.of_free_joints = is_driven(held) && has_free_joint(tree, held);
-    if (is_driven(held) && !excess.of_free_joints && excess.kind == Excess::Kind::bends) {
-      excess.kind = Excess::Kind::none;
+    if (is_driven(held) && !excess.of_free_joints && excess.kind == EnergyError::Kind::coriolis) {
+      excess.kind = EnergyError::Kind::none;
       continue;
     }
-    excess.before = excess.of_free_joints
-                        ? excess_of_free(tree, work, problem.mass_of(i), momentum, after, problem.length, held, out)
-                        : excess_before(tree, work, problem.mass_of(i), momentum, after, problem.length);
+    excess.before_kinetic = excess.of_free_joints
+                        ? error_of_free_joints(tree, work, problem.mass_of(i), momentum, after, problem.time_step, held, out)
+                        : error_before_kinetic(tree, work, problem.mass_of(i), momentum, after, problem.time_step);
   }
 }
 
-void add_lifts(const Problem& problem, Workspace& work, Excesses& out) {
-  const auto bounces = [](const Block& block) { return block.bounces; };
-  if (std::any_of(problem.blocks.begin(), problem.blocks.end(), bounces)) return;
+void add_lift_energy(const Problem& problem, Workspace& work, IslandEnergyErrors& out) {
+  const auto bounces = [](const Constraint& constraint) { return constraint.has_impact; };
+  if (std::any_of(problem.constraints.begin(), problem.constraints.end(), bounces)) return;
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    Excess& excess = out.of_trees[i];
-    if (excess.kind == Excess::Kind::none || excess.of_free_joints) continue;
-    excess.before += lift(*problem.trees[i], work, problem.velocity.data() + problem.offset[i]);
+    EnergyError& excess = out.of_trees[i];
+    if (excess.kind == EnergyError::Kind::none || excess.of_free_joints) continue;
+    excess.before_kinetic += lift_energy(*problem.trees[i], work, problem.velocity.data() + problem.offset[i]);
   }
 }
 
-void undo_excess(Tree& tree, Workspace& work, const Excess& excess, std::span<const unsigned char> held,
+void correct_energy(Tree& tree, Workspace& work, const EnergyError& excess, std::span<const unsigned char> held,
                  bool grounded) {
-  if (excess.kind == Excess::Kind::none) return;
-  if (excess.of_free_joints) return undo_excess_of_free(tree, work, held, excess.before);
-  double sum = excess.before + kinetic_energy(tree);
+  if (excess.kind == EnergyError::Kind::none) return;
+  if (excess.of_free_joints) return correct_free_joint_energy(tree, work, held, excess.before_kinetic);
+  double sum = excess.before_kinetic + kinetic_energy(tree);
   if (is_driven(held) && sum < wild * kinetic_energy(tree)) return;
-  if (tree.single) {
-    if (grounded) give_back_turning(tree, sum);
+  if (tree.is_single_body) {
+    if (grounded) restore_rotation_energy(tree, sum);
   } else {
-    sum -= take_from_joints(tree, work, held, sum);
-    if (!grounded && tree.free_root) return;  // its momentum is right, and with that the energy of its turning
+    sum -= correct_joint_energy(tree, work, held, sum);
+    if (!grounded && tree.has_floating_base) return;  // its momentum is right, and with that the energy of its turning
   }
   const double most = kinetic_energy(tree) - sum;
-  take_excess(tree, work, sum);
-  if (grounded) slow_down(tree, most);
+  remove_kinetic_energy(tree, work, sum);
+  if (grounded) scale_velocities(tree, most);
 }
 
-bool gains_much(const Tree& tree, double excess) {
+bool exceeds_rounding(const Tree& tree, double excess) {
   return excess > least * kinetic_energy(tree);
 }
 
-void take_excess(Tree& tree, Workspace& work, double excess) {
-  if (!gains_much(tree, excess)) return;
+void remove_kinetic_energy(Tree& tree, Workspace& work, double excess) {
+  if (!exceeds_rounding(tree, excess)) return;
   const double all = kinetic_energy(tree);
-  if (!tree.free_root) {
-    const double share = share_left(all, excess);
+  if (!tree.has_floating_base) {
+    const double share = velocity_scale(all, excess);
     for (double& speed : tree.v) speed *= share;
-    return move(tree);
+    return velocity_kinematics(tree);
   }
-  if (!tree.single) {
+  if (!tree.is_single_body) {
     double stiff = 0;
-    const Vector6 motion = stiff_motion(tree, work, stiff);
-    const double joints = std::max(0.0, all - stiff), share = share_left(joints, excess);
+    const Vector6 motion = rigid_motion(tree, work, stiff);
+    const double joints = std::max(0.0, all - stiff), share = velocity_scale(joints, excess);
     for (int k = 0; k < tree.dofs; ++k) {
       const double kept = k < 6 ? motion[k] : 0;
       tree.v[k] = kept + share * (tree.v[k] - kept);
     }
-    move(tree);
+    velocity_kinematics(tree);
     excess -= joints;
     if (excess <= 0) return;
   }
   double mass = 0;
   const Vector3 drift = mean_velocity(tree, mass);
   const double turning = kinetic_energy(tree) - mass * drift.squaredNorm() / 2;
-  const double share = share_left(turning, excess);
+  const double share = velocity_scale(turning, excess);
   for (double& speed : tree.v) speed *= share;
   for (int k = 0; k < 3; ++k) tree.v[3 + k] += (1 - share) * drift[k];
-  move(tree);
+  velocity_kinematics(tree);
 }
 
-void take_excess(std::span<Tree* const> trees, Workspace& work, double excess) {
+void remove_kinetic_energy(std::span<Tree* const> trees, Workspace& work, double excess) {
   double all = 0;
   for (const Tree* tree : trees) all += kinetic_energy(*tree);
   if (excess <= 0 || all <= 0) return;
   const double share = excess / all;
-  for (Tree* tree : trees) take_excess(*tree, work, share * kinetic_energy(*tree));
+  for (Tree* tree : trees) remove_kinetic_energy(*tree, work, share * kinetic_energy(*tree));
 }
 
 double energy(std::span<Tree* const> trees) {
@@ -401,10 +401,10 @@ double energy(std::span<Tree* const> trees) {
 
 double energy_if_passive(const Problem& problem) {
   const auto acts = [](const Wrench& push) { return !push.moment.isZero(0) || !push.force.isZero(0); };
-  const auto drives = [](const Block& block) { return block.kind == Block::Source::servo; };
+  const auto drives = [](const Constraint& constraint) { return constraint.kind == Constraint::Kind::servo; };
   const auto has_joints = [](const Tree* tree) { return tree->dofs > tree->dof_count[0]; };
   const auto is_pushed = [&](const Tree* tree) { return std::ranges::any_of(tree->external, acts); };
-  const bool is_passive = std::ranges::any_of(problem.trees, has_joints) && std::ranges::none_of(problem.blocks, drives) &&
+  const bool is_passive = std::ranges::any_of(problem.trees, has_joints) && std::ranges::none_of(problem.constraints, drives) &&
                           std::ranges::none_of(problem.trees, is_pushed);
   return is_passive ? energy(problem.trees) : std::numeric_limits<double>::infinity();
 }
@@ -417,15 +417,15 @@ void bound_gain(const Problem& problem, Workspace& work, double before, bool gro
     kinetic += kinetic_energy(*problem.trees[i]);
     mass += problem.total_mass[i];
   }
-  const double along = problem.length * problem.weight * std::sqrt(2 * kinetic / mass) / 2;
+  const double along = problem.time_step * problem.weight * std::sqrt(2 * kinetic / mass) / 2;
   const double allowed = is_part ? least * kinetic : along + much * kinetic;
   const double gain = energy(problem.trees) - before;
   if (!(gain > allowed)) return;
-  if (!grounded) return take_excess(problem.trees, work, gain);
-  const double share = share_left(kinetic, gain);
+  if (!grounded) return remove_kinetic_energy(problem.trees, work, gain);
+  const double share = velocity_scale(kinetic, gain);
   for (Tree* tree : problem.trees) {
     for (double& speed : tree->v) speed *= share;
-    move(*tree);
+    velocity_kinematics(*tree);
   }
 }
 

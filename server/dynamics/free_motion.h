@@ -17,21 +17,21 @@ namespace ziggurat::dynamics {
 /// @param length  [s]
 /// @param drive   what motors do; a single body has none
 /// @return        how many steps it took
-int fly(Tree& tree, Workspace& work, double length, const Drive& drive = {});
+int integrate_free_motion(Tree& tree, Workspace& work, double time_step, const PrescribedJoints& drive = {});
 
 /// Changes the speeds of a tree in flight by what pushes it, over a length of time [s]. Leaves it moved.
-void kick(Tree& tree, Workspace& work, double length);
+void kick(Tree& tree, Workspace& work, double time_step);
 
 /// The generalised momentum that a tree would have at the end of a substep without contacts, at the
 /// mass matrix of its beginning: M(q) v plus what its forces and its own motion add. The damping of
 /// joints is not in it: it is implicit (see problem.h).
 /// work.drift becomes what the momentum of a floating tree as a whole would be more than that: with
 /// its shape the mass matrix changes too.
-/// Needs place(), move() and compute_mass(), and leaves the tree so.
+/// Needs forward_kinematics(), velocity_kinematics() and compute_mass_matrix(), and leaves the tree so.
 /// @param length  [s]
 /// @param driven  whether servos hold some of its coordinates: then a free motion over the whole substep, in which
 ///                nothing holds them, is farther off than forces of the beginning are, unless they change speeds by much
 /// @param out     of each dof [kg m/s] or [kg m^2/s]
-void momentum_after(Tree& tree, Workspace& work, double length, bool driven, std::span<double> out);
+void predict_momentum(Tree& tree, Workspace& work, double time_step, bool driven, std::span<double> out);
 
 }  // namespace ziggurat::dynamics

@@ -64,15 +64,15 @@ void unwhiten(const double* c, int n, double* x) {
 }
 
 /// Rows that sweeps solve for.
-int swept_rows(const Block& block) {
-  if (block.law == Block::Law::off) return 0;
-  return block.law == Block::Law::contact ? block.rows : 1;
+int swept_rows(const Constraint& constraint) {
+  if (constraint.law == Constraint::Law::off) return 0;
+  return constraint.law == Constraint::Law::contact ? constraint.rows : 1;
 }
 
 }  // namespace
 
 /// Factors of all mass matrices, with the joints' damping, and the velocities without impulses.
-void Sweeps::factor(const Problem& problem) {
+void GaussSeidel::factor(const Problem& problem) {
   w_ = problem.momentum;
   factors_.clear();
   factor_of_.clear();
@@ -83,16 +83,16 @@ void Sweeps::factor(const Problem& problem) {
     const double* mass = problem.mass_of(i);
     factors_.insert(factors_.end(), mass, mass + n * n);
     double* c = factors_.data() + first;
-    for (int k = 0; k < n; ++k) c[k * n + k] += problem.length * tree.damping[k];
+    for (int k = 0; k < n; ++k) c[k * n + k] += problem.time_step * tree.damping[k];
     factor_in_place(c, n);
     whiten<-1>(c, n, w_.data() + problem.offset[i]);
   }
 }
 
-void Sweeps::add(const Problem& problem, const Block& block, int index) {
-  const int rows = swept_rows(block);
+void GaussSeidel::add(const Problem& problem, const Constraint& constraint, int index) {
+  const int rows = swept_rows(constraint);
   if (rows == 0) return;
-  const int trees[] = {block.a, block.b}, jacobians[] = {block.ja, block.jb};
+  const int trees[] = {constraint.a, constraint.b}, jacobians[] = {constraint.jacobian_a, constraint.jacobian_b};
   int size[2] = {}, at[2] = {};
   for (int s = 0; s < 2; ++s) {
     if (trees[s] < 0) continue;
@@ -106,10 +106,10 @@ void Sweeps::add(const Problem& problem, const Block& block, int index) {
   }
   ++pairs_.back().last;
   const int first = static_cast<int>(rows_.size()), impulse = static_cast<int>(impulses_.size());
-  const bool contact = block.law == Block::Law::contact;
-  points_.push_back({index, first, impulse, rows, block.friction, block.spinning, block.rolling,
-                     contact ? 0 : block.lower,
-                     contact ? std::numeric_limits<double>::infinity() : block.upper});
+  const bool contact = constraint.law == Constraint::Law::contact;
+  points_.push_back({index, first, impulse, rows, constraint.friction, constraint.spinning_friction, constraint.rolling_friction,
+                     contact ? 0 : constraint.lower,
+                     contact ? std::numeric_limits<double>::infinity() : constraint.upper});
   rows_.resize(first + rows * (size[0] + size[1]));
   for (int r = 0; r < rows; ++r) {
     double square = 0;
@@ -117,17 +117,17 @@ void Sweeps::add(const Problem& problem, const Block& block, int index) {
     for (int s = 0; s < 2; ++s) {
       if (size[s] == 0) continue;
       const double* column = problem.jacobian.data() + jacobians[s];
-      for (int k = 0; k < size[s]; ++k) out[k] = column[k * block.rows + r];
+      for (int k = 0; k < size[s]; ++k) out[k] = column[k * constraint.rows + r];
       const double* c = factors_.data() + factor_of_[trees[s]];
       size[s] == 6 ? whiten<6>(c, 6, out) : whiten<-1>(c, size[s], out);
       square += dot<-1>(out, out, size[s]);
-      add_scaled<-1>(block.impulse[r], out, w_.data() + at[s], size[s]);
+      add_scaled<-1>(constraint.impulse[r], out, w_.data() + at[s], size[s]);
       out += size[s];
     }
-    impulses_.push_back(block.impulse[r]);
-    seek_.push_back(block.seek[r]);
-    yield_.push_back(r == 0 ? block.yield : 0);
-    inverse_.push_back(square > 0 ? 1 / (square + yield_.back()) : 0);
+    impulses_.push_back(constraint.impulse[r]);
+    target_velocities_.push_back(constraint.target_velocity[r]);
+    compliances_.push_back(r == 0 ? constraint.compliance : 0);
+    inverse_.push_back(square > 0 ? 1 / (square + compliances_.back()) : 0);
   }
   coupling_.resize(impulses_.size(), 0.0);
   if (rows == 3) {
@@ -143,12 +143,12 @@ void Sweeps::add(const Problem& problem, const Block& block, int index) {
   }
 }
 
-void Sweeps::start(const Problem& problem) {
+void GaussSeidel::start(const Problem& problem) {
   points_.clear(), pairs_.clear(), rows_.clear();
-  impulses_.clear(), seek_.clear(), yield_.clear(), inverse_.clear(), coupling_.clear();
+  impulses_.clear(), target_velocities_.clear(), compliances_.clear(), inverse_.clear(), coupling_.clear();
   factor(problem);
-  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
-    add(problem, problem.blocks[i], static_cast<int>(i));
+  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
+    add(problem, problem.constraints[i], static_cast<int>(i));
   }
   impulses_before_ = impulses_;
   w_before_ = w_;
@@ -160,16 +160,16 @@ void Sweeps::start(const Problem& problem) {
 
 /// A contact with sliding friction: the normal impulse, then friction at the speed that it leaves.
 template <int A, int B>
-void Sweeps::sweep_sliding(const Point& point, const Sides& sides) {
+void GaussSeidel::sweep_sliding(const Rows& point, const Sides& sides) {
   const int na = size_of<A>(sides.size_a), nb = size_of<B>(sides.size_b), width = na + nb;
   double* const wa = sides.a;
   double* const wb = sides.b;
   const double* row0 = rows_.data() + point.first;
   double* g = impulses_.data() + point.impulse;
-  const double* seek = seek_.data() + point.impulse;
+  const double* seek = target_velocities_.data() + point.impulse;
   const double* inverse = inverse_.data() + point.impulse;
   const double u0 = dot<A>(row0, wa, na) + dot<B>(row0 + na, wb, nb);
-  const double normal = g[0] - (u0 + yield_[point.impulse] * g[0] - seek[0]) * inverse[0];
+  const double normal = g[0] - (u0 + compliances_[point.impulse] * g[0] - seek[0]) * inverse[0];
   if (normal <= 0 && g[0] == 0) return;
   const double* coupling = coupling_.data() + point.impulse;
   const double* row1 = row0 + width;
@@ -194,14 +194,14 @@ void Sweeps::sweep_sliding(const Point& point, const Sides& sides) {
 
 /// Any other block: the normal impulse or the only one, then friction of all kinds.
 template <int A, int B>
-void Sweeps::sweep_other(const Point& point, const Sides& sides) {
+void GaussSeidel::sweep_other(const Rows& point, const Sides& sides) {
   const int na = size_of<A>(sides.size_a), nb = size_of<B>(sides.size_b);
   double* g = impulses_.data() + point.impulse;
   const auto row = [&](int r) { return rows_.data() + point.first + r * (na + nb); };
   const auto wanted = [&](int r) {
     const double u = dot<A>(row(r), sides.a, na) + dot<B>(row(r) + na, sides.b, nb);
     const int i = point.impulse + r;
-    return g[r] - (u + yield_[i] * g[r] - seek_[i]) * inverse_[i];
+    return g[r] - (u + compliances_[i] * g[r] - target_velocities_[i]) * inverse_[i];
   };
   const auto give = [&](int r, double now) {
     const double change = now - g[r];
@@ -228,7 +228,7 @@ void Sweeps::sweep_other(const Point& point, const Sides& sides) {
 
 /// All points of two trees, whose velocities stay in registers meanwhile if they are single bodies.
 template <int A, int B>
-void Sweeps::sweep_pair(const Pair& pair) {
+void GaussSeidel::sweep_pair(const TreePair& pair) {
   constexpr bool known = A >= 0;
   Sides sides{w_.data() + pair.a, w_.data() + pair.b, pair.size_a, pair.size_b};
   [[maybe_unused]] double a[known ? A + 1 : 1], b[known ? B + 1 : 1];
@@ -237,7 +237,7 @@ void Sweeps::sweep_pair(const Pair& pair) {
     std::copy_n(std::exchange(sides.b, b), B, b);
   }
   for (int i = pair.first; i < pair.last; ++i) {
-    const Point& point = points_[i];
+    const Rows& point = points_[i];
     point.rows == 3 ? sweep_sliding<A, B>(point, sides) : sweep_other<A, B>(point, sides);
   }
   if constexpr (known) {
@@ -246,8 +246,8 @@ void Sweeps::sweep_pair(const Pair& pair) {
   }
 }
 
-void Sweeps::sweep() {
-  for (const Pair& pair : pairs_) {
+void GaussSeidel::sweep() {
+  for (const TreePair& pair : pairs_) {
     if (pair.size_a == 6 && pair.size_b == 6) {
       sweep_pair<6, 6>(pair);
     } else if (pair.size_a == 6 && pair.size_b == 0) {
@@ -261,7 +261,7 @@ void Sweeps::sweep() {
 /// The step along the direction of the sweeps before, by the rule of Polak and Ribiere; lengths are
 /// those of w, the roots of twice the kinetic energy. Impulses may leave their bounds by it, until
 /// the next sweep.
-void Sweeps::accelerate() {
+void GaussSeidel::accelerate() {
   double square = 0, mixed = 0;
   for (std::size_t i = 0; i < w_.size(); ++i) {
     const double change = w_[i] - w_before_[i];
@@ -285,15 +285,15 @@ void Sweeps::accelerate() {
   go(w_, w_before_, w_direction_);
 }
 
-void Sweeps::finish(Problem& problem) const {
+void GaussSeidel::finish(Problem& problem) const {
   problem.velocity = w_;
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     unwhiten(factors_.data() + factor_of_[i], problem.trees[i]->dofs,
              problem.velocity.data() + problem.offset[i]);
   }
-  for (const Point& point : points_) {
-    Block& block = problem.blocks[point.block];
-    std::copy_n(impulses_.begin() + point.impulse, point.rows, block.impulse.begin());
+  for (const Rows& point : points_) {
+    Constraint& constraint = problem.constraints[point.block];
+    std::copy_n(impulses_.begin() + point.impulse, point.rows, constraint.impulse.begin());
   }
 }
 

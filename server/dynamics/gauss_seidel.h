@@ -20,7 +20,7 @@
 
 namespace ziggurat::dynamics {
 
-class Sweeps {
+class GaussSeidel {
  public:
   /// Takes over a problem with its impulses; velocities follow from them.
   void start(const Problem& problem);
@@ -33,8 +33,8 @@ class Sweeps {
 
  private:
   /// A contact, servo or limit: its rows for both trees stand in rows_, one after the other.
-  struct Point {
-    int block;                           // into Problem::blocks
+  struct Rows {
+    int block;                           // into Problem::constraints
     int first;                           // into rows_: of each row `a` and `b` values
     int impulse;                         // into impulses_, and so of seek_, yield_ and inverse_
     int rows;                            // that are solved
@@ -42,13 +42,13 @@ class Sweeps {
     double lower, upper;                 // of the normal impulse or the only one
   };
   /// Points of the same two trees, one after the other.
-  struct Pair {
+  struct TreePair {
     int first, last;
     int a, b;            // into w_
     int size_a, size_b;  // dofs; 0: the world
   };
   void factor(const Problem& problem);
-  void add(const Problem& problem, const Block& block, int index);
+  void add(const Problem& problem, const Constraint& constraint, int index);
   /// The velocities that a block's rows act on.
   struct Sides {
     double* a;
@@ -56,19 +56,19 @@ class Sweeps {
     int size_a, size_b;
   };
   template <int A, int B>
-  void sweep_pair(const Pair& pair);
+  void sweep_pair(const TreePair& pair);
   template <int A, int B>
-  void sweep_sliding(const Point& point, const Sides& sides);
+  void sweep_sliding(const Rows& point, const Sides& sides);
   template <int A, int B>
-  void sweep_other(const Point& point, const Sides& sides);
+  void sweep_other(const Rows& point, const Sides& sides);
 
-  std::vector<Point> points_;
-  std::vector<Pair> pairs_;
+  std::vector<Rows> points_;
+  std::vector<TreePair> pairs_;
   std::vector<double> rows_, w_;
   std::vector<double> factors_;  // C of all trees
   std::vector<int> factor_of_;   // of each tree, into factors_
   // Of each row: its impulse, the speed that it seeks, 1 / (j j^T), j j_normal^T.
-  std::vector<double> impulses_, seek_, yield_, inverse_, coupling_;
+  std::vector<double> impulses_, target_velocities_, compliances_, inverse_, coupling_;
   // Of the conjugate directions.
   std::vector<double> impulses_before_, w_before_, direction_, w_direction_, change_;
   double square_ = 0;

@@ -13,41 +13,41 @@ namespace {
 constexpr double swings_too_far = 0.7, swing_of_a_part = 0.5;
 
 /// Whether a servo or a limit holds a coordinate.
-bool holds_joint(const Block& block) {
-  return block.kind != Block::Source::contact && block.dofs_a.size() == 1 && block.lower < block.impulse[0] &&
-         block.impulse[0] < block.upper;
+bool holds_joint(const Constraint& constraint) {
+  return constraint.kind != Constraint::Kind::contact && constraint.dofs_a.size() == 1 && constraint.lower < constraint.impulse[0] &&
+         constraint.impulse[0] < constraint.upper;
 }
 
 /// How many coordinates of joints are free in each tree: what is held all over is a rigid body, and does not swing.
 /// @return  whether any is
-bool find_free(const Problem& problem, Tension& memory) {
+bool find_unconstrained(const Problem& problem, GeometricStiffness& memory) {
   memory.free.clear();
   for (const Tree* tree : problem.trees) memory.free.push_back(tree->dofs - tree->dof_count[0]);
-  for (const Block& block : problem.blocks) {
-    if (holds_joint(block)) --memory.free[block.a];
+  for (const Constraint& constraint : problem.constraints) {
+    if (holds_joint(constraint)) --memory.free[constraint.a];
   }
   return std::ranges::any_of(memory.free, [](int count) { return count > 0; });
 }
 
 /// The impulses of contacts on each link, about its centre of mass.
-void add_contacts(const Problem& problem, std::span<const Contact> contacts, Tension& memory) {
-  for (const Block& block : problem.blocks) {
-    if (block.kind != Block::Source::contact || block.impulse[0] == 0) continue;
-    const Contact& contact = contacts[block.source];
-    const Vector3 impulse = block.frame * Vector3(block.impulse[0], block.impulse[1], block.impulse[2]);
-    const auto add = [&](int place, int link, const Vector3& point, double sign) {
-      if (place < 0) return;
-      const int at = memory.first_link[place] + link;
+void add_contacts(const Problem& problem, std::span<const ContactPoint> contacts, GeometricStiffness& memory) {
+  for (const Constraint& constraint : problem.constraints) {
+    if (constraint.kind != Constraint::Kind::contact || constraint.impulse[0] == 0) continue;
+    const ContactPoint& contact = contacts[constraint.source];
+    const Vector3 impulse = constraint.frame * Vector3(constraint.impulse[0], constraint.impulse[1], constraint.impulse[2]);
+    const auto add = [&](int index, int link, const Vector3& point, double sign) {
+      if (index < 0) return;
+      const int at = memory.first_link[index] + link;
       memory.impulse[at] += sign * impulse;
-      memory.dyad[at] += sign * (point - problem.trees[place]->position[link]) * impulse.transpose();
+      memory.dyad[at] += sign * (point - problem.trees[index]->position[link]) * impulse.transpose();
     };
-    add(block.a, contact.a.link, contact.point, 1);
-    add(block.b, contact.b.link, contact.point + contact.until_met, -1);
+    add(constraint.a, contact.a.link, contact.point, 1);
+    add(constraint.b, contact.b.link, contact.point + contact.offset_to_b, -1);
   }
 }
 
 /// Those of forces from outside, and of inertia against the change of speeds.
-void add_inertia(const Problem& problem, std::size_t i, Tension& memory) {
+void add_inertia(const Problem& problem, std::size_t i, GeometricStiffness& memory) {
   const Tree& tree = *problem.trees[i];
   const double* after = problem.velocity.data() + problem.offset[i];
   memory.change.resize(tree.links.size());
@@ -55,11 +55,11 @@ void add_inertia(const Problem& problem, std::size_t i, Tension& memory) {
     Motion& change = memory.change[link];
     change = link > 0 ? memory.change[tree.links[link].parent] : Motion{};
     const int first = tree.first_dof[link];
-    for (int k = first; k < first + tree.dof_count[link]; ++k) change = change + tree.axes[k] * (after[k] - tree.v[k]);
+    for (int k = first; k < first + tree.dof_count[link]; ++k) change = change + tree.motion_subspace[k] * (after[k] - tree.v[k]);
     if (tree.links[link].joint == JointType::fixed) continue;
     const Vector3 faster = change.linear + change.angular.cross(tree.position[link] - tree.origin);
-    memory.impulse[memory.first_link[i] + link] += problem.length * tree.external[link].force +
-                                                   tree.links[link].mass * (problem.length * tree.gravity - faster);
+    memory.impulse[memory.first_link[i] + link] += problem.time_step * tree.external[link].force +
+                                                   tree.links[link].mass * (problem.time_step * tree.gravity - faster);
   }
 }
 
@@ -92,16 +92,16 @@ bool may_swing(const Tree& tree, std::size_t link, const Matrix3& stiff) {
 
 /// The square of how fast a link swings while all else moves freely, times its step: of h K [rad^2/s].
 /// @param work  with the tree's factors
-double square_of_swing(const Tree& tree, int link, const Matrix3& stiff, const Workspace& work, Tension& memory) {
+double squared_swing_rate(const Tree& tree, int link, const Matrix3& stiff, const Workspace& work, GeometricStiffness& memory) {
   const Eigen::SelfAdjointEigenSolver<Matrix3> parts(stiff);
   double most = 0;
   for (int part = 0; part < 3; ++part) {
     if (parts.eigenvalues()[part] <= 0) continue;  // pressed
     const Vector3 axis = parts.eigenvectors().col(part);
     memory.direction.assign(tree.dofs, 0.0);
-    for (const int k : tree.dofs_of(link)) memory.direction[k] = axis.dot(tree.axes[k].angular);
+    for (const int k : tree.dofs_of(link)) memory.direction[k] = axis.dot(tree.motion_subspace[k].angular);
     memory.response = memory.direction;
-    solve_mass(tree, work, memory.response.data());
+    solve_mass_matrix(tree, work, memory.response.data());
     const double mobility = std::inner_product(memory.direction.begin(), memory.direction.end(), memory.response.begin(), 0.0);
     most = std::max(most, parts.eigenvalues()[part] * mobility);
   }
@@ -109,18 +109,18 @@ double square_of_swing(const Tree& tree, int link, const Matrix3& stiff, const W
 }
 
 /// The tree's matrix, where servos and limits hold it against all that pulls, into the workspace's factors.
-void factor_held(const Problem& problem, std::size_t i, Workspace& work) {
+void factor_with_held_joints(const Problem& problem, std::size_t i, Workspace& work) {
   constexpr double heavy = 1e6;
   const Tree& tree = *problem.trees[i];
   work.mass.assign(problem.mass_of(i), problem.mass_of(i) + tree.dofs * tree.dofs);
-  for (const Block& block : problem.blocks) {
-    if (block.a == static_cast<int>(i) && holds_joint(block)) work.mass[block.dofs_a[0] * (tree.dofs + 1)] *= heavy;
+  for (const Constraint& constraint : problem.constraints) {
+    if (constraint.a == static_cast<int>(i) && holds_joint(constraint)) work.mass[constraint.dofs_a[0] * (tree.dofs + 1)] *= heavy;
   }
-  factor_mass(tree, work, problem.length);
+  factor_mass_matrix(tree, work, problem.time_step);
 }
 
 /// How far links of a tree swing in the step, at most [rad].
-double swing(const Problem& problem, std::size_t i, Workspace& work, Tension& memory) {
+double swing_angle(const Problem& problem, std::size_t i, Workspace& work, GeometricStiffness& memory) {
   const Tree& tree = *problem.trees[i];
   Matrix3* dyad = memory.dyad.data() + memory.first_link[i];
   add_inertia(problem, i, memory);
@@ -129,18 +129,18 @@ double swing(const Problem& problem, std::size_t i, Workspace& work, Tension& me
   double most = 0;
   for (std::size_t link = 0; link < tree.links.size(); ++link) {
     const Matrix3 stiff = stiffness(dyad[link]);
-    if (!may_swing(tree, link, problem.length * stiff)) continue;
-    if (!factored) factor_held(problem, i, work);
+    if (!may_swing(tree, link, problem.time_step * stiff)) continue;
+    if (!factored) factor_with_held_joints(problem, i, work);
     factored = true;
-    most = std::max(most, problem.length * square_of_swing(tree, static_cast<int>(link), stiff, work, memory));
+    most = std::max(most, problem.time_step * squared_swing_rate(tree, static_cast<int>(link), stiff, work, memory));
   }
   return std::sqrt(most);
 }
 
 }  // namespace
 
-int parts_for_tension(const Problem& problem, std::span<const Contact> contacts, Workspace& work, Tension& memory) {
-  if (!find_free(problem, memory)) return 1;
+int parts_for_geometric_stiffness(const Problem& problem, std::span<const ContactPoint> contacts, Workspace& work, GeometricStiffness& memory) {
+  if (!find_unconstrained(problem, memory)) return 1;
   memory.first_link.clear();
   int links = 0;
   for (const Tree* tree : problem.trees) {
@@ -152,7 +152,7 @@ int parts_for_tension(const Problem& problem, std::span<const Contact> contacts,
   add_contacts(problem, contacts, memory);
   double most = 0;
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    if (memory.free[i] > 0) most = std::max(most, swing(problem, i, work, memory));
+    if (memory.free[i] > 0) most = std::max(most, swing_angle(problem, i, work, memory));
   }
   return most > swings_too_far ? static_cast<int>(std::min(std::ceil(most / swing_of_a_part), 1e6)) : 1;
 }

@@ -10,8 +10,8 @@
 
 namespace ziggurat::dynamics {
 
-/// Memory of parts_for_tension(), which it uses again.
-struct Tension {
+/// Memory of parts_for_geometric_stiffness(), which it uses again.
+struct GeometricStiffness {
   std::vector<int> first_link;              ///< of each tree
   std::vector<int> free;                    ///< coordinates of each tree's joints that nothing holds
   std::vector<Vector3> impulse;             ///< on each link and on what it carries [N s]
@@ -29,6 +29,6 @@ struct Tension {
 /// not give way.
 /// @param contacts  of the problem's blocks
 /// @return          1: it need not be
-int parts_for_tension(const Problem& problem, std::span<const Contact> contacts, Workspace& work, Tension& memory);
+int parts_for_geometric_stiffness(const Problem& problem, std::span<const ContactPoint> contacts, Workspace& work, GeometricStiffness& memory);
 
 }  // namespace ziggurat::dynamics

@@ -32,11 +32,11 @@ double nutation(const Vector3& inertia, const Vector3& spin) {
 
 /// How fast the axis of a tree that turns as one may turn by itself [rad/s].
 /// @param slow  what need not be known
-double nutation_of_whole(const Problem& problem, std::size_t place, double slow) {
-  const Tree& tree = *problem.trees[place];
-  const Vector3 spin = tree.motion[0].angular;
-  if (!tree.free_root || spin.norm() <= slow) return 0;
-  const double* mass = problem.mass_of(place);
+double nutation_of_whole(const Problem& problem, std::size_t index, double slow) {
+  const Tree& tree = *problem.trees[index];
+  const Vector3 spin = tree.spatial_velocity[0].angular;
+  if (!tree.has_floating_base || spin.norm() <= slow) return 0;
+  const double* mass = problem.mass_of(index);
   Matrix6 root;
   for (int i = 0; i < 6; ++i) root.row(i) = Eigen::Map<const Vector6>(mass + i * tree.dofs);
   // About the centre of mass: what is left while it moves freely.
@@ -52,10 +52,10 @@ double mobility_across(const Tree& tree, std::size_t link, const Vector3& normal
   const Vector3 one = normal.unitOrthogonal(), other = normal.cross(one);
   const auto turn = [&](const Vector3& torque) {
     memory.assign(tree.dofs, 0.0);
-    for (const int k : tree.dofs_of(static_cast<int>(link))) memory[k] = torque.dot(tree.axes[k].angular);
-    solve_mass(tree, work, memory.data());
+    for (const int k : tree.dofs_of(static_cast<int>(link))) memory[k] = torque.dot(tree.motion_subspace[k].angular);
+    solve_mass_matrix(tree, work, memory.data());
     Vector3 change = Vector3::Zero();
-    for (const int k : tree.dofs_of(static_cast<int>(link))) change += tree.axes[k].angular * memory[k];
+    for (const int k : tree.dofs_of(static_cast<int>(link))) change += tree.motion_subspace[k].angular * memory[k];
     return change;
   };
   const Vector3 by_one = turn(one), by_other = turn(other);
@@ -65,8 +65,8 @@ double mobility_across(const Tree& tree, std::size_t link, const Vector3& normal
 /// How fast the axes of a tree's rotors may turn by themselves [rad/s]: what turns on a revolute joint, by the most angular momentum
 /// that it has in the step, because a motor may spin it up within one.
 /// @param slow  what need not be known exactly
-double nutation_of_rotors(const Problem& problem, std::size_t place, double slow, Workspace& work) {
-  const Tree& tree = *problem.trees[place];
+double nutation_of_rotors(const Problem& problem, std::size_t index, double slow, Workspace& work) {
+  const Tree& tree = *problem.trees[index];
   double fastest = 0;
   bool factored = false;
   for (std::size_t i = 1; i < tree.links.size(); ++i) {
@@ -74,36 +74,36 @@ double nutation_of_rotors(const Problem& problem, std::size_t place, double slow
     const Link& carrier = tree.links[link.parent];
     if (link.joint != JointType::revolute || carrier.joint == JointType::fixed) continue;
     const int dof = tree.first_dof[i];
-    const Vector3 axis = tree.rotation[i].transpose() * tree.axes[dof].angular;
-    const double speed = std::max(std::abs(tree.v[dof]), std::abs(problem.velocity[problem.offset[place] + dof]));
+    const Vector3 axis = tree.rotation[i].transpose() * tree.motion_subspace[dof].angular;
+    const double speed = std::max(std::abs(tree.v[dof]), std::abs(problem.velocity[problem.offset[index] + dof]));
     const double momentum = link.inertia.dot(axis.cwiseAbs2()) * speed;
     if (momentum <= slow * (link.inertia.minCoeff() + carrier.inertia.minCoeff())) continue;
     if (!std::exchange(factored, true)) {
-      work.mass.assign(problem.mass_of(place), problem.mass_of(place) + tree.dofs * tree.dofs);
-      factor_mass(tree, work, problem.length);
+      work.mass.assign(problem.mass_of(index), problem.mass_of(index) + tree.dofs * tree.dofs);
+      factor_mass_matrix(tree, work, problem.time_step);
     }
-    fastest = std::max(fastest, momentum * mobility_across(tree, i, tree.axes[dof].angular, work, work.before));
+    fastest = std::max(fastest, momentum * mobility_across(tree, i, tree.motion_subspace[dof].angular, work, work.saved_state));
   }
   return fastest;
 }
 
 }  // namespace
 
-int parts_for_nutation(const Problem& problem, Workspace& work) {
+int parts_for_gyroscopic_stiffness(const Problem& problem, Workspace& work) {
   if (problem.trees.size() > most_trees) return 1;
   double fastest = 0;
-  for (std::size_t place = 0; place < problem.trees.size(); ++place) {
-    const Tree& tree = *problem.trees[place];
-    const auto touches = [&](const Block& block) {
-      const int it = static_cast<int>(place);
-      return block.kind == Block::Source::contact && (block.a == it || block.b == it) && (block.impulse[0] != 0 || block.gap < close);
+  for (std::size_t index = 0; index < problem.trees.size(); ++index) {
+    const Tree& tree = *problem.trees[index];
+    const auto touches = [&](const Constraint& constraint) {
+      const int it = static_cast<int>(index);
+      return constraint.kind == Constraint::Kind::contact && (constraint.a == it || constraint.b == it) && (constraint.impulse[0] != 0 || constraint.gap < close);
     };
-    const double slow = too_far / problem.length;
-    const double its = tree.single ? nutation(tree.links[0].inertia, tree.rotation[0].transpose() * tree.motion[0].angular)
-                                   : std::max(nutation_of_whole(problem, place, slow), nutation_of_rotors(problem, place, slow, work));
-    if (its > fastest && std::ranges::any_of(problem.blocks, touches)) fastest = its;
+    const double slow = too_far / problem.time_step;
+    const double its = tree.is_single_body ? nutation(tree.links[0].inertia, tree.rotation[0].transpose() * tree.spatial_velocity[0].angular)
+                                   : std::max(nutation_of_whole(problem, index, slow), nutation_of_rotors(problem, index, slow, work));
+    if (its > fastest && std::ranges::any_of(problem.constraints, touches)) fastest = its;
   }
-  const double most = problem.length * fastest;
+  const double most = problem.time_step * fastest;
   return most > too_far ? static_cast<int>(std::min(std::ceil(most / of_a_part), 1e6)) : 1;
 }
 

@@ -10,6 +10,6 @@ namespace ziggurat::dynamics {
 /// body nutates by the speed of its spin, times the spread of its moments of inertia over the middle one; what turns on a revolute
 /// joint by its angular momentum in the joint, times the mobility of turning across it.
 /// @return  1: it need not be
-int parts_for_nutation(const Problem& problem, Workspace& work);
+int parts_for_gyroscopic_stiffness(const Problem& problem, Workspace& work);
 
 }  // namespace ziggurat::dynamics

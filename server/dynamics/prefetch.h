@@ -7,7 +7,7 @@
 
 namespace ziggurat::dynamics {
 
-inline void fetch(const void* memory, std::size_t bytes) {
+inline void prefetch(const void* memory, std::size_t bytes) {
   constexpr std::size_t line = 64;  // of the cache [bytes]
   if (!memory || bytes == 0) return;
   const char* const first = static_cast<const char*>(memory);
@@ -17,8 +17,8 @@ inline void fetch(const void* memory, std::size_t bytes) {
 }
 
 template <class Item>
-void fetch(const std::vector<Item>& items) {
-  fetch(items.data(), items.size() * sizeof(Item));
+void prefetch(const std::vector<Item>& items) {
+  prefetch(items.data(), items.size() * sizeof(Item));
 }
 
 }  // namespace ziggurat::dynamics

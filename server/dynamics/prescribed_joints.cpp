@@ -2,28 +2,28 @@
 
 namespace ziggurat::dynamics {
 
-void find_drives(const Problem& problem, std::span<const Servo> servos, Drives& out) {
+void find_prescribed_joints(const Problem& problem, std::span<const Servo> servos, IslandPrescribedJoints& out) {
   const std::size_t dofs = problem.velocity.size();
-  out.driven.assign(problem.trees.size(), 0);
-  out.held.assign(dofs, 0);
-  out.speed.assign(dofs, 0.0);
-  out.push.assign(dofs, 0.0);
-  for (const Block& block : problem.blocks) {
-    if (block.kind != Block::Source::servo) continue;
-    const Servo& servo = servos[block.source];
+  out.has_servos.assign(problem.trees.size(), 0);
+  out.prescribed.assign(dofs, 0);
+  out.velocity.assign(dofs, 0.0);
+  out.force.assign(dofs, 0.0);
+  for (const Constraint& constraint : problem.constraints) {
+    if (constraint.kind != Constraint::Kind::servo) continue;
+    const Servo& servo = servos[constraint.source];
     if (servo.dof < 0) continue;
-    const std::size_t at = problem.offset[block.a] + servo.dof;
-    out.driven[block.a] = 1;
-    out.held[at] = is_obeyed(servo);
-    out.speed[at] = servo.speed;
-    out.push[at] = servo.impulse / problem.length;
+    const std::size_t at = problem.offset[constraint.a] + servo.dof;
+    out.has_servos[constraint.a] = 1;
+    out.prescribed[at] = is_unsaturated(servo);
+    out.velocity[at] = servo.target_velocity;
+    out.force[at] = servo.impulse / problem.time_step;
   }
 }
 
-Drive drive_of(const Problem& problem, std::size_t tree, const Drives& drives) {
-  if (!drives.driven[tree]) return {};
+PrescribedJoints prescribed_joints_of(const Problem& problem, std::size_t tree, const IslandPrescribedJoints& drives) {
+  if (!drives.has_servos[tree]) return {};
   const auto of_tree = [&](const auto& all) { return std::span(all).subspan(problem.offset[tree], problem.trees[tree]->dofs); };
-  return {of_tree(drives.held), of_tree(drives.speed), of_tree(drives.push)};
+  return {of_tree(drives.prescribed), of_tree(drives.velocity), of_tree(drives.force)};
 }
 
 }  // namespace ziggurat::dynamics

@@ -27,14 +27,14 @@ double push(const Problem& problem, Workspace& work, std::vector<double>& start,
     external_forces(tree, work, work.scratch, true, false);
     const Eigen::Map<const Eigen::VectorXd> force(work.scratch.data(), n);
     if (force.isZero(0)) continue;
-    const Eigen::VectorXd impulse = problem.length * force;
+    const Eigen::VectorXd impulse = problem.time_step * force;
     const Eigen::MatrixXd mass = Eigen::Map<const Eigen::MatrixXd>(problem.mass_of(i), n, n);
     Eigen::Map<Eigen::VectorXd> before(start.data() + problem.offset[i], n), faster(change.data() + problem.offset[i], n);
     faster = mass.llt().solve(impulse);
     sum += impulse.dot(before + faster / 2);
     before += faster;
     external_forces(tree, work, work.scratch, false, true);
-    const Eigen::VectorXd weight = problem.length * Eigen::Map<const Eigen::VectorXd>(work.scratch.data(), n);
+    const Eigen::VectorXd weight = problem.time_step * Eigen::Map<const Eigen::VectorXd>(work.scratch.data(), n);
     Eigen::Map<Eigen::VectorXd>(fall.data() + problem.offset[i], n) = mass.llt().solve(weight);
   }
   return sum;
@@ -44,14 +44,14 @@ double push(const Problem& problem, Workspace& work, std::vector<double>& start,
 /// @param change, fall  see push(): of an impulse that holds both, each has its share
 double work_held(const Problem& problem, const std::vector<double>& change, const std::vector<double>& fall) {
   double sum = 0;
-  for (const Block& block : problem.blocks) {
-    if (block.kind != Block::Source::contact || problem.rebounded(block)) continue;
-    double u[Block::most_rows], others[Block::most_rows];
-    problem.speeds(block, u, change.data());
-    problem.speeds(block, others, fall.data());
-    for (int r = 0; r < block.rows; ++r) {
+  for (const Constraint& constraint : problem.constraints) {
+    if (constraint.kind != Constraint::Kind::contact || problem.rebounded(constraint)) continue;
+    double u[Constraint::most_rows], others[Constraint::most_rows];
+    problem.constraint_velocity(constraint, u, change.data());
+    problem.constraint_velocity(constraint, others, fall.data());
+    for (int r = 0; r < constraint.rows; ++r) {
       const double share = u[r] * others[r] > 0 ? u[r] / (u[r] + others[r]) : 1;
-      sum += std::min(0.0, share * block.impulse[r] * u[r] / 2);
+      sum += std::min(0.0, share * constraint.impulse[r] * u[r] / 2);
     }
   }
   return sum;
@@ -59,16 +59,16 @@ double work_held(const Problem& problem, const std::vector<double>& change, cons
 
 /// What servos do in the substep, of which v is the solution. What they give for the rebounds they give in the impacts, at the speed that they
 /// have then.
-double work_of_servos(const Problem& problem, const Snapshot& without) {
+double work_of_servos(const Problem& problem, const Iterate& without) {
   double sum = 0;
-  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
-    const Block& block = problem.blocks[i];
-    if (block.kind != Block::Source::servo || block.impulse[0] == 0) continue;
-    const double* before = problem.trees[block.a]->v.data();
-    const double* after = problem.velocity.data() + problem.offset[block.a];
-    const double usual = without.impulses[i][0], more = block.impulse[0] - usual;
-    for (const int k : block.dofs_a) {
-      const double along = problem.jacobian[block.ja + k], most = usual * along * after[k];  // it may be stopped at once, as by a limit
+  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
+    const Constraint& constraint = problem.constraints[i];
+    if (constraint.kind != Constraint::Kind::servo || constraint.impulse[0] == 0) continue;
+    const double* before = problem.trees[constraint.a]->v.data();
+    const double* after = problem.velocity.data() + problem.offset[constraint.a];
+    const double usual = without.impulses[i][0], more = constraint.impulse[0] - usual;
+    for (const int k : constraint.dofs_a) {
+      const double along = problem.jacobian[constraint.jacobian_a + k], most = usual * along * after[k];  // it may be stopped at once, as by a limit
       sum += std::min(usual * along * (before[k] + after[k]) / 2, most) + more * along * after[k];
     }
   }
@@ -78,26 +78,26 @@ double work_of_servos(const Problem& problem, const Snapshot& without) {
 /// Whether pushes are small beside the speeds of all impacts: then they act throughout the substep, see restitution_timing.cpp.
 /// @param start, change  see push(): out
 bool push_throughout(const Problem& problem, const std::vector<double>& start, const std::vector<double>& change) {
-  return !problem.in_turn && std::ranges::all_of(problem.blocks, [&](const Block& block) {
-    if (!problem.rebounded(block)) return true;
-    double u[Block::most_rows], kick[Block::most_rows];
-    problem.speeds(block, u, start.data());
-    problem.speeds(block, kick, change.data());
+  return !problem.has_sequential_impacts && std::ranges::all_of(problem.constraints, [&](const Constraint& constraint) {
+    if (!problem.rebounded(constraint)) return true;
+    double u[Constraint::most_rows], kick[Constraint::most_rows];
+    problem.constraint_velocity(constraint, u, start.data());
+    problem.constraint_velocity(constraint, kick, change.data());
     return kick[0] == 0 || std::abs(kick[0]) < kick[0] - u[0];
   });
 }
 
 /// What such pushes give: their work on the way, without what a kick at the beginning of each substep has more of it.
 /// @param step  of each dof [rad], [m]
-double work_throughout(const Problem& problem, Workspace& work, const Rebound& rebound, const std::vector<double>& step) {
+double work_throughout(const Problem& problem, Workspace& work, const RestitutionEnergy& rebound, const std::vector<double>& step) {
   double sum = 0;
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];
     work.scratch.resize(tree.dofs);
     external_forces(tree, work, work.scratch, true, false);
     for (int k = 0; k < tree.dofs; ++k) {
-      const std::size_t place = problem.offset[i] + k;
-      sum += work.scratch[k] * (step[place] - problem.length / 2 * (tree.v[k] - rebound.before[place]));
+      const std::size_t index = problem.offset[i] + k;
+      sum += work.scratch[k] * (step[index] - problem.time_step / 2 * (tree.v[k] - rebound.before[index]));
     }
   }
   return sum;
@@ -111,7 +111,7 @@ void set_velocities(const Problem& problem, double share_a, const std::vector<do
     for (int k = 0; k < tree.dofs; ++k) {
       tree.v[k] = share_a * a[problem.offset[i] + k] + share_b * b[problem.offset[i] + k];
     }
-    move(tree);
+    velocity_kinematics(tree);
   }
 }
 
@@ -123,8 +123,8 @@ double kinetic_energy(const Problem& problem) {
 
 /// Whether the world touches it: its momentum is not its own.
 bool is_grounded(const Problem& problem) {
-  return std::any_of(problem.blocks.begin(), problem.blocks.end(), [](const Block& block) {
-    return block.kind == Block::Source::contact && (block.a < 0 || block.b < 0);
+  return std::any_of(problem.constraints.begin(), problem.constraints.end(), [](const Constraint& constraint) {
+    return constraint.kind == Constraint::Kind::contact && (constraint.a < 0 || constraint.b < 0);
   });
 }
 
@@ -135,13 +135,13 @@ double square_of_lever(const Problem& problem, std::size_t tree, int dof) {
 }
 
 /// Takes an energy from all speeds, as far as they have it.
-void slow_down(const Problem& problem, double excess) {
+void scale_velocities(const Problem& problem, double excess) {
   const double all = kinetic_energy(problem);
   if (excess <= rounding * all) return;
   const double share = excess < all ? std::sqrt(1 - excess / all) : 0;
   for (Tree* tree : problem.trees) {
     for (double& speed : tree->v) speed *= share;
-    move(*tree);
+    velocity_kinematics(*tree);
   }
 }
 
@@ -161,31 +161,31 @@ struct Work {
 };
 
 /// @param start  velocities at the beginning, of each dof
-Work work_of_contacts(const Problem& problem, const Snapshot& without,
+Work work_of_contacts(const Problem& problem, const Iterate& without,
                       const std::vector<double>& start) {
   Work out;
-  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
-    const Block& block = problem.blocks[i];
-    if (block.kind == Block::Source::servo) continue;
-    double before[Block::most_rows], least[Block::most_rows], most[Block::most_rows];
-    problem.speeds(block, most, problem.velocity.data());
-    problem.speeds(block, least, without.velocity.data());
-    problem.speeds(block, before, start.data());
-    if (block.bounces) before[0] = block.before;
-    for (int r = 0; r < block.rows; ++r) {
-      const double g = without.impulses[i][r], more = block.impulse[r] - g;
+  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
+    const Constraint& constraint = problem.constraints[i];
+    if (constraint.kind == Constraint::Kind::servo) continue;
+    double before[Constraint::most_rows], least[Constraint::most_rows], most[Constraint::most_rows];
+    problem.constraint_velocity(constraint, most, problem.velocity.data());
+    problem.constraint_velocity(constraint, least, without.velocity.data());
+    problem.constraint_velocity(constraint, before, start.data());
+    if (constraint.has_impact) before[0] = constraint.restitution_velocity;
+    for (int r = 0; r < constraint.rows; ++r) {
+      const double g = without.impulses[i][r], more = constraint.impulse[r] - g;
       const double u = before[r] + least[r], faster = most[r] - least[r];
       out.none += g * u / 2;
       out.slope += (g * faster + more * u) / 2;
       out.curve += more * faster / 2;
-      out.size += std::abs(block.impulse[r]) * (std::abs(before[r]) + std::abs(most[r]));
+      out.size += std::abs(constraint.impulse[r]) * (std::abs(before[r]) + std::abs(most[r]));
     }
   }
   return out;
 }
 
 /// The largest share of the way at which contacts do not give energy.
-double share_without_gain(const Problem& problem, const Snapshot& without,
+double share_without_gain(const Problem& problem, const Iterate& without,
                           const std::vector<double>& start) {
   const Work work = work_of_contacts(problem, without, start);
   if (work.none + work.slope + work.curve <= rounding * work.size) return 1;
@@ -194,25 +194,25 @@ double share_without_gain(const Problem& problem, const Snapshot& without,
   return std::clamp((root - work.slope) / (2 * work.curve), 0.0, 1.0);
 }
 
-void blend(Problem& problem, const Snapshot& without, double share) {
+void blend(Problem& problem, const Iterate& without, double share) {
   for (std::size_t k = 0; k < problem.velocity.size(); ++k) {
     problem.velocity[k] = without.velocity[k] + share * (problem.velocity[k] - without.velocity[k]);
   }
-  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
-    for (int r = 0; r < problem.blocks[i].rows; ++r) {
-      double& impulse = problem.blocks[i].impulse[r];
+  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
+    for (int r = 0; r < problem.constraints[i].rows; ++r) {
+      double& impulse = problem.constraints[i].impulse[r];
       impulse = without.impulses[i][r] + share * (impulse - without.impulses[i][r]);
     }
   }
 }
 
 /// The square of the fastest that a tree's root moves, before or after [m^2/s^2].
-double square_of_fastest(const Problem& problem, const Rebound& rebound) {
+double square_of_fastest(const Problem& problem, const RestitutionEnergy& rebound) {
   double most = 0;
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];
     for (const double* v : {tree.v.data(), rebound.start.data() + problem.offset[i]}) {
-      if (tree.free_root) most = std::max(most, v[3] * v[3] + v[4] * v[4] + v[5] * v[5]);
+      if (tree.has_floating_base) most = std::max(most, v[3] * v[3] + v[4] * v[4] + v[5] * v[5]);
     }
   }
   return most;
@@ -221,10 +221,10 @@ double square_of_fastest(const Problem& problem, const Rebound& rebound) {
 }  // namespace
 
 bool rebounds(const Problem& problem) {
-  return std::ranges::any_of(problem.blocks, [&](const Block& block) { return problem.rebounded(block); });
+  return std::ranges::any_of(problem.constraints, [&](const Constraint& constraint) { return problem.rebounded(constraint); });
 }
 
-void bound_impacts(Problem& problem, Solver& solver, Workspace& work, Rebound& out) {
+void bound_restitution(Problem& problem, VelocitySolver& solver, Workspace& work, RestitutionEnergy& out) {
   solver.solve_without_rebound(problem, out.without);
   out.start.clear();
   for (const Tree* tree : problem.trees) {
@@ -240,29 +240,29 @@ void bound_impacts(Problem& problem, Solver& solver, Workspace& work, Rebound& o
   if (pushed != 0 && push_throughout(problem, out.start, out.change)) out.throughout = unpushed;
 }
 
-bool lifts_too_much(const Problem& problem, Workspace& work, const Rebound& rebound,
+bool lifts_too_much(const Problem& problem, Workspace& work, const RestitutionEnergy& rebound,
                     const std::vector<double>& step) {
-  for (Tree* tree : problem.trees) move(*tree);
+  for (Tree* tree : problem.trees) velocity_kinematics(*tree);
   double lift = 0, now = energy(problem.trees);
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];
     work.scratch.resize(tree.dofs);
     external_forces(tree, work, work.scratch, false, true);
     for (int k = 0; k < tree.dofs; ++k) {
-      const std::size_t place = problem.offset[i] + k;
-      lift -= work.scratch[k] * problem.velocity[place];
-      now -= work.scratch[k] * step[place];
+      const std::size_t index = problem.offset[i] + k;
+      lift -= work.scratch[k] * problem.velocity[index];
+      now -= work.scratch[k] * step[index];
     }
   }
   return lift > 0 && now + lift - rebound.most_energy > rounding * (std::abs(now) + lift);
 }
 
-void bound_way(Problem& problem, const Rebound& rebound) {
+void bound_way(Problem& problem, const RestitutionEnergy& rebound) {
   double share = 1;
   // A ball that is struck and strikes another one may be as fast after as before, and move all the same.
-  const double of_turns = problem.in_turn ? 4 * square_of_fastest(problem, rebound) : 0;
+  const double of_turns = problem.has_sequential_impacts ? 4 * square_of_fastest(problem, rebound) : 0;
   double depth = problem.allowed_overlap;  // what overlaps is moved apart by up to that
-  for (const Block& block : problem.blocks) depth = std::max(depth, -block.gap);
+  for (const Constraint& constraint : problem.constraints) depth = std::max(depth, -constraint.gap);
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];
     const double* way = problem.velocity.data() + problem.offset[i];
@@ -274,9 +274,9 @@ void bound_way(Problem& problem, const Rebound& rebound) {
         square += way[j] * way[j];
         change += (tree.v[j] - start[j]) * (tree.v[j] - start[j]);
       }
-      if (tree.free_root && k == 3) change = std::max(change, of_turns);
+      if (tree.has_floating_base && k == 3) change = std::max(change, of_turns);
       // Before it struck, for a part of the substep, it had the other velocity.
-      const double most = more_than_moved * problem.length * problem.length * change +
+      const double most = more_than_moved * problem.time_step * problem.time_step * change +
                           4 * depth * depth / square_of_lever(problem, i, k);
       if (square > most) share = std::min(share, std::sqrt(most / square));
     }
@@ -284,7 +284,7 @@ void bound_way(Problem& problem, const Rebound& rebound) {
   for (double& way : problem.velocity) way *= share;
 }
 
-void bound_energy(const Problem& problem, Workspace& work, Rebound& rebound, const std::vector<double>& step) {
+void bound_energy(const Problem& problem, Workspace& work, RestitutionEnergy& rebound, const std::vector<double>& step) {
   if (rebound.throughout) {
     rebound.most_energy = std::min(rebound.most_energy, *rebound.throughout + work_throughout(problem, work, rebound, step));
   }
@@ -297,9 +297,9 @@ void bound_energy(const Problem& problem, Workspace& work, Rebound& rebound, con
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];
     for (int k = 0; k < tree.dofs; ++k) {
-      const std::size_t place = problem.offset[i] + k;
-      after[place] = tree.v[k];
-      change[place] = rebound.without.velocity[place] - tree.v[k];
+      const std::size_t index = problem.offset[i] + k;
+      after[index] = tree.v[k];
+      change[index] = rebound.without.velocity[index] - tree.v[k];
     }
   }
   set_velocities(problem, 0, after, 1, change);
@@ -308,8 +308,8 @@ void bound_energy(const Problem& problem, Workspace& work, Rebound& rebound, con
   const double slope = kinetic + of_change - kinetic_energy(problem);
   const double way = way_back(slope, of_change, excess);
   set_velocities(problem, 1, after, way, change);
-  take_excess(problem.trees, work, energy(problem.trees) - rebound.most_energy);
-  if (is_grounded(problem)) slow_down(problem, energy(problem.trees) - rebound.most_energy);
+  remove_kinetic_energy(problem.trees, work, energy(problem.trees) - rebound.most_energy);
+  if (is_grounded(problem)) scale_velocities(problem, energy(problem.trees) - rebound.most_energy);
 }
 
 }  // namespace ziggurat::dynamics

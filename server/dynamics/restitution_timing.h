@@ -11,6 +11,6 @@ namespace ziggurat::dynamics {
 /// What carries a body still does in the impact; what nothing carries falls freely before and after it. A push that
 /// is small beside its speed acts likewise, a larger one before it. Limits hold at
 /// the bound that the speeds pass.
-Outcome solve_velocities(Problem& problem, Solver& solver);
+SolverResult solve_velocities(Problem& problem, VelocitySolver& solver);
 
 }  // namespace ziggurat::dynamics

@@ -17,37 +17,37 @@ using Row = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_dofs_struck, 1>;
 using Mass = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, most_dofs_struck, most_dofs_struck>;
 
 /// Of a block's first speed, for a tree: zero if it is not a side of it.
-Row row_of(const Problem& problem, const Block& block, int tree) {
+Row row_of(const Problem& problem, const Constraint& constraint, int tree) {
   Row row = Row::Zero(problem.trees[tree]->dofs);
-  const auto add = [&](int place, int first) {
-    for (int k = 0; place == tree && k < row.size(); ++k) row[k] += problem.jacobian[first + k * block.rows];
+  const auto add = [&](int index, int first) {
+    for (int k = 0; index == tree && k < row.size(); ++k) row[k] += problem.jacobian[first + k * constraint.rows];
   };
-  add(block.a, block.ja);
-  add(block.b, block.jb);
+  add(constraint.a, constraint.jacobian_a);
+  add(constraint.b, constraint.jacobian_b);
   return row;
 }
 
 /// The contacts of an island while its impacts take place.
-struct Sequence {
-  double length = 0, time = 0;             ///< of the substep, and since its beginning [s]
+struct ImpactSequence {
+  double time_step = 0, time = 0;             ///< of the substep, and since its beginning [s]
   std::vector<double> gap, speed, pull;    ///< of each contact [m], [m/s], [m/s^2]
   std::vector<double> given, worked, met;  ///< impulse, its work, and when it last met [N s], [J], [s]
   Eigen::MatrixXd responses;               ///< of a contact's speed (row) to an impulse at another [1/kg]
 };
 
 /// When surfaces meet, from now on [s]; infinite: they part, or rest on each other.
-double time_to(const Sequence& s, std::size_t i) {
+double time_to(const ImpactSequence& s, std::size_t i) {
   const double gap = s.gap[i], speed = s.speed[i], pull = s.pull[i];
   if (gap <= 0) {
     if (speed < -still) return 0;
-    return speed > slow_impact && pull < 0 ? -2 * speed / pull : HUGE_VAL;
+    return speed > restitution_threshold && pull < 0 ? -2 * speed / pull : HUGE_VAL;
   }
   const double square = speed * speed - 2 * pull * gap;  // of the speed of the impact
   if (square <= 0 || (speed >= 0 && pull >= 0)) return HUGE_VAL;
   return 2 * gap / (std::sqrt(square) - speed);
 }
 
-void advance(Sequence& s, double time) {
+void advance(ImpactSequence& s, double time) {
   for (std::size_t i = 0; i < s.gap.size(); ++i) {
     s.gap[i] += time * (s.speed[i] + time * s.pull[i] / 2);
     s.speed[i] += time * s.pull[i];
@@ -56,14 +56,14 @@ void advance(Sequence& s, double time) {
 }
 
 /// Lets some contacts rebound at once; those that this would pull are left out.
-void strike(Sequence& s, std::span<const Impact> impacts, std::vector<int> together) {
+void strike(ImpactSequence& s, std::span<const RestitutionContact> impacts, std::vector<int> together) {
   Eigen::VectorXd impulse;
   for (;;) {
     const auto count = static_cast<Eigen::Index>(together.size());
     Eigen::MatrixXd matrix(count, count);
     Eigen::VectorXd change(count);
     for (Eigen::Index i = 0; i < count; ++i) {
-      const double speed = s.speed[together[i]], bounce = -speed < slow_impact ? 0 : impacts[together[i]].block->restitution;
+      const double speed = s.speed[together[i]], bounce = -speed < restitution_threshold ? 0 : impacts[together[i]].constraint->restitution;
       change[i] = -(1 + bounce) * speed;
       for (Eigen::Index k = 0; k < count; ++k) matrix(i, k) = s.responses(together[i], together[k]);
     }
@@ -83,24 +83,24 @@ void strike(Sequence& s, std::span<const Impact> impacts, std::vector<int> toget
   }
 }
 
-Sequence begin(const Problem& problem, std::span<const Impact> impacts) {
-  Sequence s;
-  s.length = problem.length;
+ImpactSequence begin(const Problem& problem, std::span<const RestitutionContact> impacts) {
+  ImpactSequence s;
+  s.time_step = problem.time_step;
   const auto count = impacts.size();
   s.given.resize(count), s.worked.resize(count), s.met.resize(count);
   s.responses.resize(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count));
   for (std::size_t i = 0; i < count; ++i) {
-    s.gap.push_back(impacts[i].block->gap);
+    s.gap.push_back(impacts[i].constraint->gap);
     s.speed.push_back(impacts[i].speed);
     s.pull.push_back(impacts[i].pull);
-    for (std::size_t k = 0; k < count; ++k) s.responses(i, k) = response(problem, *impacts[k].block, *impacts[i].block);
+    for (std::size_t k = 0; k < count; ++k) s.responses(i, k) = response(problem, *impacts[k].constraint, *impacts[i].constraint);
   }
   return s;
 }
 
 }  // namespace
 
-double response(const Problem& problem, const Block& impulse, const Block& speed) {
+double response(const Problem& problem, const Constraint& impulse, const Constraint& speed) {
   double sum = 0;
   for (const int tree : {impulse.a, impulse.b}) {
     if (tree < 0 || (tree != speed.a && tree != speed.b)) continue;
@@ -111,16 +111,16 @@ double response(const Problem& problem, const Block& impulse, const Block& speed
   return sum;
 }
 
-bool take_in_turn(Problem& problem, std::span<const Impact> impacts) {
-  constexpr double more_than_missed = 1e-6;  // by the solver [m/s]
-  Sequence s = begin(problem, impacts);
-  const double moment = 1e-9 * s.length;  // what is nearer takes place together
+bool resolve_in_time_order(Problem& problem, std::span<const RestitutionContact> impacts) {
+  constexpr double residual_margin = 1e-6;  // by the solver [m/s]
+  ImpactSequence s = begin(problem, impacts);
+  const double moment = 1e-9 * s.time_step;  // what is nearer takes place together
   int left = 64 * static_cast<int>(impacts.size()), struck = 0;
   std::vector<int> together;
   for (; left > 0; --left) {
     double next = HUGE_VAL;
     for (std::size_t i = 0; i < impacts.size(); ++i) next = std::min(next, time_to(s, i));
-    if (s.time + next >= s.length) break;
+    if (s.time + next >= s.time_step) break;
     together.clear();
     for (std::size_t i = 0; i < impacts.size(); ++i) {
       if (time_to(s, i) <= next + moment) together.push_back(static_cast<int>(i));
@@ -130,20 +130,20 @@ bool take_in_turn(Problem& problem, std::span<const Impact> impacts) {
     ++struck;
   }
   if (struck == 0 || left == 0) return false;
-  problem.in_turn = true;
-  advance(s, s.length - s.time);
+  problem.has_sequential_impacts = true;
+  advance(s, s.time_step - s.time);
   for (std::size_t i = 0; i < impacts.size(); ++i) {
-    Block& block = *impacts[i].block;
+    Constraint& constraint = *impacts[i].constraint;
     if (s.given[i] == 0) {  // nothing may hold it
-      block.seek[0] = std::min(block.seek[0], s.speed[i] - more_than_missed);
+      constraint.target_velocity[0] = std::min(constraint.target_velocity[0], s.speed[i] - residual_margin);
       continue;
     }
-    block.bounces = true;
-    block.yield = 0;
-    block.met = s.met[i];
-    block.rise = std::max(0.0, s.gap[i]);
-    block.seek[0] = s.speed[i];
-    block.before = 2 * s.worked[i] / s.given[i] - s.speed[i];
+    constraint.has_impact = true;
+    constraint.compliance = 0;
+    constraint.impact_time = s.met[i];
+    constraint.target_gap = std::max(0.0, s.gap[i]);
+    constraint.target_velocity[0] = s.speed[i];
+    constraint.restitution_velocity = 2 * s.worked[i] / s.given[i] - s.speed[i];
   }
   return true;
 }

@@ -11,20 +11,20 @@ namespace ziggurat::dynamics {
 inline constexpr int most_dofs_struck = 32;
 
 /// A contact with restitution that may be met within a substep.
-struct Impact {
-  Block* block = nullptr;
+struct RestitutionContact {
+  Constraint* constraint = nullptr;
   double speed = 0;  ///< with which its surfaces part at the substep's beginning [m/s]
   double pull = 0;   ///< what free fall accelerates its surfaces apart by [m/s^2]
 };
 
 /// What a unit of a block's first impulse changes of another block's first speed [1/kg]. The first one's trees have no more than
 /// `most_dofs_struck`.
-double response(const Problem& problem, const Block& impulse, const Block& speed);
+double response(const Problem& problem, const Constraint& impulse, const Constraint& speed);
 
 /// Lets impacts take place in the order of time, those of one moment together, and has their contacts seek the speeds and gaps that
 /// remain. Without friction.
 /// @param impacts  all contacts of the island that may be met; trees of at most `most_dofs_struck`, one impact for each face of a pair
 /// @return         whether there was one, and no more than 64 for each contact
-bool take_in_turn(Problem& problem, std::span<const Impact> impacts);
+bool resolve_in_time_order(Problem& problem, std::span<const RestitutionContact> impacts);
 
 }  // namespace ziggurat::dynamics

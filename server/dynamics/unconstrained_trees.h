@@ -9,7 +9,7 @@
 namespace ziggurat::dynamics {
 
 /// Velocities at the substep's end if nothing touched, of the trees of an island that were asked for.
-struct FreeVelocities {
+struct UnconstrainedVelocities {
   std::vector<double> velocity;           ///< of each dof, as Problem::velocity
   std::vector<unsigned char> is_known;    ///< of each tree
 };
@@ -19,11 +19,11 @@ struct FreeVelocities {
 /// @param problem  solved
 /// @param memory   to work in
 /// @return         how many
-std::size_t find_free(const Problem& problem, std::span<const Servo> servos, Workspace& work, FreeVelocities& memory,
+std::size_t find_unconstrained(const Problem& problem, std::span<const Servo> servos, Workspace& work, UnconstrainedVelocities& memory,
                       std::vector<unsigned char>& out);
 
 /// Contacts of trees that fly gave nothing.
-/// @param free  see find_free()
-void take_back_pushes(Problem& problem, std::span<const unsigned char> free);
+/// @param free  see find_unconstrained()
+void clear_contact_impulses(Problem& problem, std::span<const unsigned char> free);
 
 }  // namespace ziggurat::dynamics

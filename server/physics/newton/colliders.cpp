@@ -207,7 +207,7 @@ void Colliders::place(Collider& collider, const dynamics::Tree& tree) const {
   collider.pose = transform_of(tree, collider.part);
   if (!collider.centred) collider.pose *= collider.in_part;
   if (!collider.moves) return;
-  const dynamics::Motion& motion = tree.motion[collider.part];
+  const dynamics::Motion& motion = tree.spatial_velocity[collider.part];
   const math::Vector3 arm = from_bullet(collider.pose.getOrigin()) - tree.origin;
   collider.velocity = to_bullet(motion.linear + motion.angular.cross(arm));
   collider.angular_velocity = to_bullet(motion.angular);
@@ -246,7 +246,7 @@ void Colliders::follow(const dynamics::System& system, double length) {
   for (ColliderGroup& group : groups) {
     if (!group.proxy) continue;
     group.rested = group.rests;
-    group.rests = !group.moves || system.asleep(static_cast<int>(group.entity));
+    group.rests = !group.moves || system.is_asleep(static_cast<int>(group.entity));
     woke |= group.rested && !group.rests;
     if (group.moves ? group.unchanged() : all[group.first].reach == least) continue;
     if (group.moves) followed_.push_back(static_cast<std::size_t>(&group - groups.data()));
@@ -273,14 +273,14 @@ void Colliders::fetch_after(const ColliderGroup& group, const dynamics::System& 
     const std::size_t index = static_cast<std::size_t>(&group - groups.data()) + by;
     return index < groups.size() && groups[index].moves ? &groups[index] : nullptr;
   };
-  if (const ColliderGroup* next = later(6)) dynamics::fetch(&system.trees[next->entity], sizeof(dynamics::Tree));
+  if (const ColliderGroup* next = later(6)) dynamics::prefetch(&system.trees[next->entity], sizeof(dynamics::Tree));
   if (const ColliderGroup* next = later(3)) {
     const dynamics::Tree& tree = system.trees[next->entity];
-    dynamics::fetch(tree.rotation);
-    dynamics::fetch(tree.position);
-    dynamics::fetch(tree.motion);
-    dynamics::fetch(&all[next->first], std::min(next->count, most_ahead) * sizeof(Collider));
-    dynamics::fetch(next->proxy, sizeof(*next->proxy));
+    dynamics::prefetch(tree.rotation);
+    dynamics::prefetch(tree.position);
+    dynamics::prefetch(tree.spatial_velocity);
+    dynamics::prefetch(&all[next->first], std::min(next->count, most_ahead) * sizeof(Collider));
+    dynamics::prefetch(next->proxy, sizeof(*next->proxy));
   }
 }
 

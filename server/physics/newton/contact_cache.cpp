@@ -87,14 +87,14 @@ bool tumbles(const Collider& a, const Collider& b, const Approach& approach, dou
 /// @param on_a, on_b  in the colliders' frames [m]
 /// @param apart       closer surfaces count as together [m]
 void place_between(const Collider& a, const math::Vector3& on_a, const Collider& b, const math::Vector3& on_b,
-                   double apart, dynamics::Contact& contact) {
+                   double apart, dynamics::ContactPoint& contact) {
   const math::Vector3 from = from_bullet(a.pose * to_bullet(on_a)), way = from_bullet(b.pose * to_bullet(on_b)) - from;
-  if (way.squaredNorm() < dynamics::touching * dynamics::touching) return;
+  if (way.squaredNorm() < dynamics::touching_gap * dynamics::touching_gap) return;
   if (contact.gap > apart) {
     contact.point = from;
-    contact.until_met = way;
+    contact.offset_to_b = way;
   } else {
-    contact.until_met = way - way.dot(contact.normal) * contact.normal;
+    contact.offset_to_b = way - way.dot(contact.normal) * contact.normal;
   }
 }
 
@@ -108,20 +108,20 @@ bool is_round(const Collider& collider, const btVector3& normal) {
 
 /// Notes how the point of contact moves where one of two colliders that move is round and the other one is not: with its centre,
 /// and as the other one's face turns; about the normal as it turns itself, unless that turns it far in the substep.
-void note_rolling(const Collider& a, const Collider& b, double length, dynamics::Contact& contact) {
+void note_rolling(const Collider& a, const Collider& b, double length, dynamics::ContactPoint& contact) {
   constexpr double far = 0.2;  // [rad]
   const btVector3 normal = to_bullet(contact.normal);
   const bool round_a = is_round(a, normal);
   if (round_a == is_round(b, normal)) return;
   const Collider& round = round_a ? a : b;
-  const btVector3 arm = to_bullet(round_a ? contact.point : math::Vector3(contact.point + contact.until_met)) - round.pose.getOrigin();
+  const btVector3 arm = to_bullet(round_a ? contact.point : math::Vector3(contact.point + contact.offset_to_b)) - round.pose.getOrigin();
   const btScalar turning = round.angular_velocity.dot(normal);
   const bool is_ball = std::holds_alternative<contact::Sphere>(round.shape);
   if (!is_ball && length * btFabs(turning) > far) return;
-  contact.rolls = true;
+  contact.has_point_velocity = true;
   const btVector3 face_turning = (round_a ? b : a).angular_velocity, tilt = face_turning.cross(normal) * arm.dot(normal);
-  contact.face_turning = from_bullet(face_turning);
-  contact.velocity = from_bullet(is_ball ? round.velocity + tilt : round.velocity + tilt + turning * normal.cross(arm));
+  contact.face_angular_velocity = from_bullet(face_turning);
+  contact.point_velocity = from_bullet(is_ball ? round.velocity + tilt : round.velocity + tilt + turning * normal.cross(arm));
 }
 
 /// Whether a body that seems to pass what stands may yet come there, because the ways of what turns are bent, and its axis turns, too: each changes
@@ -169,7 +169,7 @@ contact::Contacts look(const Collider& a, const Collider& b, double length, doub
     if (found.count > 0 && swings) out.swing = std::max(swing_of(a, time), swing_of(b, time));
   } else if (!approach.may_touch) {
     found.count = 0;
-  } else if (found.count <= 2 && approach.least > dynamics::touching && (normal_turns(a, b) || rebound_turned(a, b))) {
+  } else if (found.count <= 2 && approach.least > dynamics::touching_gap && (normal_turns(a, b) || rebound_turned(a, b))) {
     found = first_meeting(a, b, length, slack, time);
   } else if (out.tumbles) {
     found = contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::all);
@@ -208,27 +208,27 @@ bool is_among(std::size_t a, std::size_t b, const Colliders& colliders, const Tr
 
 }  // namespace
 
-dynamics::Contact law_of(const Collider& a, const Collider& b, const math::Vector3& normal,
+dynamics::ContactPoint law_of(const Collider& a, const Collider& b, const math::Vector3& normal,
                          int count) {
   const bool rolls = rolls_on(a, to_bullet(normal)) || rolls_on(b, to_bullet(normal));
-  dynamics::Contact law;
+  dynamics::ContactPoint law;
   law.a = link_of(a);
   law.b = link_of(b);
   law.normal = normal;
   law.friction = rolls ? 0 : a.surface.friction * b.surface.friction;
   // Only a point or a line of contact can roll; each carries its share of the normal force.
   if (count <= 2) {
-    law.rolling = a.surface.rolling_friction + b.surface.rolling_friction;
-    law.spinning = a.surface.spinning_friction + b.surface.spinning_friction;
+    law.rolling_friction = a.surface.rolling_friction + b.surface.rolling_friction;
+    law.spinning_friction = a.surface.spinning_friction + b.surface.spinning_friction;
   }
   law.restitution = std::max(a.surface.restitution, b.surface.restitution);
   return law;
 }
 
-std::span<dynamics::Contact> Contacts::find(double length) {
+std::span<dynamics::ContactPoint> Contacts::find(double length) {
   ++substep_;
   share_ = 1;
-  apart_ = dynamics::slow_impact * length;
+  apart_ = dynamics::restitution_threshold * length;
   colliders_.find_near(near_);
   meet_all(length);
   if (colliders_.woke || awake_ + resting_ != live_) drop_unseen();
@@ -236,7 +236,7 @@ std::span<dynamics::Contact> Contacts::find(double length) {
   return contacts_;
 }
 
-std::span<dynamics::Contact> Contacts::find(double length, const TreeSet& chosen, double share) {
+std::span<dynamics::ContactPoint> Contacts::find(double length, const TreeSet& chosen, double share) {
   share_ = share;
   apart_ = HUGE_VAL;  // parts are short, and magnets' bonds ask for all of the angular momentum
   colliders_.find_near(near_, chosen);
@@ -271,7 +271,7 @@ void Contacts::meet_all(double length) {
     const ColliderGroup& group = colliders_.groups[followed[k]];
     const ColliderGroup& next = colliders_.groups[followed[std::min(k + 1, followed.size() - 1)]];
     for (std::size_t i = next.first; i < next.first + next.count; ++i) {
-      if (floor_pairs_[i] != 0) dynamics::fetch(&pairs_[floor_pairs_[i]], Pair::beginning);
+      if (floor_pairs_[i] != 0) dynamics::prefetch(&pairs_[floor_pairs_[i]], Pair::beginning);
     }
     for (std::size_t i = group.first; i < group.first + group.count; ++i) {
       const Collider& collider = colliders_.all[i];
@@ -281,7 +281,7 @@ void Contacts::meet_all(double length) {
   }
 }
 
-std::span<dynamics::Contact> Contacts::add_resting() {
+std::span<dynamics::ContactPoint> Contacts::add_resting() {
   for (std::size_t i = 1; i < pairs_.size(); ++i) {
     Pair& pair = pairs_[i];
     if (!pair.live || pair.seen == substep_) continue;
@@ -297,7 +297,7 @@ void Contacts::choose(const TreeSet& chosen) {
   }
 }
 
-std::span<dynamics::Contact> Contacts::keep(const TreeSet& chosen) {
+std::span<dynamics::ContactPoint> Contacts::keep(const TreeSet& chosen) {
   keep_if([&](const Pair& pair) { return is_among(pair.a, pair.b, colliders_, chosen); });
   std::erase_if(turned_, [&](const Turned& turned) { return !is_among(pairs_[turned.pair].a, pairs_[turned.pair].b, colliders_, chosen); });
   return contacts_;
@@ -373,11 +373,11 @@ void Contacts::emit(const Pair& pair) {
   if (pair.count == 0) return;
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
-  const dynamics::Contact law = law_of(a, b, pair.normal, pair.count);
+  const dynamics::ContactPoint law = law_of(a, b, pair.normal, pair.count);
   const std::size_t count = static_cast<std::size_t>(pair.count), next = contacts_.size() + ahead;
-  if (next + count <= contacts_.capacity()) dynamics::fetch(contacts_.data() + next, count * sizeof(dynamics::Contact));
+  if (next + count <= contacts_.capacity()) dynamics::prefetch(contacts_.data() + next, count * sizeof(dynamics::ContactPoint));
   for (int i = 0; i < pair.count; ++i) {
-    dynamics::Contact& contact = contacts_.emplace_back(law);
+    dynamics::ContactPoint& contact = contacts_.emplace_back(law);
     contact.point = pair.points[i].point;
     contact.gap = pair.points[i].gap;
     if (a.moves && b.moves) {
@@ -395,9 +395,9 @@ void Contacts::remember(bool more) {
     if (i + ahead < contacts_.size()) {
       const Owner& owner = owners_[i + ahead];
       const Pair& pair = pairs_[owner.pair];
-      dynamics::fetch(&contacts_[i + ahead].impulse, 2 * sizeof(math::Vector3));
-      dynamics::fetch(&pair.share, sizeof(pair.share));
-      dynamics::fetch(&pair.points[owner.point].impulse, 2 * sizeof(math::Vector3));
+      dynamics::prefetch(&contacts_[i + ahead].impulse, 2 * sizeof(math::Vector3));
+      dynamics::prefetch(&pair.share, sizeof(pair.share));
+      dynamics::prefetch(&pair.points[owner.point].impulse, 2 * sizeof(math::Vector3));
     }
     Pair& pair = pairs_[owners_[i].pair];
     Remembered& point = pair.points[owners_[i].point];

@@ -19,7 +19,7 @@ inline std::uint64_t key_of(std::size_t a, std::size_t b) { return std::uint64_t
 
 /// What all contacts of a pair have in common, where they are now.
 /// @param count  of its points
-dynamics::Contact law_of(const Collider& a, const Collider& b, const math::Vector3& normal,
+dynamics::ContactPoint law_of(const Collider& a, const Collider& b, const math::Vector3& normal,
                          int count);
 
 class Contacts {
@@ -27,21 +27,21 @@ class Contacts {
   explicit Contacts(Colliders& colliders) : colliders_(colliders) {}
 
   /// Trees of the last find() that swing far until they meet something.
-  std::vector<dynamics::Swing> swings;
+  std::vector<dynamics::RotationUntilImpact> swings;
 
   /// Contacts of the coming substep, with the impulses of the last one; without those of pairs that
   /// both rest, which do nothing as long as both do.
-  std::span<dynamics::Contact> find(double length);
+  std::span<dynamics::ContactPoint> find(double length);
   /// Those and the others: where something wakes in the substep.
-  std::span<dynamics::Contact> add_resting();
+  std::span<dynamics::ContactPoint> add_resting();
   /// The same for a part of the substep in which only some trees move, all of them awake: contacts
   /// among them, and with what stands.
   /// @param share  of the substep's forces that act in the part
-  std::span<dynamics::Contact> find(double length, const TreeSet& chosen, double share);
+  std::span<dynamics::ContactPoint> find(double length, const TreeSet& chosen, double share);
   /// To be called before the first part of a set of trees.
   void choose(const TreeSet& chosen);
   /// Leaves out the contacts of all others, until the next find().
-  std::span<dynamics::Contact> keep(const TreeSet& chosen);
+  std::span<dynamics::ContactPoint> keep(const TreeSet& chosen);
   /// Which colliders were near each other at the last find().
   std::span<const Near> near() const { return near_; }
   /// Notes the impulses that dynamics/ has written to them.
@@ -49,7 +49,7 @@ class Contacts {
   void remember(bool more = false);
   /// Contacts between what stands and bodies that turned far in the substep, or are not where their velocities led, where they
   /// overlap now.
-  std::span<dynamics::Contact> find_turned(const dynamics::System& system);
+  std::span<dynamics::ContactPoint> find_turned(const dynamics::System& system);
   /// Forgets what touched an entity, before it is removed or moved; wakes what rested there.
   void forget(std::size_t entity, dynamics::System& system);
 
@@ -120,7 +120,7 @@ class Contacts {
   std::vector<int> forgotten_;    // pairs, in forget()
   std::vector<int> neighbours_;   // of a collider, in is_inside_base()
   std::vector<Pair*> carriers_;   // of the contacts that drops() looks at
-  std::vector<dynamics::Contact> contacts_;
+  std::vector<dynamics::ContactPoint> contacts_;
   /// Where a contact is remembered.
   struct Owner {
     int pair = 0, point = 0;
@@ -134,7 +134,7 @@ class Contacts {
     bool turns = false;  // without being struck
   };
   std::vector<Turned> turned_;
-  std::vector<dynamics::Contact> overlaps_;     // of these
+  std::vector<dynamics::ContactPoint> overlaps_;     // of these
   /// A pair of a collider that moves and one of a body that has, or may have, others beside it.
   struct OnBase {
     std::size_t mover = 0;   // a collider

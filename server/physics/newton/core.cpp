@@ -45,7 +45,7 @@ std::span<CoordinateJoint> joints_of(std::size_t entity, std::vector<CoordinateJ
 void share_mechanism(dynamics::Tree& tree, const std::vector<dynamics::Tree>& trees) {
   constexpr std::size_t most = 8;
   for (std::size_t i = 0; i < std::min(most, trees.size()); ++i) {
-    if (tree.share(trees[trees.size() - 1 - i])) return;
+    if (tree.share_model(trees[trees.size() - 1 - i])) return;
   }
 }
 
@@ -81,7 +81,7 @@ void NewtonCore::detach(std::size_t entity) {
 
 void NewtonCore::remove(Body& body) {
   detach(body.entity);
-  system_.trees[body.entity].take_apart();
+  system_.trees[body.entity].clear();
   for (CoordinateJoint& joint : joints_of(body.entity, joints_)) {
     joint.present = false;
     joint.mode = scene::JointMode::disabled;

@@ -69,13 +69,13 @@ class NewtonCore {
     int most_parts = 1;               // into which islands may divide it
     bool is_part = false;             // it is one of these
     double allowed_overlap = 1e-6;    // that remains [m]
-    double softness = dynamics::System::usual_softness;
+    double softness = dynamics::System::default_compliance_factor;
     std::span<const int> trees() const { return chosen ? chosen->trees : std::span<const int>(); }
   };
   void prepare(std::span<Body> bodies, const Share& share);
-  bool wake_disturbed(const Share& share, std::span<dynamics::Contact>& contacts, bool woke);
+  bool wake_disturbed(const Share& share, std::span<dynamics::ContactPoint>& contacts, bool woke);
   void step(const Share& share);
-  bool foresee(const Share& share, std::span<dynamics::Contact>& contacts, bool& woke);
+  bool foresee(const Share& share, std::span<dynamics::ContactPoint>& contacts, bool& woke);
   void take_part(std::span<Body> bodies, const Share& part);
   void remember(const Share& share);
   void substep_in_parts(std::span<Body> bodies, double length, int splits, int count,
@@ -94,10 +94,10 @@ class NewtonCore {
   std::vector<dynamics::Limit> limits_;
   Division division_;
   Lags lags_;
-  dynamics::LeftIslands left_;  // by the whole substep
+  dynamics::IslandsToSubdivide left_;  // by the whole substep
   TreeSet chosen_;              // the trees of one of them, or all others
   HeldBack held_back_;
-  dynamics::Foresight foresight_;
+  dynamics::PredictedVelocities foresight_;
   Convergence convergence_;
 };
 

@@ -25,6 +25,6 @@ struct Lags {
 /// @param length    of the substep [s]
 /// @param division  of it; null: nothing is divided
 void change_lags(Lags& lags, dynamics::System& system, dynamics::Workspace& work, double length, const Division* division,
-                 std::span<const dynamics::Contact> contacts, std::span<const dynamics::Servo> servos);
+                 std::span<const dynamics::ContactPoint> contacts, std::span<const dynamics::Servo> servos);
 
 }  // namespace ziggurat::physics

@@ -17,8 +17,8 @@ double approach(double error, const dynamics::Tree& tree, dynamics::Workspace& w
   const double velocity = error / left;
   if (impulse == 0 || error == 0) return velocity;
   if (!std::exchange(is_factored, true)) {
-    compute_mass(tree, work);
-    factor_mass(tree, work, length);
+    compute_mass_matrix(tree, work);
+    factor_mass_matrix(tree, work, length);
   }
   // Half the strength for braking leaves the other half for gravity and other loads.
   const double deceleration = 0.5 * impulse * mobility(tree, work, dof) / length;
@@ -34,10 +34,10 @@ dynamics::Servo servo_of(const CoordinateJoint& joint, const dynamics::Tree& tre
   dynamics::Servo servo;
   servo.tree = static_cast<int>(joint.entity);
   servo.dof = dof_of(tree, joint.part);
-  servo.speed = joint.target;
+  servo.target_velocity = joint.target;
   if (joint.mode == scene::JointMode::position) {
     const double error = joint.target - tree.q[place_of(tree, joint.part)];
-    servo.speed = approach(error, tree, work, servo.dof, length, left, impulse, is_factored);
+    servo.target_velocity = approach(error, tree, work, servo.dof, length, left, impulse, is_factored);
   }
   servo.lower = -impulse;
   servo.upper = impulse;
@@ -55,10 +55,10 @@ std::array<dynamics::Servo, 3> servos_of(const Body& body, const std::array<doub
     servos[i].impulse = impulses[i];
   }
   servos[0].direction.linear = from_bullet(ground.along);
-  servos[0].speed = ground.speed;
+  servos[0].target_velocity = ground.speed;
   servos[1].direction.linear = from_bullet(ground.across);
   servos[2].direction.angular = {0, 0, 1};
-  servos[2].speed = ground.angular_velocity;
+  servos[2].target_velocity = ground.angular_velocity;
   return servos;
 }
 

@@ -34,7 +34,7 @@ double stray(const Collider& moving, const btTransform& now, double length) {
 
 }  // namespace
 
-std::span<dynamics::Contact> Contacts::find_turned(const dynamics::System& system) {
+std::span<dynamics::ContactPoint> Contacts::find_turned(const dynamics::System& system) {
   const double known = least_reach(colliders_, length_);  // contacts were looked for as far
   overlaps_.clear();
   for (const Turned& turned : turned_) {
@@ -48,9 +48,9 @@ std::span<dynamics::Contact> Contacts::find_turned(const dynamics::System& syste
     const contact::Contacts found =
         contact::find(a.shape, of_a, b.shape, of_b, close, contact::Support::all);
     if (!is_deep(found)) continue;
-    const dynamics::Contact law = law_of(a, b, turned.flies ? from_bullet(found.normal) : pair.normal, std::max(pair.count, 1));
+    const dynamics::ContactPoint law = law_of(a, b, turned.flies ? from_bullet(found.normal) : pair.normal, std::max(pair.count, 1));
     for (int i = 0; i < found.count; ++i) {
-      dynamics::Contact& contact = overlaps_.emplace_back(law);
+      dynamics::ContactPoint& contact = overlaps_.emplace_back(law);
       contact.normal = from_bullet(found.normal);
       contact.point = from_bullet(found.points[i].on_b);
       contact.gap = found.points[i].distance;

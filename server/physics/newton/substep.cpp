@@ -53,7 +53,7 @@ void push(dynamics::System& system, const TreeSet& chosen, const HeldBack& held,
   auto push = held.pushes.begin();
   for (const int number : chosen.trees) {
     for (std::size_t k = 0; k < system.trees[number].links.size(); ++k, ++push) {
-      system.push(number, static_cast<int>(k), {share * push->moment, share * push->force});
+      system.apply_wrench(number, static_cast<int>(k), {share * push->moment, share * push->force});
     }
   }
 }
@@ -74,9 +74,9 @@ struct GravityComesBack {
 /// Gives trees back their speeds at its end, also where something throws.
 struct SpeedsComeBack {
   dynamics::System& system;
-  dynamics::Foresight& foresight;
+  dynamics::PredictedVelocities& foresight;
 
-  ~SpeedsComeBack() { swap_speeds(system.trees, foresight); }
+  ~SpeedsComeBack() { swap_velocities(system.trees, foresight); }
 };
 
 /// @param trees  ascending
@@ -91,9 +91,9 @@ void choose(TreeSet& out, std::span<const int> trees, bool holds, std::size_t co
 void push_apart_what_turned(dynamics::System& system, Contacts& contacts, std::span<const int> trees) {
   constexpr int most_passes = 4;
   for (int pass = 0; pass < most_passes; ++pass) {
-    const std::span<dynamics::Contact> overlaps = contacts.find_turned(system);
+    const std::span<dynamics::ContactPoint> overlaps = contacts.find_turned(system);
     if (overlaps.empty()) return;
-    system.push_apart(overlaps, trees);
+    system.separate(overlaps, trees);
   }
 }
 
@@ -102,7 +102,7 @@ void push_apart_what_turned(dynamics::System& system, Contacts& contacts, std::s
 bool wake_others(dynamics::System& system, const TreeSet& those) {
   bool woke = false;
   for (std::size_t i = 0; i < those.holds.size(); ++i) {
-    if (those.holds[i] || !system.asleep(static_cast<int>(i))) continue;
+    if (those.holds[i] || !system.is_asleep(static_cast<int>(i))) continue;
     system.wake(static_cast<int>(i));
     woke = true;
   }
@@ -114,7 +114,7 @@ bool wake_others(dynamics::System& system, const TreeSet& those) {
 /// Tells the solver what a share allows, and collects its servos and limits.
 void NewtonCore::prepare(std::span<Body> bodies, const Share& share) {
   system_.allowed_overlap = share.allowed_overlap;
-  system_.softness = share.softness;
+  system_.compliance_factor = share.softness;
   system_.most_parts = share.most_parts;
   system_.is_part = share.is_part;
   servos_.clear();
@@ -165,7 +165,7 @@ void NewtonCore::remember(const Share& share) {
 /// Wakes what something disturbs. Then what rests may be touched, too.
 /// @param contacts  in and out;  @param woke  whether something woke before
 /// @return          whether something has woken
-bool NewtonCore::wake_disturbed(const Share& share, std::span<dynamics::Contact>& contacts, bool woke) {
+bool NewtonCore::wake_disturbed(const Share& share, std::span<dynamics::ContactPoint>& contacts, bool woke) {
   woke |= system_.wake_disturbed(share.length, contacts, servos_, share.trees());
   if (!woke || share.chosen) return woke;
   contacts = contacts_.add_resting();
@@ -174,17 +174,17 @@ bool NewtonCore::wake_disturbed(const Share& share, std::span<dynamics::Contact>
 
 /// Moves on what wake_disturbed() has been told.
 void NewtonCore::step(const Share& share) {
-  system_.swings = contacts_.swings;
+  system_.rotations_until_impact = contacts_.swings;
   const dynamics::Report report = system_.advance(limits_);
-  if (!system_.left.trees.empty()) {
-    choose(chosen_, system_.left.trees, false, system_.trees.size());
+  if (!system_.islands_to_subdivide.trees.empty()) {
+    choose(chosen_, system_.islands_to_subdivide.trees, false, system_.trees.size());
     contacts_.keep(chosen_);
   }
   remember(share);
   push_apart_what_turned(system_, contacts_, share.trees());
   convergence_.islands += report.islands;
   convergence_.not_converged += report.not_converged;
-  convergence_.worst = std::max(convergence_.worst, report.miss);
+  convergence_.worst = std::max(convergence_.worst, report.residual);
 }
 
 void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plugin* stiff) {
@@ -194,7 +194,7 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
   whole.most_parts = most_parts;
   colliders_.follow(system_, length);
   prepare(bodies, whole);
-  std::span<dynamics::Contact> contacts = contacts_.find(length);
+  std::span<dynamics::ContactPoint> contacts = contacts_.find(length);
   bool woke = false;
   if (stiff) {  // what takes the substep in parts must be awake
     division_.find(stiff->stiff_pairs(), contacts_.near(), {}, colliders_.all, system_.trees);
@@ -229,12 +229,12 @@ void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plug
 /// beyond the reach that their speeds at its beginning give them. What they strike may be thrown, too.
 /// @param contacts  in and out;  @param woke  in: whether something woke; out: also by what is thrown
 /// @return          whether there are other contacts
-bool NewtonCore::foresee(const Share& share, std::span<dynamics::Contact>& contacts, bool& woke) {
+bool NewtonCore::foresee(const Share& share, std::span<dynamics::ContactPoint>& contacts, bool& woke) {
   constexpr int most_blows = 8;
   bool any = false;
-  for (int i = 0; i < most_blows && system_.foresee(limits_, least_reach(colliders_, share.length), colliders_.fast, foresight_); ++i) {
+  for (int i = 0; i < most_blows && system_.predict_velocities(limits_, least_reach(colliders_, share.length), colliders_.fast, foresight_); ++i) {
     const SpeedsComeBack at_the_end{system_, foresight_};
-    swap_speeds(system_.trees, foresight_);
+    swap_velocities(system_.trees, foresight_);
     if (!colliders_.widen(foresight_.trees, system_, share.length)) break;
     any = true;
     contacts = share.chosen ? contacts_.find(share.length, *share.chosen, share.of_impulses) : contacts_.find(share.length);
@@ -247,7 +247,7 @@ bool NewtonCore::foresee(const Share& share, std::span<dynamics::Contact>& conta
 void NewtonCore::take_part(std::span<Body> bodies, const Share& part) {
   colliders_.follow(system_, part.length, *part.chosen);
   prepare(bodies, part);
-  std::span<dynamics::Contact> contacts = contacts_.find(part.length, *part.chosen, part.of_impulses);
+  std::span<dynamics::ContactPoint> contacts = contacts_.find(part.length, *part.chosen, part.of_impulses);
   bool woke = wake_disturbed(part, contacts, false);
   foresee(part, contacts, woke);
   step(part);
@@ -287,7 +287,7 @@ void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int spl
 
 /// Moves the islands on that the whole substep left as they were.
 void NewtonCore::divide(std::span<Body> bodies, const Share& whole) {
-  std::swap(left_, system_.left);
+  std::swap(left_, system_.islands_to_subdivide);
   for (const auto& [parts, first, last] : left_.islands) {
     const std::span<const int> trees = std::span(left_.trees).subspan(first, last - first);
     if (parts >= many_parts && convergence_.divided++ == 0) {

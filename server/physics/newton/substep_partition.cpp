@@ -10,7 +10,7 @@ int Division::find(int tree) {
 }
 
 void Division::find(std::span<const StiffPair> pairs, std::span<const Near> near,
-                    std::span<const dynamics::Contact> contacts,
+                    std::span<const dynamics::ContactPoint> contacts,
                     const std::vector<Collider>& colliders,
                     const std::vector<dynamics::Tree>& trees) {
   const int count = static_cast<int>(trees.size());
@@ -28,7 +28,7 @@ void Division::find(std::span<const StiffPair> pairs, std::span<const Near> near
     const Collider& b = colliders[each.b];
     if (a.moves && b.moves) join(a.entity, b.entity);
   }
-  for (const dynamics::Contact& contact : contacts) {
+  for (const dynamics::ContactPoint& contact : contacts) {
     if (contact.a.tree < 0 || contact.b.tree < 0) continue;
     join(static_cast<std::size_t>(contact.a.tree), static_cast<std::size_t>(contact.b.tree));
   }

@@ -17,7 +17,7 @@ class Division {
   /// @param near   colliders that may touch within the substep
   /// @param contacts  likewise, of those that have just woken
   void find(std::span<const StiffPair> pairs, std::span<const Near> near,
-            std::span<const dynamics::Contact> contacts, const std::vector<Collider>& colliders,
+            std::span<const dynamics::ContactPoint> contacts, const std::vector<Collider>& colliders,
             const std::vector<dynamics::Tree>& trees);
 
   bool divides(int tree) const { return parts_[tree] > 0; }

@@ -23,13 +23,13 @@ Tree arm() {
 }
 
 /// J of a block's row and all dofs of the problem, from the speeds that unit velocities give.
-Eigen::MatrixXd jacobian_of(Problem& problem, const Block& block) {
+Eigen::MatrixXd jacobian_of(Problem& problem, const Constraint& block) {
   Eigen::MatrixXd jacobian(block.rows, static_cast<Eigen::Index>(problem.velocity.size()));
   for (std::size_t k = 0; k < problem.velocity.size(); ++k) {
     problem.velocity.assign(problem.velocity.size(), 0);
     problem.velocity[k] = 1;
-    double u[Block::most_rows];
-    problem.speeds(block, u);
+    double u[Constraint::most_rows];
+    problem.constraint_velocity(block, u);
     for (int r = 0; r < block.rows; ++r) jacobian(r, static_cast<Eigen::Index>(k)) = u[r];
   }
   return jacobian;
@@ -40,39 +40,39 @@ void expect_product(Tree first, Tree second) {
   std::vector<Tree> trees{std::move(first), std::move(second)};
   Workspace work;
   Problem problem;
-  problem.length = 0.01;
+  problem.time_step = 0.01;
   std::vector<int> sizes;
   for (Tree& each : trees) {
-    place(each);
-    move(each);
+    forward_kinematics(each);
+    velocity_kinematics(each);
     problem.add(each, work, false);
     sizes.push_back(each.dofs);
   }
-  Contact contact;
+  ContactPoint contact;
   contact.a = {0, static_cast<int>(trees[0].links.size()) - 1};
   contact.b = {1, static_cast<int>(trees[1].links.size()) - 1};
   contact.point = {0.3, 0.2, 0.1};
   contact.normal = Vector3(1, 2, 3).normalized();
   contact.friction = 0.5;
-  contact.rolling = 0.01;
-  contact.spinning = 0.02;
+  contact.rolling_friction = 0.01;
+  contact.spinning_friction = 0.02;
   problem.add(contact, 0, 1, 0);
-  ASSERT_EQ(problem.blocks.size(), 1U);
-  Block& block = problem.blocks[0];
+  ASSERT_EQ(problem.constraints.size(), 1U);
+  Constraint& block = problem.constraints[0];
   ASSERT_EQ(block.rows, 6);
-  Linear linear;
-  const double pressed[Block::most_rows] = {-1, 1e-4, 2e-4, 3e-5, 1e-5, 2e-5};
+  LinearisedLaw linear;
+  const double pressed[Constraint::most_rows] = {-1, 1e-4, 2e-4, 3e-5, 1e-5, 2e-5};
   linearise(block, pressed, linear);
-  ASSERT_FALSE(linear.zero);
+  ASSERT_FALSE(linear.is_zero);
 
   BlockMatrix matrix;
   matrix.shape(sizes, problem.couplings);
   matrix.clear();
   std::vector<double> memory;
-  add_slope(problem, block, linear, memory, matrix);
+  add_constraint_hessian(problem, block, linear, memory, matrix);
 
   const Eigen::MatrixXd jacobian = jacobian_of(problem, block);
-  const Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> slope(linear.slope.data());
+  const Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>> slope(linear.hessian.data());
   ASSERT_GT(slope.bottomRightCorner(3, 3).norm(), 0) << "rolling has a part";
   const Eigen::MatrixXd product = jacobian.transpose() * slope * jacobian;
   const double scale = product.cwiseAbs().maxCoeff();

@@ -18,7 +18,7 @@ using testing::g;
 
 Vector3 angular_momentum(const Tree& tree) {
   const Matrix3& r = tree.rotation[0];
-  const Vector3 omega = r.transpose() * tree.motion[0].angular;
+  const Vector3 omega = r.transpose() * tree.spatial_velocity[0].angular;
   return r * omega.cwiseProduct(tree.links[0].inertia);
 }
 
@@ -28,12 +28,12 @@ TEST(Flight, GyroscopicTorquesActInSubstepsOfAnyLength) {
   Workspace work;
   Tree body = testing::box({0.1, 0.2, 0.3}, 2, {Vector3::Zero(), Quaternion(0.5, 0.1, 0.7, 0.2).normalized()});
   body.v = {0.7, -0.4, 0.9, 0, 0, 0};
-  move(body);
+  velocity_kinematics(body);
   const Vector3 omega(0.7, -0.4, 0.9), before = angular_momentum(body);
   for (const double hz : {50., 200., 500., 1000., 2000., 1e4, 1e6}) {
     double after[6];
-    compute_mass(body, work);
-    momentum_after(body, work, 1 / hz, false, after);
+    compute_mass_matrix(body, work);
+    predict_momentum(body, work, 1 / hz, false, after);
     const Vector3 torque = hz * (Vector3(after[0], after[1], after[2]) - before);
     const Vector3 exact = -omega.cross(before);
     EXPECT_LT((torque - exact).norm(), 2 / hz * omega.norm() * exact.norm()) << hz;
@@ -46,7 +46,7 @@ TEST(Flight, FallsAlongAParabolaWhateverTheStep) {
     Tree body = testing::box({0.1, 0.2, 0.3}, 2, {});
     body.v[3] = 1;
     testing::weigh(body);
-    for (int i = 0; i < hz; ++i) fly(body, work, 1 / hz);
+    for (int i = 0; i < hz; ++i) integrate_free_motion(body, work, 1 / hz);
     EXPECT_NEAR(body.position[0].x(), 1, 1e-12);
     EXPECT_NEAR(body.position[0].z(), -g / 2, 1e-11);
   }
@@ -59,7 +59,7 @@ TEST(Flight, AnAsymmetricBodyKeepsEnergyAndMomentumForAMinuteAndFlipsOnTime) {
   Tree body = testing::box({0.1, 0.2, 0.3}, 1, {});
   const Vector3 inertia = body.links[0].inertia;  // falls: about x most
   body.v[0] = 0.01, body.v[1] = 8, body.v[2] = 0.02;
-  move(body);
+  velocity_kinematics(body);
   const double energy = kinetic_energy(body);
   const Vector3 momentum = angular_momentum(body);
   const double i3 = inertia.x(), i2 = inertia.y(), i1 = inertia.z(), l2 = momentum.squaredNorm();
@@ -76,8 +76,8 @@ TEST(Flight, AnAsymmetricBodyKeepsEnergyAndMomentumForAMinuteAndFlipsOnTime) {
   double first = 0, last = 0, before = 8;
   int flips = 0;
   for (int i = 1; i <= 6000; ++i) {
-    fly(body, work, 0.01);
-    const double middle = (body.rotation[0].transpose() * body.motion[0].angular).y();
+    integrate_free_motion(body, work, 0.01);
+    const double middle = (body.rotation[0].transpose() * body.spatial_velocity[0].angular).y();
     if (middle * before < 0) {
       last = 0.01 * (i - middle / (middle - before));
       if (flips++ == 0) first = last;
@@ -94,7 +94,7 @@ TEST(Flight, TurnsExactlyAtAnySpeed) {
   Workspace work;
   Tree ball = testing::box({0.1, 0.1, 0.1}, 1, {});
   ball.v[2] = 526;
-  for (int i = 0; i < 100; ++i) fly(ball, work, 0.01);
+  for (int i = 0; i < 100; ++i) integrate_free_motion(ball, work, 0.01);
   const Matrix3 turned = Eigen::AngleAxisd(526, Vector3::UnitZ()).toRotationMatrix();
   EXPECT_NEAR((ball.rotation[0] - turned).norm(), 0, 1e-9);
   EXPECT_DOUBLE_EQ(ball.v[2], 526);
@@ -117,7 +117,7 @@ double precession_error(double hz, double spin) {
   const double seconds = 2;
   double angle = 0, before = 0;
   for (int i = 0; i < seconds * hz; ++i) {
-    fly(top, work, 1 / hz);
+    integrate_free_motion(top, work, 1 / hz);
     const double now = std::atan2(top.position[1].y(), top.position[1].x());
     angle += std::remainder(now - before, 2 * std::numbers::pi);
     before = now;
@@ -137,7 +137,7 @@ double energy_error(Tree tree, double seconds, double hz, double scale) {
   const double energy = testing::energy(tree);
   double worst = 0;
   for (int i = 0; i < seconds * hz; ++i) {
-    fly(tree, work, 1 / hz);
+    integrate_free_motion(tree, work, 1 / hz);
     worst = std::max(worst, std::abs(testing::energy(tree) - energy) / scale);
   }
   return worst;
@@ -158,7 +158,7 @@ TEST(Flight, ALightChainSwingsAHeavyLoad) {
     testing::weigh(tree);
     double fastest = 0;
     for (int i = 0; i < hz; ++i) {
-      fly(tree, work, 1 / hz);
+      integrate_free_motion(tree, work, 1 / hz);
       fastest = std::max(fastest, tree.velocity(count).norm());
     }
     EXPECT_NEAR(fastest, std::sqrt(2 * g), 0.02 * std::sqrt(2 * g)) << hz;
@@ -173,9 +173,9 @@ TEST(Flight, AChainOfAMillionthOfItsLoadTakesAllOfItsSteps) {
   for (Tree* tree : {&coarse, &fine}) {
     testing::weigh(*tree);
     const int steps = tree == &coarse ? 3 : 30;
-    for (int i = 0; i < steps; ++i) fly(*tree, work, 0.06 / steps);
+    for (int i = 0; i < steps; ++i) integrate_free_motion(*tree, work, 0.06 / steps);
   }
-  EXPECT_FALSE(work.late);
+  EXPECT_FALSE(work.ran_out_of_steps);
   EXPECT_LT((coarse.position[count] - fine.position[count]).norm(), 1e-5);
 }
 
@@ -183,8 +183,8 @@ TEST(Flight, IsLateWhereAChainIsTooStiff) {
   Workspace work;
   Tree tree = testing::chain(5, 0.2, 1e-7, 1e5);
   testing::weigh(tree);
-  fly(tree, work, 0.02);
-  EXPECT_TRUE(work.late);
+  integrate_free_motion(tree, work, 0.02);
+  EXPECT_TRUE(work.ran_out_of_steps);
 }
 
 }  // namespace

@@ -30,11 +30,11 @@ void run(Touching& world, double seconds, double hz) {
 TEST(Rest, ABoxOnTheFloorSleepsAndWakesByAForce) {
   Touching world = floor_with(1, 0.1);
   run(world, 1, 100);
-  ASSERT_TRUE(world.system.asleep(0));
+  ASSERT_TRUE(world.system.is_asleep(0));
   EXPECT_EQ(world.step(0.01).awake, 0);
-  world.system.push(0, 0, {Vector3::Zero(), Vector3(0, 0, 1e-4 * g)});  // less than a thousandth of its weight
+  world.system.apply_wrench(0, 0, {Vector3::Zero(), Vector3(0, 0, 1e-4 * g)});  // less than a thousandth of its weight
   EXPECT_EQ(world.step(0.01).awake, 0);
-  world.system.push(0, 0, {Vector3::Zero(), Vector3(0, 0, 2 * g)});
+  world.system.apply_wrench(0, 0, {Vector3::Zero(), Vector3(0, 0, 2 * g)});
   EXPECT_EQ(world.step(0.01).awake, 1);
   EXPECT_NEAR(world.tree(0).v[5], g * 0.01, 1e-9);
 }
@@ -59,7 +59,7 @@ TEST(Rest, ABallOnAGentleSlopeRolls) {
     link.inertia = Vector3::Constant(0.4 * link.mass * radius * radius);
     system.trees.emplace_back(std::vector<Link>{link}, at(0, 0, radius));
     system.trees[0].gravity = g * Vector3(std::sin(slope), 0, -std::cos(slope));
-    std::vector<Contact> contacts(1);
+    std::vector<ContactPoint> contacts(1);
     for (int i = 0; i < 2 * hz; ++i) {
       const Vector3 centre = system.trees[0].position[0];
       contacts[0].a.tree = 0;
@@ -78,25 +78,25 @@ TEST(Rest, ASleeperWakesByWhatIsAboutToBePushedOntoIt) {
     Touching world = floor_with(1, 0.1);
     world.planes[0].friction = 0.5;
     run(world, 1, 100);
-    ASSERT_TRUE(world.system.asleep(0));
+    ASSERT_TRUE(world.system.is_asleep(0));
     world.add_box(Vector3::Constant(0.1), 1, at(0, 0, 0.1502), 0.7);  // 0.2 mm above
     Tree& tree = world.tree(1);
     if (by_servo) {
       Servo servo;
       servo.tree = 1;
       servo.dof = 5;
-      servo.speed = -1;
+      servo.target_velocity = -1;
       servo.lower = -10;
       servo.upper = 10;
       world.servos.push_back(servo);
     } else {
-      world.system.push(1, 0, {Vector3::Zero(), Vector3(0, 0, -100)});
+      world.system.apply_wrench(1, 0, {Vector3::Zero(), Vector3(0, 0, -100)});
     }
     world.find(0.01);
     for (Tree& each : world.system.trees) each.gravity.setZero();
     world.system.step(0.01, world.contacts, world.servos);
     EXPECT_GT(tree.position[0].z(), 0.15 - 2e-6) << by_servo;
-    EXPECT_FALSE(world.system.asleep(0)) << by_servo;
+    EXPECT_FALSE(world.system.is_asleep(0)) << by_servo;
   }
 }
 
@@ -105,26 +105,26 @@ TEST(Rest, ATowerWakesWhereItIsStruck) {
   const int ball = world.add_box(Vector3::Constant(0.02), 0.1, at(1, 0, 0.14), 0.5);
   world.gravity = Vector3(0, 0, -g);
   run(world, 1, 100);
-  ASSERT_TRUE(world.system.asleep(0) && world.system.asleep(2));
+  ASSERT_TRUE(world.system.is_asleep(0) && world.system.is_asleep(2));
   world.system.wake(ball);
   world.tree(ball).set_root(at(0.2, 0, 0.13));
   world.tree(ball).v = {0, 0, 0, -2, 0, 0.4};  // strikes the topmost box at its middle
-  place(world.tree(ball));
-  move(world.tree(ball));
+  forward_kinematics(world.tree(ball));
+  velocity_kinematics(world.tree(ball));
   int asleep = 0;
-  while (world.system.asleep(2) && asleep < 100) ++asleep, world.step(0.01);
+  while (world.system.is_asleep(2) && asleep < 100) ++asleep, world.step(0.01);
   EXPECT_GE(asleep, 6);   // 0.2 m - half sides at 2 m/s take 8.25 substeps
   EXPECT_LE(asleep, 9);
-  EXPECT_FALSE(world.system.asleep(0));
+  EXPECT_FALSE(world.system.is_asleep(0));
   run(world, 0.1, 100);
   EXPECT_LT(world.tree(2).position[0].x(), -1e-3);
 }
 
 /// Points of a foot of 10 cm, on the floor about (x, 0).
-void add_foot(double x, double friction, int link, std::vector<Contact>& contacts) {
+void add_foot(double x, double friction, int link, std::vector<ContactPoint>& contacts) {
   for (const double dx : {-0.05, 0.05}) {
     for (const double y : {-0.05, 0.05}) {
-      Contact& contact = contacts.emplace_back();
+      ContactPoint& contact = contacts.emplace_back();
       contact.a = {0, link};
       contact.point = Vector3(x + dx, y, 0);
       contact.friction = friction;
@@ -145,11 +145,11 @@ void expect_to_wake_by(const std::vector<double>& speeds) {
   }
   system.trees.emplace_back(links, at(0, 0, 0.05));
   testing::weigh(system.trees[0]);
-  std::vector<Contact> contacts;
+  std::vector<ContactPoint> contacts;
   add_foot(0, 0.8, 0, contacts);
   for (int i = 0; i < 100; ++i) system.step(0.01, contacts, servos);
-  ASSERT_TRUE(system.asleep(0));
-  for (std::size_t i = 0; i < speeds.size(); ++i) servos[i].speed = speeds[i];
+  ASSERT_TRUE(system.is_asleep(0));
+  for (std::size_t i = 0; i < speeds.size(); ++i) servos[i].target_velocity = speeds[i];
   system.step(0.01, contacts, servos);
   for (std::size_t i = 0; i < speeds.size(); ++i) {
     EXPECT_NEAR(system.trees[0].v[6 + i], speeds[i], 1e-6);
@@ -172,13 +172,13 @@ TEST(Rest, ForcesOnTwoLinksThatCancelWake) {
                                     Vector3::Zero());
   system.trees.emplace_back(std::vector<Link>{box, slider}, at(0, 0, 0.05));
   testing::weigh(system.trees[0]);
-  std::vector<Contact> contacts;
+  std::vector<ContactPoint> contacts;
   add_foot(0, 0.3, 0, contacts);
   add_foot(0.3, 0.3, 1, contacts);
   for (int i = 0; i < 100; ++i) system.step(0.01, contacts);
-  ASSERT_TRUE(system.asleep(0));
-  system.push(0, 0, {Vector3::Zero(), Vector3(-10, 0, 0)});
-  system.push(0, 1, {Vector3::Zero(), Vector3(10, 0, 0)});
+  ASSERT_TRUE(system.is_asleep(0));
+  system.apply_wrench(0, 0, {Vector3::Zero(), Vector3(-10, 0, 0)});
+  system.apply_wrench(0, 1, {Vector3::Zero(), Vector3(10, 0, 0)});
   system.step(0.01, contacts);
   EXPECT_NEAR(system.trees[0].v[6], 2 * (10 - 0.3 * g) * 0.01, 1e-6);
 }
@@ -187,7 +187,7 @@ TEST(Rest, ForcesOnTwoLinksThatCancelWake) {
 TEST(Rest, SleepersKeepTheirBits) {
   Touching world = floor_with(5, 0.05);
   run(world, 2, 100);
-  ASSERT_TRUE(world.system.asleep(4));
+  ASSERT_TRUE(world.system.is_asleep(4));
   const std::vector<double> before = world.tree(4).q;
   run(world, 2, 100);
   EXPECT_EQ(world.tree(4).q, before);

@@ -142,16 +142,16 @@ TEST(NewtonTension, MotorsTakeAllPartsToTheirTargets) {
   sled.mass = 1;
   sled.inertia = {1, 1, 1};
   dynamics::Tree tree({base, sled}, {});
-  place(tree);
-  move(tree);
+  forward_kinematics(tree);
+  velocity_kinematics(tree);
   CoordinateJoint joint;
   joint.part = 1;
   joint.mode = scene::JointMode::position;
   joint.target = 1e-3;
   dynamics::Workspace work;
   bool is_factored = false;
-  EXPECT_DOUBLE_EQ(servo_of(joint, tree, work, 1e-4, 1e-2, 1e3, is_factored).speed, 0.1);
-  EXPECT_DOUBLE_EQ(servo_of(joint, tree, work, 1e-4, 1e-4, 1e3, is_factored).speed, 10);
+  EXPECT_DOUBLE_EQ(servo_of(joint, tree, work, 1e-4, 1e-2, 1e3, is_factored).target_velocity, 0.1);
+  EXPECT_DOUBLE_EQ(servo_of(joint, tree, work, 1e-4, 1e-4, 1e3, is_factored).target_velocity, 10);
 }
 
 // Some 20 times as stiff as what parts can follow: that is told.
