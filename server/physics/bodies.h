@@ -66,7 +66,7 @@ struct GroundMotion {
   // Of the coming substep:
   btVector3 along{1, 0, 0}, across{0, 1, 0};  ///< unit, level
   double speed = 0;                           ///< wanted along `along` [m/s]; 0 across
-  double length = 0;                          ///< of the substep [s]
+  double time_step = 0;                          ///< of the substep [s]
 };
 
 /// A frame on top of a robot that turns about the robot's z axis.
@@ -128,10 +128,10 @@ struct Body {
   void update_poses();
 
   /// Motion of every part.
-  void motions(std::vector<Motion>& out) const;
+  void motions(std::vector<Twist>& out) const;
   /// Motion of a link.
   /// @param parts  of every part
-  Motion motion(const LinkBody& link, std::span<const Motion> parts) const;
+  Twist motion(const LinkBody& link, std::span<const Twist> parts) const;
 };
 
 /// X_WP of the reference link's part as placed.

@@ -17,16 +17,16 @@ void add(std::span<Body> bodies, const ContactSide& side, const math::Vector3& i
 
 }  // namespace
 
-bool Touch::wants_contacts(std::span<const Body> bodies) const {
+bool ContactSensing::wants_contacts(std::span<const Body> bodies) const {
   return std::ranges::any_of(bodies, [](const Body& body) { return body.watched; });
 }
 
-void Touch::contact_begins(std::span<Body> bodies, const Contact& contact) {
+void ContactSensing::contact_begins(std::span<Body> bodies, const LinkContact& contact) {
   add(bodies, contact.a, contact.impulse);
   add(bodies, contact.b, -contact.impulse);
 }
 
-void Touch::contact_persists(std::span<Body> bodies, const Contact& contact) {
+void ContactSensing::contact_persists(std::span<Body> bodies, const LinkContact& contact) {
   contact_begins(bodies, contact);
 }
 

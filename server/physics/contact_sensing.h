@@ -5,11 +5,11 @@
 
 namespace ziggurat::physics {
 
-class Touch final : public Plugin {
+class ContactSensing final : public Plugin {
  public:
   bool wants_contacts(std::span<const Body> bodies) const override;
-  void contact_begins(std::span<Body> bodies, const Contact& contact) override;
-  void contact_persists(std::span<Body> bodies, const Contact& contact) override;
+  void contact_begins(std::span<Body> bodies, const LinkContact& contact) override;
+  void contact_persists(std::span<Body> bodies, const LinkContact& contact) override;
 };
 
 }  // namespace ziggurat::physics

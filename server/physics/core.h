@@ -59,7 +59,7 @@ class Core {
   void substep(std::span<Body> bodies, double length, int splits, Plugin* stiff);
 
   /// What touched in the last substep, in ascending order.
-  void contacts(std::vector<Contact>& out) const;
+  void contacts(std::vector<LinkContact>& out) const;
 
   Convergence convergence() const;
 

@@ -4,8 +4,8 @@
 
 namespace ziggurat::physics {
 
-void Pushes::before_substep(std::span<Body> bodies, double) {
-  for (const Push& push : pushes_) {
+void ExternalForces::before_substep(std::span<Body> bodies, double) {
+  for (const Force& push : forces_) {
     Body& body = bodies[push.entity];
     if (push.link >= body.links.size()) continue;  // removed
     const LinkBody& link = body.links[push.link];

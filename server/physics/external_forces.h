@@ -9,9 +9,9 @@
 
 namespace ziggurat::physics {
 
-class Pushes final : public Plugin {
+class ExternalForces final : public Plugin {
  public:
-  struct Push {
+  struct Force {
     std::size_t entity = 0;                        ///< in order of adding
     std::size_t link = 0;                          ///< into Body::links
     math::Vector3 force = math::Vector3::Zero();   ///< at the link's centre of mass, in W [N]
@@ -19,12 +19,12 @@ class Pushes final : public Plugin {
   };
 
   /// Those of the substeps from the next one on.
-  void set(std::vector<Push> pushes) { pushes_ = std::move(pushes); }
+  void set(std::vector<Force> pushes) { forces_ = std::move(pushes); }
 
   void before_substep(std::span<Body> bodies, double substep) override;
 
  private:
-  std::vector<Push> pushes_;
+  std::vector<Force> forces_;
 };
 
 }  // namespace ziggurat::physics

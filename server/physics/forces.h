@@ -26,7 +26,7 @@ class ViscousDamping final : public Plugin {
 
  private:
   std::vector<std::size_t> damped_;  ///< entities with a damped link
-  std::vector<Motion> motions_;
+  std::vector<Twist> motions_;
 };
 
 }  // namespace ziggurat::physics

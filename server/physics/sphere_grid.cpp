@@ -4,7 +4,7 @@
 
 namespace ziggurat::physics {
 
-std::size_t Nearby::Hash::operator()(const Cell& cell) const {
+std::size_t SphereGrid::Hash::operator()(const Cell& cell) const {
   std::uint64_t hash = 0;
   for (const std::int64_t part : cell) {
     hash = (hash ^ static_cast<std::uint64_t>(part)) * 0x9E3779B97F4A7C15U;
@@ -13,7 +13,7 @@ std::size_t Nearby::Hash::operator()(const Cell& cell) const {
   return static_cast<std::size_t>(hash);
 }
 
-Nearby::Cell Nearby::cell_of(const btVector3& place, int exponent) {
+SphereGrid::Cell SphereGrid::cell_of(const btVector3& place, int exponent) {
   constexpr btScalar farthest = 0x1p60;  // [cells]
   Cell cell;
   for (int i = 0; i < 3; ++i) {
@@ -24,9 +24,9 @@ Nearby::Cell Nearby::cell_of(const btVector3& place, int exponent) {
   return cell;
 }
 
-void Nearby::add(std::size_t index, const btVector3& centre, btScalar radius) {
+void SphereGrid::add(std::size_t index, const btVector3& centre, btScalar radius) {
   const bool has_place = std::isfinite(radius) && radius > 0 && std::isfinite(centre.length2());
-  if (!has_place) return everywhere_.push_back(index);
+  if (!has_place) return unbounded_.push_back(index);
   const int exponent = std::ilogb(radius) + 2;  // 2^exponent is more than the diameter
   Level& level = levels_[exponent];
   level.cells[cell_of(centre, exponent)].push_back(index);

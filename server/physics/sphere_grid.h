@@ -14,7 +14,7 @@
 
 namespace ziggurat::physics {
 
-class Nearby {
+class SphereGrid {
  public:
   /// @param index   what visit() is given for it
   /// @param centre  in the world [m]
@@ -24,7 +24,7 @@ class Nearby {
   /// Visits all spheres that touch this one, and some others near it, in no particular order.
   template <class Visit>
   void visit(const btVector3& centre, btScalar radius, Visit visit) const {
-    for (const std::size_t index : everywhere_) visit(index);
+    for (const std::size_t index : unbounded_) visit(index);
     for (const auto& [exponent, level] : levels_)
       visit_level(exponent, level, centre, radius, visit);
   }
@@ -67,7 +67,7 @@ class Nearby {
   }
 
   std::map<int, Level> levels_;  // by exponent
-  std::vector<std::size_t> everywhere_;
+  std::vector<std::size_t> unbounded_;
 };
 
 }  // namespace ziggurat::physics

@@ -5,7 +5,7 @@
 namespace ziggurat::physics {
 
 /// Of a part or a link.
-struct Motion {
+struct Twist {
   btVector3 velocity{0, 0, 0};          ///< of the centre of mass, in the world [m/s]
   btVector3 angular_velocity{0, 0, 0};  ///< in the world [rad/s]
 };

@@ -10,6 +10,6 @@
 namespace ziggurat::physics {
 
 /// @param out  emptied before; in ascending order of its sides
-void collect(btDispatcher& dispatcher, std::vector<Contact>& out);
+void collect(btDispatcher& dispatcher, std::vector<LinkContact>& out);
 
 }  // namespace ziggurat::physics

@@ -29,7 +29,7 @@ struct Mechanism {
   btTransform transform(std::size_t part) const;
   void apply_force(std::size_t part, const btVector3& force);    ///< at the centre of mass [N]
   void apply_torque(std::size_t part, const btVector3& torque);  ///< [N m]
-  void motions(std::span<Motion> out) const;
+  void motions(std::span<Twist> out) const;
   bool sleeps() const;
 
   /// Brings the poses that Bullet caches up to date.

@@ -43,7 +43,7 @@ class Algorithm final : public btActivatingCollisionAlgorithm {
     const Collider& collider_a = collider_of(object_a);
     const Collider& collider_b = collider_of(object_b);
     const btScalar reach = collider_a.reach + collider_b.reach;
-    Contacts contacts = find(collider_a.shape, object_a.getWorldTransform(), collider_b.shape,
+    Manifold contacts = find(collider_a.shape, object_a.getWorldTransform(), collider_b.shape,
                              object_b.getWorldTransform(), reach);
     // Sorted in the frame of a body that moves: sorted in the floor's, a robot that turns would
     // be solved in another order for each heading, and drift that way.
@@ -77,7 +77,7 @@ class Algorithm final : public btActivatingCollisionAlgorithm {
     bool taken = false;
   };
 
-  void write(const Contacts& contacts, const Collider& a, const Collider& b, btScalar reach);
+  void write(const Manifold& contacts, const Collider& a, const Collider& b, btScalar reach);
   btVector3 slip(const btManifoldPoint& point, const Old* old, Anchor& anchor) const;
   void take_back(const std::array<btVector3, 4>& slips);
 
@@ -92,7 +92,7 @@ bool rolls_on(const Collider& collider, const btTransform& pose, const btVector3
 }
 
 /// Replaces the manifold's points, carrying impulses and anchors over to the nearest new ones.
-void Algorithm::write(const Contacts& contacts, const Collider& a, const Collider& b,
+void Algorithm::write(const Manifold& contacts, const Collider& a, const Collider& b,
                       btScalar reach) {
   std::array<Old, 4> old;
   const int old_count = manifold_->getNumContacts();
@@ -108,7 +108,7 @@ void Algorithm::write(const Contacts& contacts, const Collider& a, const Collide
   const bool rolls = rolls_on(a, pose_a, contacts.normal) || rolls_on(b, pose_b, contacts.normal);
   std::array<btVector3, 4> slips;
   for (int i = 0; i < contacts.count; ++i) {
-    const Point& contact = contacts.points[i];
+    const ManifoldPoint& contact = contacts.points[i];
     const btVector3 on_a = contact.on_b + contacts.normal * contact.distance;
     btManifoldPoint point(pose_a.invXform(on_a), pose_b.invXform(contact.on_b), contacts.normal,
                           contact.distance);

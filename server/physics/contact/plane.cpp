@@ -10,16 +10,16 @@ namespace ziggurat::physics::contact {
 namespace {
 
 /// Adds a point of A by its height over the plane.
-void add(const btVector3& point, const btTransform& plane, btScalar reach, Contacts& out) {
+void add(const btVector3& point, const btTransform& plane, btScalar reach, Manifold& out) {
   const btScalar distance = out.normal.dot(point - plane.getOrigin());
   if (distance <= reach) out.add(point - out.normal * distance, distance);
 }
 
 /// Of many points over one plane only the lowest can carry: ties keep their order.
-void keep_lowest(Contacts& contacts, int most) {
+void keep_lowest(Manifold& contacts, int most) {
   if (contacts.count <= most) return;
   sort_few(contacts.points.data(), contacts.points.data() + contacts.count,
-           [](const Point& p, const Point& q) { return p.distance < q.distance; });
+           [](const ManifoldPoint& p, const ManifoldPoint& q) { return p.distance < q.distance; });
   contacts.count = most;
 }
 
@@ -40,7 +40,7 @@ btVector3 steady(const btVector3& x, const btVector3& y, const btVector3& down) 
 }
 
 /// The corners of the face that looks down most.
-void add_lower_face(const Box& box, const Placement& at, Contacts& out) {
+void add_lower_face(const Box& box, const PosedPair& at, Manifold& out) {
   const btVector3 up = at.a.getBasis().transpose() * out.normal;  // in the box
   const int face = up.absolute().maxAxis();
   const int u = (face + 1) % 3, v = (face + 2) % 3;
@@ -54,7 +54,7 @@ void add_lower_face(const Box& box, const Placement& at, Contacts& out) {
 }
 
 /// The same of a hull, and other corners that are as low as its lowest one: an edge or a corner that carries may be of other faces.
-void add_lower_face(const Hull& hull, const Placement& at, Contacts& out) {
+void add_lower_face(const Hull& hull, const PosedPair& at, Manifold& out) {
   constexpr btScalar as_low = btScalar(1e-5);  // [m]
   const Polyhedron& polyhedron = *hull.polyhedron;
   const btVector3 down = at.a.getBasis().transpose() * -out.normal;  // in the hull
@@ -69,7 +69,7 @@ void add_lower_face(const Hull& hull, const Placement& at, Contacts& out) {
 
 }  // namespace
 
-void contact_points(const Box& a, const HalfSpace&, const Placement& at, Contacts& out) {
+void contact_points(const Box& a, const HalfSpace&, const PosedPair& at, Manifold& out) {
   const auto& [pose_a, plane, reach, support, useful] = at;
   out.normal = plane.getBasis().getColumn(2);
   const btVector3& half = a.half;
@@ -82,7 +82,7 @@ void contact_points(const Box& a, const HalfSpace&, const Placement& at, Contact
   if (support == Support::lowest) keep_lowest(out, 4);
 }
 
-void contact_points(const Cylinder& a, const HalfSpace&, const Placement& at, Contacts& out) {
+void contact_points(const Cylinder& a, const HalfSpace&, const PosedPair& at, Manifold& out) {
   const auto& [pose_a, plane, reach, support, useful] = at;
   out.normal = plane.getBasis().getColumn(2);
   // The lower cap is the one that faces the plane.
@@ -108,13 +108,13 @@ void contact_points(const Cylinder& a, const HalfSpace&, const Placement& at, Co
   add(lower - down, plane, reach, out);
 }
 
-void contact_points(const Sphere& a, const HalfSpace&, const Placement& at, Contacts& out) {
+void contact_points(const Sphere& a, const HalfSpace&, const PosedPair& at, Manifold& out) {
   const auto& [pose_a, plane, reach, support, useful] = at;
   out.normal = plane.getBasis().getColumn(2);
   add(pose_a.getOrigin() - out.normal * a.radius, plane, reach, out);
 }
 
-void contact_points(const Capsule& a, const HalfSpace&, const Placement& at, Contacts& out) {
+void contact_points(const Capsule& a, const HalfSpace&, const PosedPair& at, Manifold& out) {
   const auto& [pose_a, plane, reach, support, useful] = at;
   out.normal = plane.getBasis().getColumn(2);
   const btVector3 to_end = pose_a.getBasis().getColumn(2) * a.half_length;
@@ -123,7 +123,7 @@ void contact_points(const Capsule& a, const HalfSpace&, const Placement& at, Con
   if (a.half_length > 0) add(lowest - to_end, plane, reach, out);
 }
 
-void contact_points(const Hull& a, const HalfSpace&, const Placement& at, Contacts& out) {
+void contact_points(const Hull& a, const HalfSpace&, const PosedPair& at, Manifold& out) {
   const auto& [pose_a, plane, reach, support, useful] = at;
   out.normal = plane.getBasis().getColumn(2);
   if (support == Support::face) return add_lower_face(a, at, out);

@@ -20,7 +20,7 @@ void Articulation::apply_torque(std::size_t part, const btVector3& torque) const
                {from_bullet(torque), math::Vector3::Zero()});
 }
 
-void Articulation::motions(std::span<Motion> out) const {
+void Articulation::motions(std::span<Twist> out) const {
   for (std::size_t i = 0; i < out.size(); ++i) {
     const int link = static_cast<int>(i);
     out[i] = {to_bullet(tree().velocity(link)), to_bullet(tree().angular_velocity(link))};

@@ -27,12 +27,12 @@ btVector3 velocity_at(const Collider& collider, const btVector3& point) {
 }
 
 /// Whether a contact is one of a wheeled body's lower or upper face.
-bool rolls_on(const Collider& collider, const btVector3& normal) {
+bool is_wheel_contact(const Collider& collider, const btVector3& normal) {
   constexpr btScalar face = btScalar(0.7);  // cosine of the steepest such contact
-  return collider.rolls && btFabs(collider.pose.getBasis().getColumn(2).dot(normal)) > face;
+  return collider.has_wheels && btFabs(collider.pose.getBasis().getColumn(2).dot(normal)) > face;
 }
 
-double square_between(const math::Vector3& a, const math::Vector3& b) {
+double squared_distance(const math::Vector3& a, const math::Vector3& b) {
   return (to_bullet(a) - to_bullet(b)).length2();
 }
 
@@ -44,15 +44,15 @@ struct Approach {
 };
 
 /// @param slack  what counts as close [m]
-Approach approach_of(const contact::Contacts& found, const Collider& a, const Collider& b,
-                     double length, double slack) {
+Approach approach_of(const contact::Manifold& found, const Collider& a, const Collider& b,
+                     double time_step, double slack) {
   Approach out;
   for (int i = 0; i < found.count; ++i) {
-    const contact::Point& point = found.points[i];
+    const contact::ManifoldPoint& point = found.points[i];
     const double speed = found.normal.dot(velocity_at(b, point.on_b) - velocity_at(a, point.on_b));
     out.least = std::min(out.least, double(point.distance));
     out.fastest = std::max(out.fastest, speed);
-    out.may_touch |= point.distance <= slack + length * std::max(0.0, speed);
+    out.may_touch |= point.distance <= slack + time_step * std::max(0.0, speed);
   }
   return out;
 }
@@ -60,33 +60,33 @@ Approach approach_of(const contact::Contacts& found, const Collider& a, const Co
 /// A bound of the distances at which points may come close, see approach_of(): from the fastest
 /// that the surfaces can approach each other. Radii are larger than they are, because points may
 /// lie a little outside [m].
-double farthest_that_may_touch(const Collider& a, const Collider& b, double length, double slack) {
+double most_distance_to_touch(const Collider& a, const Collider& b, double time_step, double slack) {
   constexpr double larger = 1.5;
   const double arm = larger * a.radius + a.reach + b.reach;  // from a to points on b
   const double speed = (b.velocity - a.velocity).length() + a.angular_velocity.length() * arm +
                        b.angular_velocity.length() * larger * b.radius;
-  return slack + length * speed;
+  return slack + time_step * speed;
 }
 
 /// Half of it; the floor has none [m].
 double smallest_extent(const Collider& collider) {
   if (collider.entity == Collider::floor) return BT_LARGE_FLOAT;
-  return std::min({collider.half.x(), collider.half.y(), collider.half.z()});
+  return std::min({collider.half_extents.x(), collider.half_extents.y(), collider.half_extents.z()});
 }
 
 /// Whether a body may turn so far in a substep that another side of it lands: it turns, or an
 /// impact turns it.
-bool tumbles(const Collider& a, const Collider& b, const Approach& approach, double length) {
+bool tumbles(const Collider& a, const Collider& b, const Approach& approach, double time_step) {
   constexpr double far = 0.05;  // [rad]
   const double turning = (a.angular_velocity - b.angular_velocity).length();
-  return length * (turning + approach.fastest / std::min(smallest_extent(a), smallest_extent(b))) >
+  return time_step * (turning + approach.fastest / std::min(smallest_extent(a), smallest_extent(b))) >
          far;
 }
 
-/// Where two colliders that move touch, see dynamics::Contact. What is apart meets later in the substep, each with its own point.
+/// Where two colliders that move touch, see dynamics::ContactPoint. What is apart meets later in the substep, each with its own point.
 /// @param on_a, on_b  in the colliders' frames [m]
 /// @param apart       closer surfaces count as together [m]
-void place_between(const Collider& a, const math::Vector3& on_a, const Collider& b, const math::Vector3& on_b,
+void set_contact_points(const Collider& a, const math::Vector3& on_a, const Collider& b, const math::Vector3& on_b,
                    double apart, dynamics::ContactPoint& contact) {
   const math::Vector3 from = from_bullet(a.pose * to_bullet(on_a)), way = from_bullet(b.pose * to_bullet(on_b)) - from;
   if (way.squaredNorm() < dynamics::touching_gap * dynamics::touching_gap) return;
@@ -108,7 +108,7 @@ bool is_round(const Collider& collider, const btVector3& normal) {
 
 /// Notes how the point of contact moves where one of two colliders that move is round and the other one is not: with its centre,
 /// and as the other one's face turns; about the normal as it turns itself, unless that turns it far in the substep.
-void note_rolling(const Collider& a, const Collider& b, double length, dynamics::ContactPoint& contact) {
+void set_point_velocity(const Collider& a, const Collider& b, double time_step, dynamics::ContactPoint& contact) {
   constexpr double far = 0.2;  // [rad]
   const btVector3 normal = to_bullet(contact.normal);
   const bool round_a = is_round(a, normal);
@@ -117,7 +117,7 @@ void note_rolling(const Collider& a, const Collider& b, double length, dynamics:
   const btVector3 arm = to_bullet(round_a ? contact.point : math::Vector3(contact.point + contact.offset_to_b)) - round.pose.getOrigin();
   const btScalar turning = round.angular_velocity.dot(normal);
   const bool is_ball = std::holds_alternative<contact::Sphere>(round.shape);
-  if (!is_ball && length * btFabs(turning) > far) return;
+  if (!is_ball && time_step * btFabs(turning) > far) return;
   contact.has_point_velocity = true;
   const btVector3 face_turning = (round_a ? b : a).angular_velocity, tilt = face_turning.cross(normal) * arm.dot(normal);
   contact.face_angular_velocity = from_bullet(face_turning);
@@ -127,64 +127,64 @@ void note_rolling(const Collider& a, const Collider& b, double length, dynamics:
 /// Whether a body that seems to pass what stands may yet come there, because the ways of what turns are bent, and its axis turns, too: each changes
 /// a way by up to r (w h)^2 / 2.
 /// @param slack  what counts as close [m]
-bool may_turn_into(const Collider& a, const Collider& b, double length, double slack) {
+bool may_rotate_into(const Collider& a, const Collider& b, double time_step, double slack) {
   constexpr double far = 0.05;  // [rad]
   if (a.moves && b.moves) return false;
   const Collider& moving = a.moves ? a : b;
-  const double turn = length * moving.angular_velocity.length();
+  const double turn = time_step * moving.angular_velocity.length();
   if (turn < far) return false;
   const double bend = moving.radius * turn * turn;
-  const contact::Contacts all = contact::find(a.shape, a.pose, b.shape, b.pose, a.reach + b.reach, contact::Support::all);
+  const contact::Manifold all = contact::find(a.shape, a.pose, b.shape, b.pose, a.reach + b.reach, contact::Support::all);
   for (int i = 0; i < all.count; ++i) {
-    const contact::Point& point = all.points[i];
+    const contact::ManifoldPoint& point = all.points[i];
     const double speed = all.normal.dot(velocity_at(b, point.on_b) - velocity_at(a, point.on_b));
-    if (point.distance - length * speed <= slack + bend) return true;
+    if (point.distance - time_step * speed <= slack + bend) return true;
   }
   return false;
 }
 
 /// How two colliders turn in a substep.
-struct Turning {
+struct RotationOutcome {
   bool tumbles = false;  ///< one so far that other points may touch
-  bool may_land = false;  ///< nothing touches, but points may come to overlap as one turns
-  double swing = 0;      ///< one that swings, until they meet [rad]
+  bool may_overlap = false;  ///< nothing touches, but points may come to overlap as one turns
+  double rotation_until_impact = 0;      ///< one that swings, until they meet [rad]
 };
 
 /// The points of two colliders that may touch within the substep.
 /// @param slack        what counts as close [m]
 /// @param most_points  of those that tumble
-contact::Contacts look(const Collider& a, const Collider& b, double length, double slack, int most_points, Turning& out) {
+contact::Manifold collide(const Collider& a, const Collider& b, double time_step, double slack, int most_points, RotationOutcome& out) {
   constexpr double far = 0.2;  // a swing whose way bends [rad]
   const double reach = a.reach + b.reach;
-  contact::Contacts found =
+  contact::Manifold found =
       contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::face,
-                    farthest_that_may_touch(a, b, length, slack));
-  const Approach approach = approach_of(found, a, b, length, slack);
+                    most_distance_to_touch(a, b, time_step, slack));
+  const Approach approach = approach_of(found, a, b, time_step, slack);
   const bool in_reach = found.count > 0;
-  out.tumbles = approach.may_touch && tumbles(a, b, approach, length);
-  const bool swings = found.count > 0 && std::max(swing_of(a, length), swing_of(b, length)) > far;
+  out.tumbles = approach.may_touch && tumbles(a, b, approach, time_step);
+  const bool swings = found.count > 0 && std::max(arm_rotation(a, time_step), arm_rotation(b, time_step)) > far;
   double time = 0;
   if (approach.least > slack && (swings || approach.may_touch)) {
-    found = first_meeting(a, b, length, slack / 2, time);
-    if (found.count > 0 && swings) out.swing = std::max(swing_of(a, time), swing_of(b, time));
+    found = time_of_impact(a, b, time_step, slack / 2, time);
+    if (found.count > 0 && swings) out.rotation_until_impact = std::max(arm_rotation(a, time), arm_rotation(b, time));
   } else if (!approach.may_touch) {
     found.count = 0;
-  } else if (found.count <= 2 && approach.least > dynamics::touching_gap && (normal_turns(a, b) || rebound_turned(a, b))) {
-    found = first_meeting(a, b, length, slack, time);
+  } else if (found.count <= 2 && approach.least > dynamics::touching_gap && (has_rotating_normal(a, b) || rebounds_at_touch_pose(a, b))) {
+    found = time_of_impact(a, b, time_step, slack, time);
   } else if (out.tumbles) {
     found = contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::all);
   }
-  out.may_land = found.count == 0 && in_reach && may_turn_into(a, b, length, slack);
+  out.may_overlap = found.count == 0 && in_reach && may_rotate_into(a, b, time_step, slack);
   if (!out.tumbles || found.count > most_points) contact::reduce(found, (a.moves ? a : b).pose);
   return found;
 }
 
 /// The points where two colliders may touch as something throws them within the substep.
-contact::Contacts look_at_thrown(const Colliders& colliders, std::size_t a, std::size_t b, double length, double slack, int most_points,
-                                 Turning& out) {
+contact::Manifold collide_predicted(const Colliders& colliders, std::size_t a, std::size_t b, double time_step, double slack, int most_points,
+                                 RotationOutcome& out) {
   const auto ways_of = [&](std::size_t index) {
     std::vector<const Collider*> ways{&colliders.all[index]};
-    for (const Colliders::Thrown& thrown : colliders.thrown) {
+    for (const Colliders::PredictedCollider& thrown : colliders.predicted) {
       if (thrown.index == index) ways.push_back(&thrown.collider);
     }
     return ways;
@@ -193,7 +193,7 @@ contact::Contacts look_at_thrown(const Colliders& colliders, std::size_t a, std:
   for (const Collider* way_a : of_a) {
     for (const Collider* way_b : of_b) {
       if (way_a == of_a[0] && way_b == of_b[0]) continue;
-      const contact::Contacts found = look(*way_a, *way_b, length, slack, most_points, out);
+      const contact::Manifold found = collide(*way_a, *way_b, time_step, slack, most_points, out);
       if (found.count > 0) return found;
     }
   }
@@ -201,16 +201,16 @@ contact::Contacts look_at_thrown(const Colliders& colliders, std::size_t a, std:
 }
 
 /// Whether each of two colliders is chosen, or stands.
-bool is_among(std::size_t a, std::size_t b, const Colliders& colliders, const TreeSet& chosen) {
-  const auto counts = [&](const Collider& collider) { return !collider.moves || chosen.holds[collider.entity]; };
+bool both_active(std::size_t a, std::size_t b, const Colliders& colliders, const TreeSet& active) {
+  const auto counts = [&](const Collider& collider) { return !collider.moves || active.contains[collider.entity]; };
   return counts(colliders.all[a]) && counts(colliders.all[b]);
 }
 
 }  // namespace
 
-dynamics::ContactPoint law_of(const Collider& a, const Collider& b, const math::Vector3& normal,
+dynamics::ContactPoint contact_of(const Collider& a, const Collider& b, const math::Vector3& normal,
                          int count) {
-  const bool rolls = rolls_on(a, to_bullet(normal)) || rolls_on(b, to_bullet(normal));
+  const bool rolls = is_wheel_contact(a, to_bullet(normal)) || is_wheel_contact(b, to_bullet(normal));
   dynamics::ContactPoint law;
   law.a = link_of(a);
   law.b = link_of(b);
@@ -225,128 +225,128 @@ dynamics::ContactPoint law_of(const Collider& a, const Collider& b, const math::
   return law;
 }
 
-std::span<dynamics::ContactPoint> Contacts::find(double length) {
+std::span<dynamics::ContactPoint> ContactCache::find_contacts(double time_step) {
   ++substep_;
-  share_ = 1;
-  apart_ = dynamics::restitution_threshold * length;
-  colliders_.find_near(near_);
-  meet_all(length);
-  if (colliders_.woke || awake_ + resting_ != live_) drop_unseen();
-  drop_hidden();
+  force_share_ = 1;
+  together_gap_ = dynamics::restitution_threshold * time_step;
+  colliders_.find_pairs(near_pairs_);
+  collide_pairs(time_step);
+  if (colliders_.has_woken || awake_ + resting_ != live_) drop_separated_pairs();
+  drop_internal_edges();
   return contacts_;
 }
 
-std::span<dynamics::ContactPoint> Contacts::find(double length, const TreeSet& chosen, double share) {
-  share_ = share;
-  apart_ = HUGE_VAL;  // parts are short, and magnets' bonds ask for all of the angular momentum
-  colliders_.find_near(near_, chosen);
-  std::swap(met_, met_before_);
-  meet_all(length);
-  for (const int number : met_before_) {  // what came apart in this part of the substep
-    if (pairs_[number].met != part_) pairs_[number].count = 0;
+std::span<dynamics::ContactPoint> ContactCache::find_contacts(double time_step, const TreeSet& active, double force_share) {
+  force_share_ = force_share;
+  together_gap_ = HUGE_VAL;  // parts are short, and magnets' bonds ask for all of the angular momentum
+  colliders_.find_pairs(near_pairs_, active);
+  std::swap(pairs_of_part_, pairs_of_previous_part_);
+  collide_pairs(time_step);
+  for (const int number : pairs_of_previous_part_) {  // what came apart in this part of the substep
+    if (pairs_[number].last_part != part_) pairs_[number].count = 0;
   }
-  drop_hidden();
+  drop_internal_edges();
   return contacts_;
 }
 
 /// All pairs that are near, and those with the floor.
-void Contacts::meet_all(double length) {
+void ContactCache::collide_pairs(double time_step) {
   ++part_;
-  length_ = length;
-  swings.clear();
+  time_step_ = time_step;
+  rotations_until_impact.clear();
   contacts_.clear();
-  owners_.clear();
-  turned_.clear();
-  met_.clear();
-  on_bases_.clear();
+  cache_indices_.clear();
+  overlap_candidates_.clear();
+  pairs_of_part_.clear();
+  supports_.clear();
   awake_ = 0;
   floor_pairs_.resize(colliders_.all.size(), 0);
-  lists_.resize(colliders_.all.size());
-  for (const Near& near : near_) {
-    meet(pair_of(near.a, near.b, places_[key_of(near.a, near.b)]), length);
+  pairs_of_collider_.resize(colliders_.all.size());
+  for (const ColliderPair& near : near_pairs_) {
+    collide_pair(pair_of(near.a, near.b, places_[key_of(near.a, near.b)]), time_step);
   }
   if (!colliders_.floor) return;
-  const std::span<const std::size_t> followed = colliders_.followed();
+  const std::span<const std::size_t> followed = colliders_.updated_groups();
   for (std::size_t k = 0; k < followed.size(); ++k) {
     const ColliderGroup& group = colliders_.groups[followed[k]];
     const ColliderGroup& next = colliders_.groups[followed[std::min(k + 1, followed.size() - 1)]];
     for (std::size_t i = next.first; i < next.first + next.count; ++i) {
-      if (floor_pairs_[i] != 0) dynamics::prefetch(&pairs_[floor_pairs_[i]], Pair::beginning);
+      if (floor_pairs_[i] != 0) dynamics::prefetch(&pairs_[floor_pairs_[i]], CachedPair::prefetched_bytes);
     }
     for (std::size_t i = group.first; i < group.first + group.count; ++i) {
       const Collider& collider = colliders_.all[i];
       if (collider.pose.getOrigin().z() > collider.radius + collider.reach) continue;
-      meet(pair_of(i, *colliders_.floor, floor_pairs_[i]), length);
+      collide_pair(pair_of(i, *colliders_.floor, floor_pairs_[i]), time_step);
     }
   }
 }
 
-std::span<dynamics::ContactPoint> Contacts::add_resting() {
+std::span<dynamics::ContactPoint> ContactCache::add_resting_contacts() {
   for (std::size_t i = 1; i < pairs_.size(); ++i) {
-    Pair& pair = pairs_[i];
-    if (!pair.live || pair.seen == substep_) continue;
-    emit(pair);
+    CachedPair& pair = pairs_[i];
+    if (!pair.live || pair.last_substep == substep_) continue;
+    append_contacts(pair);
   }
   return contacts_;
 }
 
-void Contacts::choose(const TreeSet& chosen) {
-  met_.clear();
+void ContactCache::begin_parts(const TreeSet& active) {
+  pairs_of_part_.clear();
   for (std::size_t i = 1; i < pairs_.size(); ++i) {
-    if (pairs_[i].count > 0 && is_among(pairs_[i].a, pairs_[i].b, colliders_, chosen)) met_.push_back(static_cast<int>(i));
+    if (pairs_[i].count > 0 && both_active(pairs_[i].a, pairs_[i].b, colliders_, active)) pairs_of_part_.push_back(static_cast<int>(i));
   }
 }
 
-std::span<dynamics::ContactPoint> Contacts::keep(const TreeSet& chosen) {
-  keep_if([&](const Pair& pair) { return is_among(pair.a, pair.b, colliders_, chosen); });
-  std::erase_if(turned_, [&](const Turned& turned) { return !is_among(pairs_[turned.pair].a, pairs_[turned.pair].b, colliders_, chosen); });
+std::span<dynamics::ContactPoint> ContactCache::keep_contacts(const TreeSet& active) {
+  keep_if([&](const CachedPair& pair) { return both_active(pair.a, pair.b, colliders_, active); });
+  std::erase_if(overlap_candidates_, [&](const OverlapCandidate& turned) { return !both_active(pairs_[turned.pair].a, pairs_[turned.pair].b, colliders_, active); });
   return contacts_;
 }
 
-void Contacts::meet(Pair& pair, double length) {
+void ContactCache::collide_pair(CachedPair& pair, double time_step) {
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
-  pair.met = part_;
-  pair.covers = false;
-  met_.push_back(static_cast<int>(&pair - pairs_.data()));
-  resting_ -= pair.rests;
-  pair.rests = colliders_.rests(a) && colliders_.rests(b);
-  resting_ += pair.rests;
-  awake_ += !pair.rests;
-  Turning turning;
-  const double slack = least_reach(colliders_, length);
-  contact::Contacts found = look(a, b, length, slack, most_points, turning);
-  if (found.count == 0 && !colliders_.thrown.empty()) {
-    found = look_at_thrown(colliders_, pair.a, pair.b, length, slack, most_points, turning);
+  pair.last_part = part_;
+  pair.covers_internal_edge = false;
+  pairs_of_part_.push_back(static_cast<int>(&pair - pairs_.data()));
+  resting_ -= pair.is_static;
+  pair.is_static = colliders_.is_static(a) && colliders_.is_static(b);
+  resting_ += pair.is_static;
+  awake_ += !pair.is_static;
+  RotationOutcome turning;
+  const double slack = speculative_margin(colliders_, time_step);
+  contact::Manifold found = collide(a, b, time_step, slack, most_points, turning);
+  if (found.count == 0 && !colliders_.predicted.empty()) {
+    found = collide_predicted(colliders_, pair.a, pair.b, time_step, slack, most_points, turning);
   }
-  if (turning.swing > 0) swings.push_back({static_cast<int>((a.swings ? a : b).entity), turning.swing});
-  add(found, pair, length);
-  if (found.count > 0) note_bases(pair);
+  if (turning.rotation_until_impact > 0) rotations_until_impact.push_back({static_cast<int>((a.is_on_fixed_base ? a : b).entity), turning.rotation_until_impact});
+  match_points(found, pair, time_step);
+  if (found.count > 0) list_supports(pair);
   if (a.moves && b.moves) return;
-  turned_.push_back({static_cast<std::size_t>(&pair - pairs_.data()), found.count == 0, turning.may_land || turning.tumbles});
+  overlap_candidates_.push_back({static_cast<std::size_t>(&pair - pairs_.data()), found.count == 0, turning.may_overlap || turning.tumbles});
 }
 
 /// Appends the pair's contacts, each with the impulse of the point of the last substep that is
 /// nearest: on either body, or moved with one.
 /// @param length  [s]
-void Contacts::add(const contact::Contacts& found, Pair& pair, double length) {
+void ContactCache::match_points(const contact::Manifold& found, CachedPair& pair, double time_step) {
   constexpr double same = 25e-6;  // 5 mm apart is another contact [m^2]
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
   const int old_count = pair.count;
-  auto& old = before_;
+  auto& old = previous_points_;
   std::copy_n(pair.points.begin(), old_count, old.begin());
   std::array<bool, most_points> taken{};
   // A point of what rolls moves with neither surface, but with the body that rolls.
-  const math::Vector3 with_a = length * from_bullet(a.velocity), with_b = length * from_bullet(b.velocity);
+  const math::Vector3 with_a = time_step * from_bullet(a.velocity), with_b = time_step * from_bullet(b.velocity);
   pair.count = found.count;
   if (found.count > 0) pair.normal = from_bullet(found.normal);
   for (int i = 0; i < found.count; ++i) {
-    const contact::Point& point = found.points[i];
+    const contact::ManifoldPoint& point = found.points[i];
     const btVector3 on_a = point.on_b + found.normal * point.distance;
-    Remembered& now = pair.points[i];
-    now.on_a = from_bullet(a.pose.invXform(a.moves ? on_a : on_a + point.until_met));
-    now.on_b = from_bullet(b.pose.invXform(a.moves ? point.on_b + point.until_met : point.on_b));
+    CachedPoint& now = pair.points[i];
+    now.on_a = from_bullet(a.pose.invXform(a.moves ? on_a : on_a + point.offset_when_met));
+    now.on_b = from_bullet(b.pose.invXform(a.moves ? point.on_b + point.offset_when_met : point.on_b));
     now.point = from_bullet(!b.moves ? on_a : !a.moves ? point.on_b : (point.on_b + on_a) / 2);
     now.gap = point.distance;
     now.impulse.setZero();
@@ -354,8 +354,8 @@ void Contacts::add(const contact::Contacts& found, Pair& pair, double length) {
     int nearest = -1;
     double least = same;
     for (int j = 0; j < old_count; ++j) {
-      const double away = std::min({square_between(old[j].on_a, now.on_a), square_between(old[j].on_b, now.on_b),
-                                    square_between(old[j].point + with_a, now.point), square_between(old[j].point + with_b, now.point)});
+      const double away = std::min({squared_distance(old[j].on_a, now.on_a), squared_distance(old[j].on_b, now.on_b),
+                                    squared_distance(old[j].point + with_a, now.point), squared_distance(old[j].point + with_b, now.point)});
       if (!taken[j] && away < least) least = away, nearest = j;
     }
     if (nearest >= 0) {
@@ -364,16 +364,16 @@ void Contacts::add(const contact::Contacts& found, Pair& pair, double length) {
       now.angular_impulse = old[nearest].angular_impulse;
     }
   }
-  emit(pair);
+  append_contacts(pair);
 }
 
 /// Appends the contacts of a pair's points to the list.
-void Contacts::emit(const Pair& pair) {
+void ContactCache::append_contacts(const CachedPair& pair) {
   check_contact_points(contacts_.size());
   if (pair.count == 0) return;
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
-  const dynamics::ContactPoint law = law_of(a, b, pair.normal, pair.count);
+  const dynamics::ContactPoint law = contact_of(a, b, pair.normal, pair.count);
   const std::size_t count = static_cast<std::size_t>(pair.count), next = contacts_.size() + ahead;
   if (next + count <= contacts_.capacity()) dynamics::prefetch(contacts_.data() + next, count * sizeof(dynamics::ContactPoint));
   for (int i = 0; i < pair.count; ++i) {
@@ -381,48 +381,48 @@ void Contacts::emit(const Pair& pair) {
     contact.point = pair.points[i].point;
     contact.gap = pair.points[i].gap;
     if (a.moves && b.moves) {
-      place_between(a, pair.points[i].on_a, b, pair.points[i].on_b, apart_, contact);
-      note_rolling(a, b, length_, contact);
+      set_contact_points(a, pair.points[i].on_a, b, pair.points[i].on_b, together_gap_, contact);
+      set_point_velocity(a, b, time_step_, contact);
     }
-    contact.impulse = share_ * pair.points[i].impulse;
-    contact.angular_impulse = share_ * pair.points[i].angular_impulse;
-    owners_.push_back({static_cast<int>(&pair - pairs_.data()), i});
+    contact.impulse = force_share_ * pair.points[i].impulse;
+    contact.angular_impulse = force_share_ * pair.points[i].angular_impulse;
+    cache_indices_.push_back({static_cast<int>(&pair - pairs_.data()), i});
   }
 }
 
-void Contacts::remember(bool more) {
+void ContactCache::store_impulses(bool more) {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     if (i + ahead < contacts_.size()) {
-      const Owner& owner = owners_[i + ahead];
-      const Pair& pair = pairs_[owner.pair];
+      const CacheIndex& owner = cache_indices_[i + ahead];
+      const CachedPair& pair = pairs_[owner.pair];
       dynamics::prefetch(&contacts_[i + ahead].impulse, 2 * sizeof(math::Vector3));
-      dynamics::prefetch(&pair.share, sizeof(pair.share));
+      dynamics::prefetch(&pair.force_share, sizeof(pair.force_share));
       dynamics::prefetch(&pair.points[owner.point].impulse, 2 * sizeof(math::Vector3));
     }
-    Pair& pair = pairs_[owners_[i].pair];
-    Remembered& point = pair.points[owners_[i].point];
-    if (more) pair.earlier += contacts_[i].impulse;
-    if (share_ == 0) continue;
-    point.impulse = contacts_[i].impulse / share_;
-    point.angular_impulse = contacts_[i].angular_impulse / share_;
-    pair.share = share_;
+    CachedPair& pair = pairs_[cache_indices_[i].pair];
+    CachedPoint& point = pair.points[cache_indices_[i].point];
+    if (more) pair.earlier_impulse += contacts_[i].impulse;
+    if (force_share_ == 0) continue;
+    point.impulse = contacts_[i].impulse / force_share_;
+    point.angular_impulse = contacts_[i].angular_impulse / force_share_;
+    pair.force_share = force_share_;
   }
 }
 
-void Contacts::tell(std::vector<Contact>& out) const {
+void ContactCache::list_contacts(std::vector<LinkContact>& out) const {
   out.clear();
-  for (const Pair& pair : pairs_) {
-    math::Vector3 middle(0, 0, 0), sum = pair.earlier;
+  for (const CachedPair& pair : pairs_) {
+    math::Vector3 middle(0, 0, 0), sum = pair.earlier_impulse;
     int count = 0;
     for (int i = 0; i < pair.count; ++i) {
-      const Remembered& point = pair.points[i];
-      const bool pressed = point.impulse.dot(pair.normal) > 0 || !pair.earlier.isZero(0);
+      const CachedPoint& point = pair.points[i];
+      const bool pressed = point.impulse.dot(pair.normal) > 0 || !pair.earlier_impulse.isZero(0);
       if (!pressed && point.gap > 0) continue;
       middle += point.point;
-      sum += pair.share * point.impulse;
+      sum += pair.force_share * point.impulse;
       ++count;
     }
-    const bool came_apart = pair.live && pair.count == 0 && pair.seen == substep_ && !pair.earlier.isZero(0);
+    const bool came_apart = pair.live && pair.count == 0 && pair.last_substep == substep_ && !pair.earlier_impulse.isZero(0);
     if (came_apart) middle = pair.points[0].point, count = 1;
     if (count == 0) continue;
     out.push_back(in_order({side(colliders_.all[pair.a]), side(colliders_.all[pair.b]), pair.normal,

@@ -13,7 +13,7 @@ namespace ziggurat::physics {
 namespace {
 
 /// What the dialect takes where a scene says nothing is for its own clock.
-void forget_usual_damping(Body& body, const scene::Physics& physics) {
+void clear_default_damping(Body& body, const scene::Physics& physics) {
   if (physics.clock != scene::Clock::nominal) return;
   for (LinkBody& link : body.links) {
     if (link.damping.usual_linear) link.damping.linear = 0;
@@ -55,19 +55,19 @@ NewtonCore::NewtonCore(const scene::Physics& physics) : settings_(physics) { col
 
 Body NewtonCore::add(const scene::Entity& entity, std::size_t number) {
   Body body = make_body(entity, settings_, number);
-  forget_usual_damping(body, settings_);
+  clear_default_damping(body, settings_);
   dynamics::Tree tree = make_tree(body, entity, settings_);
   const std::vector<CoordinateJoint> joints = coordinate_joints_of(entity, body);
   share_mechanism(tree, system_.trees);
   make_room(system_.trees, 1);
   make_room(joints_, joints.size());
-  make_room(held_, 1);
-  make_room(lags_.of_tree, 1);
+  make_room(ground_servos_, 1);
+  make_room(leapfrog_sync_.of_tree, 1);
   colliders_.add(body, entity, tree);
   system_.trees.push_back(std::move(tree));
-  lags_.of_tree.push_back(Lags::unknown);
+  leapfrog_sync_.of_tree.push_back(LeapfrogSync::unknown);
   joints_.insert(joints_.end(), joints.begin(), joints.end());
-  if (body.ground && entity.movable) held_.push_back({number, {}});
+  if (body.ground && entity.movable) ground_servos_.push_back({number, {}});
   body.articulation = Articulation{&system_, number};
   return body;
 }
@@ -75,8 +75,8 @@ Body NewtonCore::add(const scene::Entity& entity, std::size_t number) {
 void NewtonCore::detach(std::size_t entity) {
   contacts_.forget(entity, system_);
   colliders_.remove(entity);
-  held_.erase(std::ranges::lower_bound(held_, entity, {}, &Held::entity),
-              std::ranges::upper_bound(held_, entity, {}, &Held::entity));
+  ground_servos_.erase(std::ranges::lower_bound(ground_servos_, entity, {}, &GroundServo::entity),
+              std::ranges::upper_bound(ground_servos_, entity, {}, &GroundServo::entity));
 }
 
 void NewtonCore::remove(Body& body) {
@@ -93,7 +93,7 @@ void NewtonCore::remove(Body& body) {
 void NewtonCore::take_back(Body& body) {
   detach(body.entity);
   system_.trees.pop_back();
-  lags_.of_tree.pop_back();
+  leapfrog_sync_.of_tree.pop_back();
   std::erase_if(joints_, [&](const auto& joint) { return joint.entity == body.entity; });
   body.articulation.reset();
 }
@@ -106,20 +106,20 @@ void NewtonCore::move(Body& body) {
   for (CoordinateJoint& joint : joints_of(body.entity, joints_)) {
     joint.limit_impulse = joint.motor_impulse = 0;
   }
-  for (Held& held : held_) {
+  for (GroundServo& held : ground_servos_) {
     if (held.entity == body.entity) held.impulses = {};
   }
   contacts_.forget(body.entity, system_);
-  lags_.of_tree[body.entity] = Lags::unknown;
+  leapfrog_sync_.of_tree[body.entity] = LeapfrogSync::unknown;
   system_.wake(static_cast<int>(body.entity));
-  colliders_.moved(body.entity, old);
+  colliders_.reset_poses(body.entity, old);
 }
 
 std::optional<std::size_t> NewtonCore::overlapped_by(
     std::span<const PlacedCollider> colliders, std::size_t except) const {
   std::optional<std::size_t> first;
   for (const Collider& collider : colliders_.all) {
-    if (!collider.present || collider.entity == except || (first && *first <= collider.entity)) continue;
+    if (!collider.is_present || collider.entity == except || (first && *first <= collider.entity)) continue;
     const btVector3 part = to_bullet(system_.trees[collider.entity].position[collider.part]);
     const btScalar reach = collider.radius + collider.in_part.getOrigin().length();
     const auto is_far = [&](const PlacedCollider& each) {
@@ -149,7 +149,7 @@ double NewtonCore::position(JointIndex index) const {
   const CoordinateJoint& joint = joints_[index.value];
   if (!joint.present) return 0;
   const dynamics::Tree& tree = system_.trees[joint.entity];
-  return tree.q[place_of(tree, joint.part)];
+  return tree.q[position_of(tree, joint.part)];
 }
 
 double NewtonCore::velocity(JointIndex index) const {

@@ -8,11 +8,11 @@
 namespace ziggurat::physics {
 namespace {
 
-constexpr btScalar flush = 1e-5;  // steps in a surface that are none [m]
+constexpr btScalar most_step = 1e-5;  // steps in a surface that are none [m]
 constexpr btScalar slack = 1e-4;  // how far beside a collider a point may lie in it [m]
 
 /// How far a collider reaches along a direction, from the world's origin [m].
-btScalar top_of(const Collider& collider, const btVector3& up) {
+btScalar support_height(const Collider& collider, const btVector3& up) {
   const btVector3 in_it = collider.pose.getBasis().transpose() * up;
   return up.dot(collider.pose.getOrigin()) + contact::reach_along(collider.shape, in_it);
 }
@@ -22,17 +22,17 @@ btScalar top_of(const Collider& collider, const btVector3& up) {
 /// Whether a point on the base of `cover` is inside of another collider of the base than that of `hidden`, which ends flush with it:
 /// of those near the mover. Notes the pair with it, rather one without contacts.
 /// @param height  of the surface of `cover` along `up` [m]
-bool Contacts::is_inside_base(const Collider& cover, const Pair& hidden, std::size_t mover, const btVector3& up, btScalar height,
+bool ContactCache::is_inside_neighbour(const Collider& cover, const CachedPair& hidden, std::size_t mover, const btVector3& up, btScalar height,
                               const btVector3& point) {
   neighbours_.clear();
-  lists_.collect(mover, neighbours_);
-  Pair* carrier = nullptr;
+  pairs_of_collider_.collect(mover, neighbours_);
+  CachedPair* carrier = nullptr;
   for (const int number : neighbours_) {
-    Pair& pair = pairs_[number];
+    CachedPair& pair = pairs_[number];
     const Collider& other = colliders_.all[pair.a == mover ? pair.b : pair.a];
     const bool same_base = cover.moves ? other.entity == cover.entity && other.part == cover.part : !other.moves;
-    if (!same_base || !other.present || &pair == &hidden || btFabs(top_of(other, up) - height) > flush ||
-        !contact::holds(other.shape, other.pose.invXform(point), slack)) {
+    if (!same_base || !other.is_present || &pair == &hidden || btFabs(support_height(other, up) - height) > most_step ||
+        !contact::contains(other.shape, other.pose.invXform(point), slack)) {
       continue;
     }
     if (pair.count == 0) return true;
@@ -45,36 +45,36 @@ bool Contacts::is_inside_base(const Collider& cover, const Pair& hidden, std::si
 /// Whether contacts of a collider with `hidden` lie in a seam that its contacts with `seen` cover:
 /// `hidden` is nowhere above the surface of `seen`, which goes on where they touch, in its neighbours too. Both are of one
 /// body, or stand. Then it drops them, and what covers them is not dropped any more: where four tiles meet two would hide each other.
-bool Contacts::drops(Pair& seen, Pair& hidden, std::size_t mover) {
-  if (hidden.covers) return false;
+bool ContactCache::drops_internal_edge(CachedPair& seen, CachedPair& hidden, std::size_t mover) {
+  if (hidden.covers_internal_edge) return false;
   carriers_.assign(1, &seen);
   const bool seen_first = seen.b == mover, hidden_first = hidden.b == mover;
   const Collider& cover = colliders_.all[seen_first ? seen.a : seen.b];
   const Collider& other = colliders_.all[hidden_first ? hidden.a : hidden.b];
   const btVector3 up = to_bullet(seen_first ? math::Vector3(-seen.normal) : seen.normal);
-  const Remembered& on = seen.points[0];
+  const CachedPoint& on = seen.points[0];
   const btScalar height = up.dot(cover.pose * to_bullet(seen_first ? on.on_a : on.on_b));
-  if (top_of(other, up) > height + flush) return false;
+  if (support_height(other, up) > height + most_step) return false;
   for (int i = 0; i < hidden.count; ++i) {
-    const Remembered& point = hidden.points[i];
+    const CachedPoint& point = hidden.points[i];
     const btVector3 at = other.pose * to_bullet(hidden_first ? point.on_a : point.on_b);
-    if (contact::holds(cover.shape, cover.pose.invXform(at), slack)) continue;
-    if (!is_inside_base(cover, hidden, mover, up, height, at)) return false;
+    if (contact::contains(cover.shape, cover.pose.invXform(at), slack)) continue;
+    if (!is_inside_neighbour(cover, hidden, mover, up, height, at)) return false;
   }
-  for (Pair* carrier : carriers_) carrier->covers = true;
+  for (CachedPair* carrier : carriers_) carrier->covers_internal_edge = true;
   hidden.count = 0;
   return true;
 }
 
 /// Notes a pair that touches for each of its sides that moves, where the other may have others beside it.
-void Contacts::note_bases(const Pair& pair) {
+void ContactCache::list_supports(const CachedPair& pair) {
   const int number = static_cast<int>(&pair - pairs_.data());
   const auto note = [&](std::size_t mover, std::size_t on) {
     const Collider& base = colliders_.all[on];
     if (!base.moves) {
-      on_bases_.push_back({mover, Collider::floor, 0, on, number});
+      supports_.push_back({mover, Collider::floor, 0, on, number});
     } else if (colliders_.groups[base.group].count > 1) {
-      on_bases_.push_back({mover, base.entity, base.part, on, number});
+      supports_.push_back({mover, base.entity, base.part, on, number});
     }
   };
   if (colliders_.all[pair.a].moves) note(pair.a, pair.b);
@@ -83,22 +83,22 @@ void Contacts::note_bases(const Pair& pair) {
 
 /// Drops contacts with inner edges: those between colliders that stand flush beside each other, in
 /// the world or in one body.
-void Contacts::drop_hidden() {
-  if (!std::ranges::is_sorted(on_bases_)) std::ranges::sort(on_bases_);
-  const auto same_base = [](const OnBase& a, const OnBase& b) {
+void ContactCache::drop_internal_edges() {
+  if (!std::ranges::is_sorted(supports_)) std::ranges::sort(supports_);
+  const auto same_base = [](const Support& a, const Support& b) {
     return a.mover == b.mover && a.entity == b.entity && a.part == b.part;
   };
   bool dropped = false;
-  for (std::size_t i = 0; i < on_bases_.size(); ++i) {
-    const OnBase& one = on_bases_[i];
-    Pair& pair = pairs_[one.pair];
-    for (std::size_t j = i; j-- > 0 && same_base(on_bases_[j], one) && pair.count > 0;) {
-      Pair& other = pairs_[on_bases_[j].pair];
+  for (std::size_t i = 0; i < supports_.size(); ++i) {
+    const Support& one = supports_[i];
+    CachedPair& pair = pairs_[one.pair];
+    for (std::size_t j = i; j-- > 0 && same_base(supports_[j], one) && pair.count > 0;) {
+      CachedPair& other = pairs_[supports_[j].pair];
       if (other.count == 0) continue;
-      dropped |= drops(other, pair, one.mover) || drops(pair, other, one.mover);
+      dropped |= drops_internal_edge(other, pair, one.mover) || drops_internal_edge(pair, other, one.mover);
     }
   }
-  if (dropped) keep_if([](const Pair& pair) { return pair.count > 0; });
+  if (dropped) keep_if([](const CachedPair& pair) { return pair.count > 0; });
 }
 
 }  // namespace ziggurat::physics

@@ -10,13 +10,13 @@
 namespace ziggurat::physics {
 
 /// Of each tree.
-struct Lags {
-  enum Lag : unsigned char {
+struct LeapfrogSync {
+  enum VelocityTime : unsigned char {
     unknown,  ///< it met something, was driven, or is new
-    half,     ///< of half a substep before
-    none      ///< of now
+    half_step_before,     ///< of half a substep before
+    same_time      ///< of now
   };
-  std::vector<unsigned char> of_tree, meets;  ///< the second is working memory
+  std::vector<unsigned char> of_tree, is_constrained;  ///< the second is working memory
 };
 
 /// A whole substep takes what pushes as an impulse at its beginning, so that speeds are those of half a substep before; in parts
@@ -24,7 +24,7 @@ struct Lags {
 /// To be called before a substep, with what pushes in it.
 /// @param length    of the substep [s]
 /// @param division  of it; null: nothing is divided
-void change_lags(Lags& lags, dynamics::System& system, dynamics::Workspace& work, double length, const Division* division,
+void synchronise_velocities(LeapfrogSync& lags, dynamics::System& system, dynamics::Workspace& work, double time_step, const SubstepPartition* division,
                  std::span<const dynamics::ContactPoint> contacts, std::span<const dynamics::Servo> servos);
 
 }  // namespace ziggurat::physics

@@ -29,7 +29,7 @@ struct CoordinateJoint {
 /// @param impulse      its limit in that substep or part [N s] or [N m s]
 /// @param is_factored  whether `work` has the factors of the tree's mass as it is now; in and out
 dynamics::Servo servo_of(const CoordinateJoint& joint, const dynamics::Tree& tree,
-                         dynamics::Workspace& work, double length, double left, double impulse,
+                         dynamics::Workspace& work, double time_step, double left, double impulse,
                          bool& is_factored);
 
 /// What holds a body to its GroundMotion: speeds along and across, turn rate about the vertical.

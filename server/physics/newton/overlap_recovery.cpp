@@ -11,44 +11,44 @@
 namespace ziggurat::physics {
 namespace {
 
-constexpr btScalar close = btScalar(1e-3);  // points that must not come to overlap, either [m]
-constexpr double deep = 2e-5;               // [m]
+constexpr btScalar most_gap = btScalar(1e-3);  // points that must not come to overlap, either [m]
+constexpr double least_overlap = 2e-5;               // [m]
 
-bool is_deep(const contact::Contacts& found) {
+bool overlaps_deeply(const contact::Manifold& found) {
   return std::any_of(found.points.begin(), found.points.begin() + found.count,
-                     [](const contact::Point& point) { return point.distance < -deep; });
+                     [](const contact::ManifoldPoint& point) { return point.distance < -least_overlap; });
 }
 
 /// How far a point of a collider may be from where its velocity before the substep would have brought it [m].
 /// @param now     its pose behind it
 /// @param length  of the substep [s]
-double stray(const Collider& moving, const btTransform& now, double length) {
-  const btVector3 way = now.getOrigin() - moving.pose.getOrigin() - length * moving.velocity;
+double predicted_pose_error(const Collider& moving, const btTransform& now, double time_step) {
+  const btVector3 way = now.getOrigin() - moving.pose.getOrigin() - time_step * moving.velocity;
   double turn = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const btVector3 before = moving.pose.getBasis().getColumn(axis);
-    turn += (now.getBasis().getColumn(axis) - before - length * moving.angular_velocity.cross(before)).length2();
+    turn += (now.getBasis().getColumn(axis) - before - time_step * moving.angular_velocity.cross(before)).length2();
   }
   return way.length() + moving.radius * std::sqrt(turn / 2);
 }
 
 }  // namespace
 
-std::span<dynamics::ContactPoint> Contacts::find_turned(const dynamics::System& system) {
-  const double known = least_reach(colliders_, length_);  // contacts were looked for as far
+std::span<dynamics::ContactPoint> ContactCache::find_new_overlaps(const dynamics::System& system) {
+  const double known = speculative_margin(colliders_, time_step_);  // contacts were looked for as far
   overlaps_.clear();
-  for (const Turned& turned : turned_) {
-    const Pair& pair = pairs_[turned.pair];
-    if (pair.count == 0 && !turned.flies) continue;  // hidden
+  for (const OverlapCandidate& turned : overlap_candidates_) {
+    const CachedPair& pair = pairs_[turned.pair];
+    if (pair.count == 0 && !turned.has_no_contact) continue;  // hidden
     const Collider& a = colliders_.all[pair.a];
     const Collider& b = colliders_.all[pair.b];
     const btTransform of_a = a.moves ? colliders_.pose(a, system) : a.pose;
     const btTransform of_b = b.moves ? colliders_.pose(b, system) : b.pose;
-    if (!turned.turns && stray(a.moves ? a : b, a.moves ? of_a : of_b, length_) <= known) continue;
-    const contact::Contacts found =
-        contact::find(a.shape, of_a, b.shape, of_b, close, contact::Support::all);
-    if (!is_deep(found)) continue;
-    const dynamics::ContactPoint law = law_of(a, b, turned.flies ? from_bullet(found.normal) : pair.normal, std::max(pair.count, 1));
+    if (!turned.rotates_far && predicted_pose_error(a.moves ? a : b, a.moves ? of_a : of_b, time_step_) <= known) continue;
+    const contact::Manifold found =
+        contact::find(a.shape, of_a, b.shape, of_b, most_gap, contact::Support::all);
+    if (!overlaps_deeply(found)) continue;
+    const dynamics::ContactPoint law = contact_of(a, b, turned.has_no_contact ? from_bullet(found.normal) : pair.normal, std::max(pair.count, 1));
     for (int i = 0; i < found.count; ++i) {
       dynamics::ContactPoint& contact = overlaps_.emplace_back(law);
       contact.normal = from_bullet(found.normal);

@@ -7,15 +7,15 @@
 namespace ziggurat::physics {
 
 /// The pair of a place that remembers it; a new one if it is new.
-Contacts::Pair& Contacts::pair_of(std::size_t a, std::size_t b, int& place) {
+ContactCache::CachedPair& ContactCache::pair_of(std::size_t a, std::size_t b, int& place) {
   if (place == 0) {
     if (unused_.empty()) {
       if (pairs_.empty()) pairs_.emplace_back();
       unused_.push_back(static_cast<int>(pairs_.size()));
       pairs_.emplace_back();
-      unused_.reserve(pairs_.capacity());  // drop() and forget() take no memory
+      unused_.reserve(pairs_.capacity());  // drop_pair() and forget() take no memory
       forgotten_.reserve(pairs_.capacity());
-      lists_.make_room(pairs_.size());
+      pairs_of_collider_.make_room(pairs_.size());
     }
     place = unused_.back();
     unused_.pop_back();
@@ -23,21 +23,21 @@ Contacts::Pair& Contacts::pair_of(std::size_t a, std::size_t b, int& place) {
     pairs_[place].a = static_cast<std::uint32_t>(a);
     pairs_[place].b = static_cast<std::uint32_t>(b);
     pairs_[place].live = true;
-    lists_.add(place, a, b == colliders_.floor ? std::nullopt : std::optional(b));
+    pairs_of_collider_.add(place, a, b == colliders_.floor ? std::nullopt : std::optional(b));
     ++live_;
   }
-  if (pairs_[place].seen != substep_) pairs_[place].earlier.setZero();
-  pairs_[place].seen = substep_;
+  if (pairs_[place].last_substep != substep_) pairs_[place].earlier_impulse.setZero();
+  pairs_[place].last_substep = substep_;
   return pairs_[place];
 }
 
-void Contacts::drop(std::size_t number) {
-  Pair& pair = pairs_[number];
-  lists_.remove(static_cast<int>(number));
+void ContactCache::drop_pair(std::size_t number) {
+  CachedPair& pair = pairs_[number];
+  pairs_of_collider_.remove(static_cast<int>(number));
   pair.live = false;
   pair.count = 0;
   --live_;
-  resting_ -= pair.rests;
+  resting_ -= pair.is_static;
   unused_.push_back(static_cast<int>(number));
   if (colliders_.floor != pair.b) {
     places_.erase(key_of(pair.a, pair.b));
@@ -47,20 +47,20 @@ void Contacts::drop(std::size_t number) {
 }
 
 /// Pairs that came apart lose their memory.
-void Contacts::drop_unseen() {
+void ContactCache::drop_separated_pairs() {
   for (std::size_t i = 1; i < pairs_.size(); ++i) {
-    const Pair& pair = pairs_[i];
-    if (!pair.live || pair.seen == substep_) continue;
+    const CachedPair& pair = pairs_[i];
+    if (!pair.live || pair.last_substep == substep_) continue;
     const bool rests =
-        colliders_.rests(colliders_.all[pair.a]) && colliders_.rests(colliders_.all[pair.b]);
-    if (!rests) drop(i);
+        colliders_.is_static(colliders_.all[pair.a]) && colliders_.is_static(colliders_.all[pair.b]);
+    if (!rests) drop_pair(i);
   }
 }
 
-void Contacts::forget(std::size_t entity, dynamics::System& system) {
+void ContactCache::forget(std::size_t entity, dynamics::System& system) {
   forgotten_.clear();
   for (const ColliderGroup& group : colliders_.groups_of(entity)) {
-    for (std::size_t i = 0; i < group.count; ++i) lists_.collect(group.first + i, forgotten_);
+    for (std::size_t i = 0; i < group.count; ++i) pairs_of_collider_.collect(group.first + i, forgotten_);
   }
   std::sort(forgotten_.begin(), forgotten_.end());  // the lists' order is no state
   for (const int number : forgotten_) {
@@ -68,7 +68,7 @@ void Contacts::forget(std::size_t entity, dynamics::System& system) {
       const std::size_t other = colliders_.all[i].entity;
       if (other != Collider::floor) system.wake(static_cast<int>(other));
     }
-    drop(static_cast<std::size_t>(number));
+    drop_pair(static_cast<std::size_t>(number));
   }
 }
 

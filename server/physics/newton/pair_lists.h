@@ -13,7 +13,7 @@ class PairLists {
  public:
   /// Makes lists for this many colliders. Those beyond must be empty.
   void resize(std::size_t colliders) { first_.resize(colliders, 0); }
-  void clear() { first_.clear(), places_.clear(); }
+  void clear() { first_.clear(), links_.clear(); }
   /// Makes memory for pairs with lower numbers than this: add() takes none then.
   void make_room(std::size_t pairs);
   /// Puts a pair into the lists of its colliders.
@@ -26,12 +26,12 @@ class PairLists {
  private:
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
   /// Where a pair stands in the lists of its two colliders.
-  struct Place {
+  struct Links {
     std::array<std::size_t, 2> colliders{none, none};
     std::array<int, 2> previous{}, next{};  // 0: none
     std::size_t side(std::size_t collider) const { return colliders[0] == collider ? 0 : 1; }
   };
-  std::vector<Place> places_;  // by the pairs' numbers
+  std::vector<Links> links_;  // by the pairs' numbers
   std::vector<int> first_;     // of each collider; 0: none
 };
 

@@ -11,27 +11,27 @@
 
 namespace ziggurat::physics {
 
-class Division {
+class SubstepPartition {
  public:
   /// @param pairs  the stiff ones
   /// @param near   colliders that may touch within the substep
   /// @param contacts  likewise, of those that have just woken
-  void find(std::span<const StiffPair> pairs, std::span<const Near> near,
+  void partition(std::span<const StiffPair> pairs, std::span<const ColliderPair> near,
             std::span<const dynamics::ContactPoint> contacts, const std::vector<Collider>& colliders,
             const std::vector<dynamics::Tree>& trees);
 
-  bool divides(int tree) const { return parts_[tree] > 0; }
+  bool is_divided(int tree) const { return parts_[tree] > 0; }
   /// Into how many parts the sets of trees divide the substep: ascending, each once.
-  const std::vector<int>& counts() const { return counts_; }
+  const std::vector<int>& part_counts() const { return part_counts_; }
   /// The trees whose substep has so many parts; 0: that take it as a whole. Valid until the next
   /// call.
-  const TreeSet& with(int count);
+  const TreeSet& trees_with(int count);
 
  private:
-  int find(int tree);
+  int partition(int tree);
 
-  std::vector<int> leader_, parts_, counts_;  // the first two of each tree
-  TreeSet chosen_;
+  std::vector<int> leader_, parts_, part_counts_;  // the first two of each tree
+  TreeSet active_;
 };
 
 }  // namespace ziggurat::physics

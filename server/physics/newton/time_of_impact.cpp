@@ -18,7 +18,7 @@ bool is_round(const Collider& collider) {
 
 /// How its surface turns [rad/s]: what is round about an axis is the same however it turns about
 /// it. The points of a ball that turns would be carried back to its side or its top.
-btVector3 turning_of(const Collider& collider) {
+btVector3 surface_angular_velocity(const Collider& collider) {
   if (std::holds_alternative<contact::Sphere>(collider.shape)) return {0, 0, 0};
   const btVector3& turning = collider.angular_velocity;
   if (!is_round(collider)) return turning;
@@ -30,10 +30,10 @@ btVector3 turning_of(const Collider& collider) {
 /// is in.
 btTransform pose_after(const Collider& collider, double time) {
   if (!collider.moves) return collider.pose;
-  const math::Quaternion turn = dynamics::exponential(from_bullet(turning_of(collider)) * time);
+  const math::Quaternion turn = dynamics::exponential(from_bullet(surface_angular_velocity(collider)) * time);
   btVector3 way = collider.velocity * time;
   const btVector3& w = collider.angular_velocity;
-  if (swing_of(collider, time) > 0) {
+  if (arm_rotation(collider, time) > 0) {
     const btVector3 to_axis = w.cross(collider.velocity) / w.length2();
     const btMatrix3x3 turned(to_bullet(dynamics::exponential(from_bullet(w) * time)));
     way = to_axis - turned * to_axis + w * (w.dot(collider.velocity) / w.length2() * time);
@@ -46,91 +46,91 @@ btTransform pose_after(const Collider& collider, double time) {
 /// where they swing [m/s].
 double fastest_approach(const Collider& a, const Collider& b, const btVector3& normal) {
   const auto centre = [](const Collider& collider, const btVector3& towards) {
-    return collider.swings ? collider.velocity.length() : towards.dot(collider.velocity);
+    return collider.is_on_fixed_base ? collider.velocity.length() : towards.dot(collider.velocity);
   };
-  return centre(b, normal) + centre(a, -normal) + turning_of(a).cross(normal).length() * a.radius +
-         turning_of(b).cross(normal).length() * b.radius;
+  return centre(b, normal) + centre(a, -normal) + surface_angular_velocity(a).cross(normal).length() * a.radius +
+         surface_angular_velocity(b).cross(normal).length() * b.radius;
 }
 
-double least_distance(const contact::Contacts& found) {
+double least_distance(const contact::Manifold& found) {
   double least = BT_LARGE_FLOAT;
   for (int i = 0; i < found.count; ++i) least = std::min(least, double(found.points[i].distance));
   return least;
 }
 
 /// A collider, and where it is when it meets another one.
-struct Met {
+struct ColliderAtImpact {
   const Collider& collider;
-  const btTransform& then;
+  const btTransform& pose_at_impact;
 
   /// Where a point of its surface is now.
-  btVector3 now(const btVector3& point) const { return collider.pose * then.invXform(point); }
+  btVector3 point_now(const btVector3& point) const { return collider.pose * pose_at_impact.invXform(point); }
   /// Where it would be now if it had the lever already that it has then.
-  btVector3 turned(const btVector3& point) const {
-    return point - then.getOrigin() + collider.pose.getOrigin();
+  btVector3 point_with_impact_lever(const btVector3& point) const {
+    return point - pose_at_impact.getOrigin() + collider.pose.getOrigin();
   }
   /// The velocity that it has then.
   btVector3 velocity(const btVector3& point) const {
-    return collider.velocity + collider.angular_velocity.cross(point - then.getOrigin());
+    return collider.velocity + collider.angular_velocity.cross(point - pose_at_impact.getOrigin());
   }
 };
 
 /// Carries points that are found later back to where they are now. Where they rebound, with the
 /// levers of the touch, as far apart as their speeds then bring together in that time.
 /// @param time  until then [s]
-void carry_back(contact::Contacts& found, const Met& a, const Met& b, double time) {
-  const bool turned = rebound_turned(a.collider, b.collider);
+void carry_points_back(contact::Manifold& found, const ColliderAtImpact& a, const ColliderAtImpact& b, double time) {
+  const bool turned = rebounds_at_touch_pose(a.collider, b.collider);
   for (int i = 0; i < found.count; ++i) {
-    contact::Point& point = found.points[i];
+    contact::ManifoldPoint& point = found.points[i];
     const btVector3 then_a = point.on_b + found.normal * point.distance, then_b = point.on_b;
-    const btVector3 on_a = turned ? a.turned(then_a) : a.now(then_a),
-                    on_b = turned ? b.turned(then_b) : b.now(then_b);
+    const btVector3 on_a = turned ? a.point_with_impact_lever(then_a) : a.point_now(then_a),
+                    on_b = turned ? b.point_with_impact_lever(then_b) : b.point_now(then_b);
     point.distance =
         turned ? point.distance - time * found.normal.dot(a.velocity(then_a) - b.velocity(then_b))
                : found.normal.dot(on_a - on_b);
     // Opposite the point of the body that moves, or of the first one.
     point.on_b = a.collider.moves ? on_a - found.normal * point.distance : on_b;
-    point.until_met =
+    point.offset_when_met =
         a.collider.moves ? on_b - point.on_b : on_a - (on_b + found.normal * point.distance);
   }
 }
 
 }  // namespace
 
-bool normal_turns(const Collider& a, const Collider& b) {
+bool has_rotating_normal(const Collider& a, const Collider& b) {
   const auto is_plane = [](const Collider& c) {
     return std::holds_alternative<contact::HalfSpace>(c.shape);
   };
   return (is_round(a) || is_round(b)) && !is_plane(a) && !is_plane(b);
 }
 
-bool rebound_turned(const Collider& a, const Collider& b) {
+bool rebounds_at_touch_pose(const Collider& a, const Collider& b) {
   const auto is_alone = [](const Collider& collider) {
-    return collider.is_alone || !collider.moves;
+    return collider.is_single_body || !collider.moves;
   };
   return std::max(a.surface.restitution, b.surface.restitution) > 0 && is_alone(a) && is_alone(b);
 }
 
-double swing_of(const Collider& collider, double time) {
+double arm_rotation(const Collider& collider, double time) {
   constexpr double on_axis = 1e-3;  // of its size: what is so near the axis only turns
-  if (!collider.swings) return 0;
+  if (!collider.is_on_fixed_base) return 0;
   const double turning = collider.angular_velocity.length();
   return time * (collider.velocity.length() > on_axis * turning * collider.radius
                      ? turning
-                     : double(turning_of(collider).length()));
+                     : double(surface_angular_velocity(collider).length()));
 }
 
-contact::Contacts first_meeting(const Collider& a, const Collider& b, double length, double near,
+contact::Manifold time_of_impact(const Collider& a, const Collider& b, double time_step, double near,
                                 double& time) {
   constexpr int most_steps = 256;  // what turns much faster than it comes takes many
   constexpr int most_near = 12;    // what is followed to the touch, nearer than `near`
   constexpr double touch = 1e-7;   // [m]
-  int left = normal_turns(a, b) || rebound_turned(a, b) ? most_near : 0;
-  contact::Contacts met;
+  int left = has_rotating_normal(a, b) || rebounds_at_touch_pose(a, b) ? most_near : 0;
+  contact::Manifold met;
   double now = time = 0;
   for (int step = 0; step < most_steps; ++step) {
     const btTransform pose_a = pose_after(a, now), pose_b = pose_after(b, now);
-    contact::Contacts found =
+    contact::Manifold found =
         contact::find(a.shape, pose_a, b.shape, pose_b, a.reach + b.reach, contact::Support::all);
     const double distance = least_distance(found);
     if (found.count == 0) return met;  // out of reach
@@ -140,14 +140,14 @@ contact::Contacts first_meeting(const Collider& a, const Collider& b, double len
         met.count > 0) {  // also when they have passed each other: then the normal says so
       met = found;
       time = now;
-      carry_back(met, {a, pose_a}, {b, pose_b}, now);
+      carry_points_back(met, {a, pose_a}, {b, pose_b}, now);
       if (distance <= touch || --left <= 0) break;
     }
     if (approach <= 0) break;
     const double next = now + (distance - follow / 2) / approach;
-    const bool ends_near = distance - approach * (length - now) <= near;  // what falls may meet where its speed alone does not lead
-    if (next >= length && (met.count > 0 || !ends_near)) break;
-    now = std::min(next, length);
+    const bool ends_near = distance - approach * (time_step - now) <= near;  // what falls may meet where its speed alone does not lead
+    if (next >= time_step && (met.count > 0 || !ends_near)) break;
+    now = std::min(next, time_step);
   }
   return met;
 }

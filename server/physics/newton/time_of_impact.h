@@ -12,18 +12,18 @@ namespace ziggurat::physics {
 /// way that is left.
 /// @param near  counts as met [m]
 /// @param time  out: when, from the substep's beginning [s]
-contact::Contacts first_meeting(const Collider& a, const Collider& b, double length, double near,
+contact::Manifold time_of_impact(const Collider& a, const Collider& b, double time_step, double near,
                                 double& time);
 
 /// How far a collider that swings turns in a time [rad]; 0 of others.
-double swing_of(const Collider& collider, double time);
+double arm_rotation(const Collider& collider, double time);
 
 /// Whether the normal of such a contact turns while two colliders come together: one of them is
 /// round, and the other no plane.
-bool normal_turns(const Collider& a, const Collider& b);
+bool has_rotating_normal(const Collider& a, const Collider& b);
 
 /// Whether two colliders rebound from each other with the levers of the touch: single bodies. Of
 /// jointed ones all levers would change.
-bool rebound_turned(const Collider& a, const Collider& b);
+bool rebounds_at_touch_pose(const Collider& a, const Collider& b);
 
 }  // namespace ziggurat::physics

@@ -60,6 +60,6 @@ btTransform transform_of(const dynamics::Tree& tree, std::size_t part) {
 }
 
 int dof_of(const dynamics::Tree& tree, std::size_t part) { return tree.first_dof[part]; }
-int place_of(const dynamics::Tree& tree, std::size_t part) { return tree.first_position[part]; }
+int position_of(const dynamics::Tree& tree, std::size_t part) { return tree.first_position[part]; }
 
 }  // namespace ziggurat::physics

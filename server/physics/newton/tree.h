@@ -19,6 +19,6 @@ btTransform transform_of(const dynamics::Tree& tree, std::size_t part);
 
 /// The dof of a joint with a coordinate, and its place in the tree's q.
 int dof_of(const dynamics::Tree& tree, std::size_t part);
-int place_of(const dynamics::Tree& tree, std::size_t part);
+int position_of(const dynamics::Tree& tree, std::size_t part);
 
 }  // namespace ziggurat::physics

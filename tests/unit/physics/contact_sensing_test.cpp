@@ -27,13 +27,13 @@ class Log final : public Plugin {
   explicit Log(std::string& text) : text_(text) {}
   bool wants_contacts(std::span<const Body>) const override { return true; }
   void before_substep(std::span<Body>, double) override { text_ += '<'; }
-  void contact_begins(std::span<Body>, const Contact& contact) override { add('b', contact); }
-  void contact_persists(std::span<Body>, const Contact& contact) override { add('p', contact); }
-  void contact_ends(std::span<Body>, const Contact& contact) override { add('e', contact); }
+  void contact_begins(std::span<Body>, const LinkContact& contact) override { add('b', contact); }
+  void contact_persists(std::span<Body>, const LinkContact& contact) override { add('p', contact); }
+  void contact_ends(std::span<Body>, const LinkContact& contact) override { add('e', contact); }
   void after_substep(std::span<Body>, double) override { text_ += '>'; }
 
  private:
-  void add(char what, const Contact& contact) {
+  void add(char what, const LinkContact& contact) {
     text_ += what + std::to_string(contact.a.entity) +
              (contact.b.entity == ContactSide::floor ? "f" : std::to_string(contact.b.entity));
   }

@@ -30,7 +30,7 @@ std::vector<Ball> balls(int count, double width, double smallest, double largest
 TEST(Nearby, FindsAllThatTouchWhateverTheirSizes) {
   auto all = balls(1000, 5, 0.01, 0.1);
   for (const Ball& large : balls(20, 5, 1, 8)) all.push_back(large);
-  Nearby nearby;
+  SphereGrid nearby;
   for (std::size_t i = 0; i < all.size(); ++i) nearby.add(i, all[i].centre, all[i].radius);
   for (const Ball& ball : all) {
     std::set<std::size_t> visited;
@@ -45,7 +45,7 @@ TEST(Nearby, FindsAllThatTouchWhateverTheirSizes) {
 
 TEST(Nearby, LooksAtFewOfMany) {
   const auto all = balls(20'000, 100, 0.1, 0.2);
-  Nearby nearby;
+  SphereGrid nearby;
   for (std::size_t i = 0; i < all.size(); ++i) nearby.add(i, all[i].centre, all[i].radius);
   std::size_t visits = 0;
   for (const Ball& ball : all)
@@ -54,7 +54,7 @@ TEST(Nearby, LooksAtFewOfMany) {
 }
 
 TEST(Nearby, WhatHasNoSizeIsEverywhere) {
-  Nearby nearby;
+  SphereGrid nearby;
   nearby.add(3, {0, 0, 0}, 0);
   nearby.add(4, {0, 0, 0}, std::numeric_limits<btScalar>::infinity());
   std::set<std::size_t> visited;

@@ -22,7 +22,7 @@ int depth_of_row(std::size_t count) {
     const Body body = make_body(entity, physics, i);
     colliders.add(body, entity, make_tree(body, entity, physics));
   }
-  return colliders.depth();
+  return colliders.tree_depth();
 }
 
 TEST(Colliders, InARowMakeNoListOfTheTree) {

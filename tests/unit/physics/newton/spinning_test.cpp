@@ -19,10 +19,10 @@ namespace {
 using namespace testing;
 
 /// Gives a part momenta in the first substep.
-class Twist final : public Plugin {
+class SetVelocity final : public Plugin {
  public:
   /// @param angular  [N m s];  @param linear  [N s]
-  Twist(std::size_t part, const Vector3& angular, const Vector3& linear)
+  SetVelocity(std::size_t part, const Vector3& angular, const Vector3& linear)
       : part_(part), angular_(angular), linear_(linear) {}
   void before_substep(std::span<Body> bodies, double substep) override {
     bodies[0].apply_torque(part_, to_bullet(Vector3(angular_ / substep)));
@@ -50,7 +50,7 @@ struct Spinning {
   }
   ~Spinning() { core.remove(bodies[0]); }
   void twist(std::size_t part, const Vector3& angular, const Vector3& linear = {0, 0, 0}) {
-    plugins.add(std::make_unique<Twist>(part, angular, linear));
+    plugins.add(std::make_unique<SetVelocity>(part, angular, linear));
   }
   void step() {
     plugins.before_substep(bodies, h);
@@ -59,7 +59,7 @@ struct Spinning {
   }
   Pose pose(std::size_t part) const { return from_bullet(bodies[0].transform(part)); }
   Vector3 spin(std::size_t part) const {
-    std::vector<Motion> motions;
+    std::vector<Twist> motions;
     bodies[0].motions(motions);
     return from_bullet(motions[part].angular_velocity);
   }
