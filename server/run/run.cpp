@@ -243,7 +243,7 @@ supervision::Supervision::Settings Run::supervision_settings() {
 }
 
 void Run::print_notices() {
-  for (const auto& doubt : simulation::doubts(world_.scene, world_.simulation)) console_.problem(doubt);
+  for (const auto& doubt : simulation::scene_warnings(world_.scene, world_.simulation)) console_.problem(doubt);
   for (const auto& notice : world_.simulation.notices()) console_.notice(path_ + ": " + notice);
   if (config_.curve) {
     for (const auto& doubt : doubts_of(config_.curve->clients, world_.scene, world_.simulation.layout())) console_.notice(doubt);

@@ -60,13 +60,13 @@ class Draw {
 /// Places found, and attempts to find more.
 class Search {
  public:
-  Search(const scene::Scene& scene, const Patience& patience, const TellStep& tell)
-      : scene(scene), patience(patience), tell_(tell) {
+  Search(const scene::Scene& scene, const SearchLimits& limits, const TellStep& tell)
+      : scene(scene), limits(limits), tell_(tell) {
     for (const scene::Distribution& group : scene.distributions) all_ += group.quantity;
   }
 
   const scene::Scene& scene;
-  const Patience patience;
+  const SearchLimits limits;
 
   /// @param effort  of this attempt, see physics::Placement
   void fail(std::size_t effort) {
@@ -79,8 +79,8 @@ class Search {
     if (++placed_ % between_messages == 0) tell_now();
   }
 
-  bool is_out_of_attempts() const { return attempts_ >= patience.attempts; }
-  bool is_out_of_effort() const { return effort_ >= patience.effort; }
+  bool is_out_of_attempts() const { return attempts_ >= limits.attempts; }
+  bool is_out_of_effort() const { return effort_ >= limits.effort; }
 
  private:
   void tell_now() const {
@@ -94,7 +94,7 @@ class Search {
 
 /// Why it ends before 'max_trials' says; empty if it does not.
 std::string limit_of(const Search& search) {
-  if (search.is_out_of_attempts()) return fmt::format(", and a scene has {} in all", search.patience.attempts);
+  if (search.is_out_of_attempts()) return fmt::format(", and a scene has {} in all", search.limits.attempts);
   if (search.is_out_of_effort()) return ", each so long that a scene has no more";
   return {};
 }
@@ -125,7 +125,7 @@ std::string limit_of(const Search& search) {
 
 /// Ends a search that takes too long though it finds places.
 void check_effort(const Search& search, const scene::Distribution& group, unsigned placed, std::size_t effort) {
-  if (effort < search.patience.all_effort) return;
+  if (effort < search.limits.all_effort) return;
   scene::Problem problem;
   problem.file = search.scene.files.empty() ? "" : search.scene.files[group.where.file];
   problem.where = group.where;
@@ -165,14 +165,14 @@ void distribute(Search& search, const scene::Distribution& group, math::RandomSt
 
 }  // namespace
 
-std::vector<scene::Entity> place(const scene::Scene& scene, std::uint64_t seed, const TellStep& tell,
-                                 Patience patience) {
+std::vector<scene::Entity> place_entities(const scene::Scene& scene, std::uint64_t seed, const TellStep& tell,
+                                 SearchLimits limits) {
   std::vector<scene::Entity> entities = scene.entities;
   physics::Placement placement;
   if (!scene.distributions.empty()) {
     for (const scene::Entity& entity : entities) placement.add(entity);
   }
-  Search search(scene, patience, tell);
+  Search search(scene, limits, tell);
   math::RandomStream random(seed, "distribute");
   for (const scene::Distribution& group : scene.distributions) {
     distribute(search, group, random, placement, entities);

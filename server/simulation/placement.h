@@ -17,7 +17,7 @@ enum class Step { placing, building };
 using TellStep = std::function<void(Step step, std::size_t done, std::size_t all)>;
 
 /// When the search for free places ends, whatever 'max_trials' says, of all entities together.
-struct Patience {
+struct SearchLimits {
   std::size_t attempts = 10'000'000;  ///< that fail
   std::size_t effort = 100'000'000;   ///< of those; see physics::Placement; an attempt takes 16, or thousands among thousands of bodies
   std::size_t all_effort = 2'000'000'000;  ///< of those that find a place, too
@@ -27,7 +27,7 @@ struct Patience {
 /// distributed ones group by group.
 /// @param tell  told now and then how many entities are distributed already
 /// @throws scene::SceneError if a distributed entity finds no free place
-std::vector<scene::Entity> place(const scene::Scene& scene, std::uint64_t seed, const TellStep& tell = {},
-                                 Patience patience = {});
+std::vector<scene::Entity> place_entities(const scene::Scene& scene, std::uint64_t seed, const TellStep& tell = {},
+                                 SearchLimits limits = {});
 
 }  // namespace ziggurat::simulation

@@ -57,9 +57,9 @@ struct Kind {
   std::size_t more = 0;
 };
 
-class Doubts {
+class SceneWarnings {
  public:
-  Doubts(const scene::Scene& scene, const Simulation& simulation)
+  SceneWarnings(const scene::Scene& scene, const Simulation& simulation)
       : scene_(scene), layout_(simulation.layout()), entities_(simulation.entities()) {
     for (std::size_t e = 0; e < entities_.size(); ++e) {
       Extent& extent = extents_.emplace_back();
@@ -306,8 +306,8 @@ class Doubts {
 
 }  // namespace
 
-std::vector<scene::Problem> doubts(const scene::Scene& scene, const Simulation& simulation) {
-  return Doubts(scene, simulation).find();
+std::vector<scene::Problem> scene_warnings(const scene::Scene& scene, const Simulation& simulation) {
+  return SceneWarnings(scene, simulation).find();
 }
 
 }  // namespace ziggurat::simulation

@@ -113,7 +113,7 @@ class Simulation {
 
   // show.h
   friend void show(Simulation& to, std::uint64_t tick, std::span<const world::LinkState> links);
-  friend void repeat(Simulation& to, const scene::Scene& scene, const Act& act);
+  friend void repeat(Simulation& to, const scene::Scene& scene, const WorldEdit& act);
 
   friend std::optional<std::size_t> overlapped_by(const Simulation& in, const scene::Entity& entity,
                                                   const math::Pose& pose, std::optional<std::size_t> except);

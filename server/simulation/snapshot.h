@@ -29,7 +29,7 @@ inline constexpr std::size_t longest_spawned = std::size_t{1} << 20;  ///< the t
 std::optional<std::string> fault_of_snapshot_name(std::string_view name);
 
 /// Something that was done to a world between two ticks.
-struct Act {
+struct WorldEdit {
   enum class Kind : std::uint8_t { spawn, remove, move };
   Kind kind = Kind::spawn;
   std::uint64_t tick = 0;  ///< of the state that it was done to
@@ -47,7 +47,7 @@ struct Commanded {
 
 /// What made a world out of a new one.
 struct History {
-  std::vector<Act> acts;  ///< in order; moves only where the world must be repeated
+  std::vector<WorldEdit> edits;  ///< in order; moves only where the world must be repeated
   /// Only where it must be repeated: those that differ from the last step's, ascending.
   std::vector<Commanded> commands;
   std::size_t size = 0;  ///< of all commands and moves [bytes]

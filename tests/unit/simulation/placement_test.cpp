@@ -32,9 +32,9 @@ scene::Scene free_of_overlaps() {
   return text.read();
 }
 
-std::string fault_of(const scene::Scene& scene, Patience patience) {
+std::string fault_of(const scene::Scene& scene, SearchLimits limits) {
   try {
-    place(scene, 1, {}, patience);
+    place_entities(scene, 1, {}, limits);
   } catch (const scene::SceneError& error) {
     return scene::to_string(error.problems().at(0));
   }
@@ -71,7 +71,7 @@ TEST(Place, GivesUpWhenSucceedingTakesTooMuch) {
 TEST(Place, TellsHowFarItIsWhileItTries) {
   std::vector<std::pair<std::size_t, std::size_t>> told;
   const auto tell = [&](Step, std::size_t placed, std::size_t all) { told.emplace_back(placed, all); };
-  EXPECT_THROW(place(full("4294967295"), 1, tell, {25'000}), scene::SceneError);
+  EXPECT_THROW(place_entities(full("4294967295"), 1, tell, {25'000}), scene::SceneError);
   EXPECT_EQ(told, (std::vector<std::pair<std::size_t, std::size_t>>{{0, 2}, {0, 2}}));
 }
 

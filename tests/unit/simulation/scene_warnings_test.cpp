@@ -20,7 +20,7 @@ std::string body(const std::string& id, const std::string& position, bool movabl
 std::vector<std::string> found(const std::string& arena, const std::string& engine = ground) {
   const scene::Scene scene = SmallScene{"", "", arena, engine}.read();
   std::vector<std::string> texts;
-  for (const auto& problem : doubts(scene, Simulation(scene, {1}))) {
+  for (const auto& problem : scene_warnings(scene, Simulation(scene, {1}))) {
     EXPECT_EQ(problem.severity, scene::Problem::Severity::warning);
     texts.push_back(scene::to_string(problem));
   }
@@ -32,7 +32,7 @@ void expect_one(const std::vector<std::string>& texts, const std::string& part) 
   EXPECT_NE(texts[0].find(part), std::string::npos) << texts[0];
 }
 
-TEST(Doubts, AreNotRaisedBySoundScenes) {
+TEST(SceneWarnings, AreNotRaisedBySoundScenes) {
   EXPECT_TRUE(found("").empty());
   EXPECT_TRUE(found(body("a", "0,0,0") + body("b", "1,0,0") + body("c", "0,0,1")).empty());
   EXPECT_TRUE(found(body("a", "0,0,0", false) + body("b", "0.5,0,0", false)).empty())
@@ -43,7 +43,7 @@ TEST(Doubts, AreNotRaisedBySoundScenes) {
   EXPECT_TRUE(found(body("wall", "4.5,0,0", false)).empty()) << "half of it is inside";
 }
 
-TEST(Doubts, OverlapsAreCounted) {
+TEST(SceneWarnings, OverlapsAreCounted) {
   const auto texts = found(body("a", "0,0,0") + body("b", "0.9,0,0") + body("c", "-0.9,0,0"));
   expect_one(texts, "box \"b\" overlaps \"a\" at the start");
   EXPECT_TRUE(texts[0].ends_with("and 1 more like this")) << texts[0];
@@ -51,21 +51,21 @@ TEST(Doubts, OverlapsAreCounted) {
   expect_one(found(body("a", "0,0,0") + body("wall", "0.9,0,0", false)), "box \"a\" overlaps \"wall\"");
 }
 
-TEST(Doubts, OfBodiesInTheFloor) {
+TEST(SceneWarnings, OfBodiesInTheFloor) {
   expect_one(found(body("a", "0,0,-0.25")), "box \"a\" begins 0.25 m deep in the floor");
 }
 
-TEST(Doubts, OfBodiesOutsideOfTheArena) {
+TEST(SceneWarnings, OfBodiesOutsideOfTheArena) {
   expect_one(found(body("a", "6,0,0")), "box \"a\" begins outside of the arena, at 6,0,0");
 }
 
-TEST(Doubts, OfBodiesThatFallForever) {
+TEST(SceneWarnings, OfBodiesThatFallForever) {
   expect_one(found(body("a", "0,0,0"), "<gravity g=\"9\"/>"), "box \"a\" falls forever");
   expect_one(found(body("side", "2,0,-1", false) + body("a", "0,0,0"), "<gravity g=\"9\"/>"),
              "box \"a\" falls forever");
 }
 
-TEST(Doubts, OfMagnetsWithoutMagnetism) {
+TEST(SceneWarnings, OfMagnetsWithoutMagnetism) {
   const std::string magnet =
       R"(<prototype id="m" movable="true"><body position="0,0,0.1"/><links ref="l">)"
       R"(<link id="l" geometry="box" size=".1,.1,.1" mass="1"/></links><devices><magnets>)"
@@ -74,12 +74,12 @@ TEST(Doubts, OfMagnetsWithoutMagnetism) {
   EXPECT_TRUE(found(magnet, ground + std::string("<magnetism/>")).empty());
 }
 
-TEST(Doubts, OfLengthsInMillimetres) {
+TEST(SceneWarnings, OfLengthsInMillimetres) {
   expect_one(found(body("a", "0,0,0", true, "100,100,100")), "is 100 m long, 11.1 times the arena");
   EXPECT_TRUE(found(body("a", "0,0,-20", false, "100,100,20")).empty()) << "a ground";
 }
 
-TEST(Doubts, OfJointsThatAreFarAway) {
+TEST(SceneWarnings, OfJointsThatAreFarAway) {
   const auto arm = [](const std::string& x) {
     return R"(<prototype id="p" movable="true"><body position="0,0,0"/><links ref="a"><link id="a" geometry="box" size=".1,.1,.1" mass="1"/>)"
            R"(<link id="b" geometry="box" size=".1,.1,.1" mass="1" position="0.2,0,0"/></links><joints><joint id="j" type="revolute" axis="0,0,1">)"
@@ -90,7 +90,7 @@ TEST(Doubts, OfJointsThatAreFarAway) {
   EXPECT_TRUE(found(arm("0.1")).empty());
 }
 
-TEST(Doubts, OfBodiesThatFloatWithoutGravity) {
+TEST(SceneWarnings, OfBodiesThatFloatWithoutGravity) {
   expect_one(found(body("a", "0,0,1"), "<floor/>"),
              "box \"a\" floats in the air: the scene has no gravity; write <gravity/> into <dynamics3d>, or <gravity g=\"0\"/>");
   EXPECT_TRUE(found(body("a", "0,0,1"), "<floor/><gravity g=\"0\"/>").empty()) << "the scene says so";
@@ -105,21 +105,21 @@ std::string slider(const std::string& limit, const std::string& size) {
          R"("><parent link="a" position="0,0,.1"/><child link="b"/></joint></joints></prototype>)";
 }
 
-TEST(Doubts, OfLimitsAndLinksFarBeyondTheRobot) {
+TEST(SceneWarnings, OfLimitsAndLinksFarBeyondTheRobot) {
   expect_one(found(slider("0:100", ".1,.1,.1")), "has joint \"j\" with a limit of 100 m, 833 times the length of all of its links");
   EXPECT_TRUE(found(slider("0:1", ".1,.1,.1")).empty());
   expect_one(found(slider("0:1", "5,.1,.1")), "has link \"a\" of 5 m, 250 times its next longest");
   EXPECT_TRUE(found(slider("0:1", "3,.1,.1")).empty());
 }
 
-TEST(Doubts, PacketsOfOtherSizesAreANotice) {
+TEST(SceneWarnings, PacketsOfOtherSizesAreANotice) {
   const auto talker = [](const std::string& id, const std::string& x, const std::string& medium, const std::string& size) {
     return robot(id, x + ",0,0", R"(<range_and_bearing medium=")" + medium + R"(" anchor="base" data_size=")" + size + R"("/>)");
   };
   const auto notices = [](const std::string& arena) {
     SmallScene small{R"(<range_and_bearing implementation="default"/>)", "", arena, ground};
     const scene::Scene scene = small.read();
-    return doubts(scene, Simulation(scene, {1}));
+    return scene_warnings(scene, Simulation(scene, {1}));
   };
   const auto found = notices(talker("a", "0", "rab", "10") + talker("b", "1", "rab", "2") + talker("c", "2", "rab", "2"));
   ASSERT_EQ(found.size(), 1u);

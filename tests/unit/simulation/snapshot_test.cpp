@@ -260,9 +260,9 @@ TEST(Snapshot, TakesNoMemoryForElementsThatAreNotThere) {
   const auto memory_for = [](std::uint64_t count) {
     std::vector<std::byte> bytes(sizeof count + 1000);
     std::memcpy(bytes.data(), &count, sizeof count);
-    std::vector<Act> read;
+    std::vector<WorldEdit> read;
     auto archive = math::Archive::reader(bytes);
-    EXPECT_THROW(archive.list("acts", read, [&](Act& each) { archive("xml", each.xml); }), math::ArchiveError);
+    EXPECT_THROW(archive.list("acts", read, [&](WorldEdit& each) { archive("xml", each.xml); }), math::ArchiveError);
     return read.capacity();
   };
   EXPECT_LE(memory_for(1000), 256u) << "each has eight bytes";
