@@ -1,5 +1,5 @@
-// Newton's method on the softened problem: impulses give way about an anchor, the impulses known so
-// far. From the impulses of the last substep a heap at rest takes one step of it.
+// Augmented Lagrangian: Newton's method on the regularised problem about multipliers, the impulses
+// known so far. From the last substep's impulses a heap at rest takes one step.
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace ziggurat::dynamics {
 
-/// out += J^T impulse of a block.
+/// out += J^T impulse of a constraint.
 void add_impulse(const Problem& problem, const Constraint& constraint, const double* impulse,
                  std::vector<double>& out) {
   const auto add_side = [&](int index, int first, std::span<const int> dofs) {
@@ -34,7 +34,7 @@ void add_impulse(const Problem& problem, const Constraint& constraint, const dou
 
 namespace {
 
-/// Whether a block has an impulse.
+/// Whether a constraint has an impulse.
 bool has_impulse(const Constraint& constraint) {
   return std::any_of(constraint.impulse.begin(), constraint.impulse.begin() + constraint.rows,
                      [](double impulse) { return impulse != 0; });
@@ -42,8 +42,8 @@ bool has_impulse(const Constraint& constraint) {
 
 }  // namespace
 
-/// out := p + J^T g - M v, with the joints' damping in M.
-/// @return  the largest change of a coordinate's speed that is missing, about [m/s] or [rad/s]
+/// Momentum residual: out := p + J^T g - M v, with the joints' damping in M.
+/// @return  the largest residual velocity of a coordinate, about [m/s] or [rad/s]
 double momentum_residual(const Problem& problem, std::vector<double>& out) {
   out = problem.momentum;
   for (const Constraint& constraint : problem.constraints) {
@@ -92,7 +92,7 @@ bool is_momentum_balanced(const Problem& problem, std::span<const double> residu
 
 namespace {
 
-/// Impulses of the softened law at speeds.
+/// Sets impulses by the regularised law.
 /// @param linear  out: its linearisations; may be null
 void regularise(Problem& problem, std::span<const std::array<double, Constraint::most_rows>> speeds,
             double regularisation, bool about_multipliers, LinearisedLaw* linear) {
@@ -102,7 +102,7 @@ void regularise(Problem& problem, std::span<const std::array<double, Constraint:
   }
 }
 
-/// The square of the momentum that is missing, over the masses [J].
+/// Squared momentum residual, over the masses [J].
 double square(const Problem& problem, const std::vector<double>& missing) {
   double sum = 0;
   for (std::size_t i = 0; i < missing.size(); ++i) {
@@ -113,10 +113,11 @@ double square(const Problem& problem, const std::vector<double>& missing) {
 
 }  // namespace
 
-/// One step, about the anchors or about none: then what yields carries what it is pressed in by. Speeds must be taken, and are taken at the velocities that it finds.
-/// @param shortest    part of the way; below 1 it goes as far as it leaves less momentum missing
-/// @param unbalanced  out: the largest change of a coordinate's speed that is missing
-/// @return            false if no step does
+/// One step, about the multipliers or about zero. Constraint velocities must be valid, and are
+/// updated.
+/// @param shortest    step length; below 1 with a line search on the momentum residual
+/// @param unbalanced  out: the largest residual velocity of a coordinate
+/// @return            false if no step length reduces the residual
 bool VelocitySolver::augmented_lagrangian_step(Problem& problem, double regularisation, bool about_multipliers, double shortest, double& unbalanced) {
   constexpr double enough = 0.1;
   assemble_mass(problem, matrix_);
@@ -144,8 +145,8 @@ bool VelocitySolver::augmented_lagrangian_step(Problem& problem, double regulari
   return false;
 }
 
-/// Full steps as long as they lead nearer to the law.
-/// @return  whether the miss became small; otherwise the problem holds the best state met
+/// Full steps as long as the residual falls.
+/// @return  whether it became small; otherwise the problem holds the best iterate
 bool VelocitySolver::augmented_lagrangian(Problem& problem, SolverResult& outcome) {
   double scale = 0, unbalanced = 0;
   compute_constraint_velocities(problem);
@@ -176,10 +177,10 @@ bool VelocitySolver::augmented_lagrangian(Problem& problem, SolverResult& outcom
   return enough;
 }
 
-/// Steps that lead nearer to the law: from anchor to anchor, with less softness where few steps
-/// are enough for one, and more where many are not.
-/// What strikes need not be as exact as what stands and must not creep.
-/// @return  whether the miss became small; otherwise the problem holds the best state met
+/// Damped steps of the augmented Lagrangian. The regularisation falls where few steps per
+/// multiplier are enough, and rises where many are not. Impacts need not be as exact as bodies at
+/// rest, which must not creep.
+/// @return  whether the residual became small; otherwise the problem holds the best iterate
 bool VelocitySolver::damped_augmented_lagrangian(Problem& problem, SolverResult& outcome) {
   constexpr int few = 5, many = 15;
   constexpr double hardest = 1e-7, softest = 1, shortest = 1e-4;
@@ -221,8 +222,9 @@ bool VelocitySolver::damped_augmented_lagrangian(Problem& problem, SolverResult&
   return enough;
 }
 
-/// The softened problem about no anchor, less and less soft, so friction is viscous until it slides: what slides by a little, as the
-/// two ends of a wheel's line do, sticks and slides by turns in steps that know of no friction between.
+/// Continuation: the regularised problem without multipliers, with falling regularisation, so
+/// friction is viscous until it slides. Without it contacts that slide slowly, as the two ends of a
+/// wheel's line, alternate between sticking and sliding.
 void VelocitySolver::continuation(Problem& problem, SolverResult& outcome) {
   constexpr double softest = 1, hardest = 1e-5, shortest = 1e-3, balanced = 1e-2;
   constexpr int most = 10;

@@ -5,7 +5,7 @@
 namespace ziggurat::dynamics {
 namespace {
 
-/// One side of a block of R rows.
+/// One side of a constraint of R rows.
 struct Side {
   int index = -1;                   // of its tree in the island
   int dofs = 0;                     // of the tree
@@ -19,14 +19,14 @@ Side side_of(const Problem& problem, int index, int first, std::span<const int> 
   return {index, tree.dofs, problem.jacobian.data() + first, dofs, tree.has_floating_base && begins_with_floating_base(dofs) ? 6 : 0};
 }
 
-/// Whether a block's impulse along row r may change with the speed along row c. Normal and tangents
+/// Whether a constraint's impulse along row r may change with the speed along row c. Normal and tangents
 /// may all; torques change with the normal's speed and those of their own disc.
 constexpr bool depends(int r, int c) {
   return c == 0 || (r < 3 ? c < 3 : (r == 3) == (c == 3) && c >= 3);
 }
 
-/// Adds J^T slope J of a block of R rows to the matrix: to its columns that belong to s, in the
-/// rows of both sides. For any tree.
+/// Adds J^T H J of a constraint of R rows to the matrix: to the columns of side s, in the rows of
+/// both sides. For any tree.
 template <int R>
 void add_any(const Side& s, const Side (&sides)[2], const double* slope,
              std::vector<double>& sloped, BlockMatrix& matrix) {
@@ -105,7 +105,7 @@ void add_leading(const Side& s, const Side (&sides)[2], const double* slope, Blo
   }
 }
 
-/// Adds J^T slope J of a block of R rows to the matrix.
+/// Adds J^T H J of a constraint of R rows to the matrix.
 template <int R>
 void add_slope_of(const Problem& problem, const Constraint& constraint, const double* slope,
                   std::vector<double>& sloped, BlockMatrix& matrix) {

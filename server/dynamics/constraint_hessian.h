@@ -1,6 +1,6 @@
 #pragma once
-// What a block's linearised law adds to the matrix of an island: most of the work of a Newton step
-// of a robot, so sizes are known to the compiler where robots have few joints.
+// Contribution of a constraint's linearised law to the matrix of an island. It is most of the work
+// of Newton's method, so the compiler knows the sizes of robots with few joints.
 
 #include <vector>
 
@@ -9,7 +9,8 @@
 
 namespace ziggurat::dynamics {
 
-/// matrix += J^T slope J, in the blocks of the one or two trees that the block acts on.
+/// matrix += J^T H J, with H the law's Hessian, in the blocks of the trees that the constraint acts
+/// on.
 /// @param memory  to work in
 void add_constraint_hessian(const Problem& problem, const Constraint& constraint, const LinearisedLaw& linear,
                std::vector<double>& memory, BlockMatrix& matrix);

@@ -7,9 +7,9 @@
 namespace ziggurat::dynamics {
 namespace {
 
-constexpr double least_compliance = 1e-8;  // of held speeds, over the mobility
+constexpr double least_compliance = 1e-8;  // of held rows, over the mobility
 
-/// Friction's discs: first row, dimension, bound over the normal impulse.
+/// Friction discs: first row, dimension, bound over the normal impulse.
 struct FrictionDisc {
   int first, size;
   double ratio;
@@ -37,7 +37,7 @@ void linearise_normal(const Constraint& constraint, LinearisedLaw& out) {
   out.constant[0] = constraint.target_velocity[0] / constraint.compliance;
 }
 
-/// Friction within a disc: sticks, or slides with its whole bound against the slip.
+/// Linearises friction within a disc: it sticks, or slides with its whole bound against the slip.
 /// @param normal  part of y, > 0
 void linearise(const Constraint& constraint, const FrictionDisc& disc, const double* y, LinearisedLaw& out) {
   const double bound = disc.ratio * y[0];
@@ -57,7 +57,7 @@ void linearise(const Constraint& constraint, const FrictionDisc& disc, const dou
     out.hessian[row * rows] = disc.ratio * direction[r] * out.hessian[0];
   }
   if (disc.size < 2 || bound <= 0) return;
-  // Across the slip the direction turns with the speed.
+  // Across the slip the direction of friction turns with the velocity.
   const double mobility = constraint.mobility[disc.first];
   const double across = std::min(bound / (length - bound), 1 / least_compliance) / mobility;
   for (int r = 0; r < 2; ++r) {
@@ -93,10 +93,10 @@ int active_rows(const Constraint& constraint) {
   return constraint.law == Constraint::Law::contact ? constraint.rows : constraint.law == Constraint::Law::bounded ? 1 : 0;
 }
 
-/// A contact with friction that does not resist rolling and spinning: most are so.
+/// A contact with sliding friction only: most are so.
 bool is_plain(const Constraint& constraint) { return constraint.rows == 3 && constraint.law == Constraint::Law::contact; }
 
-/// y of one row, see contact_law.h.
+/// The projection's argument y of one row, see contact_law.h.
 double projection_argument(const Constraint& constraint, const double* u, int row) {
   const double give_way = row == 0 ? constraint.compliance * constraint.impulse[0] : 0;
   return constraint.impulse[row] - (u[row] + give_way - constraint.target_velocity[row]) / constraint.mobility[row];
@@ -123,7 +123,7 @@ void linearise_plain(const Constraint& constraint, const double* u, LinearisedLa
   }
   const double length = std::sqrt(square);
   const double direction[2] = {y[0] / length, y[1] / length};
-  // Across the slip the direction turns with the speed.
+  // Across the slip the direction of friction turns with the velocity.
   const double across =
       bound > 0 ? std::min(bound / (length - bound), 1 / least_compliance) / constraint.mobility[1] : 0;
   for (int r = 0; r < 2; ++r) {
@@ -137,7 +137,7 @@ void linearise_plain(const Constraint& constraint, const double* u, LinearisedLa
   }
 }
 
-/// Of a contact without normal force: all its impulses should be none.
+/// Residual of a contact without normal impulse: all its impulses should be zero.
 double residual_without_normal(const Constraint& constraint) {
   double worst = 0;
   for (int r = 0; r < constraint.rows; ++r) {
@@ -146,7 +146,7 @@ double residual_without_normal(const Constraint& constraint) {
   return worst;
 }
 
-/// What the impulses of a plain contact are more than the law's.
+/// Error of the impulses of a contact with plain friction: g - P(y).
 /// @param normal  part of y, > 0
 std::array<double, 3> plain_law_error(const Constraint& constraint, const double* u, double normal) {
   double y[2] = {projection_argument(constraint, u, 1), projection_argument(constraint, u, 2)};

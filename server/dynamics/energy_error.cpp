@@ -10,18 +10,20 @@ namespace {
 
 constexpr double far = 0.1;         // [rad] per substep
 constexpr double least = 1e-10;     // of the kinetic energy
-constexpr double wild = 0.1;        // likewise, of a gain that servos have not made
-constexpr double most_given = 0.1;  // of the joints' energy: more is lost in an impact
+constexpr double wild = 0.1;        // likewise, of a gain without servos
+constexpr double most_given = 0.1;  // of the joints' energy: larger losses are impacts
 
-// The relative error of a substep's energy is about the square of an angle or of a relative change of speed. By how
-// much these may grow in a second, so that short substeps do not add up to more than long ones [1/s]:
+// Bounds per second of squared angle and squared relative change of velocity [1/s]: a substep's
+// relative energy error is about their size. Per second, so that short substeps do not add up to
+// more than long ones.
 constexpr double near = 1e-3;   // the angle, of what is struck
-constexpr double bends = 1e-5;  // the change by Coriolis forces
+constexpr double bends = 1e-5;  // relative change by Coriolis forces
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// Velocities of a free root with which the tree, stiff, has the same momentum and angular momentum.
+/// Velocities of the root with which the tree, as a rigid body, has the same momentum and angular
+/// momentum.
 /// @param energy  then [J]
 Vector6 rigid_motion(const Tree& tree, Workspace& work, double& energy) {
   compute_mass_matrix(tree, work);
@@ -47,13 +49,13 @@ Vector3 mean_velocity(const Tree& tree, double& mass) {
   return momentum / mass;
 }
 
-/// Of the part of the speeds that has this energy, what is left without the excess.
+/// Factor of velocities with this energy that removes the excess.
 double velocity_scale(double energy, double excess) {
   return energy > excess ? std::sqrt(1 - excess / energy) : 0;
 }
 
-/// Whether links turn further than that within a substep.
-/// @param after  velocities that were found;  @param angle  [rad]
+/// Whether links rotate further than an angle within a substep.
+/// @param after  solved velocities;  @param angle  [rad]
 bool rotates(const Tree& tree, std::span<const double> after, double time_step, double angle) {
   const double most = angle * angle / (time_step * time_step);
   for (int k = 0; k < tree.dofs; ++k) {
@@ -64,7 +66,7 @@ bool rotates(const Tree& tree, std::span<const double> after, double time_step, 
   });
 }
 
-/// Whether contacts and servos change a tree's speeds by much.
+/// Whether contacts and servos change a tree's velocities by much.
 /// @param mass  its matrix, dofs x dofs
 bool is_struck(const Tree& tree, const double* mass, std::span<const double> after) {
   constexpr double little = 1e-3;  // of the energy, so to speak
@@ -77,7 +79,8 @@ bool is_struck(const Tree& tree, const double* mass, std::span<const double> aft
   return change > little * all;
 }
 
-/// @param after  velocities that were found
+/// Classifies the error of a tree.
+/// @param after  solved velocities
 EnergyError::Kind kind_of(const Problem& problem, std::size_t i, std::span<const double> after) {
   const Tree& tree = *problem.trees[i];
   if (rotates(tree, after, problem.time_step, far)) return EnergyError::Kind::large_rotation;
@@ -88,8 +91,9 @@ EnergyError::Kind kind_of(const Problem& problem, std::size_t i, std::span<const
   return bent ? EnergyError::Kind::coriolis : EnergyError::Kind::none;
 }
 
-/// What turning alone adds to a momentum that a problem is solved with; work.scratch must have the forces from outside.
-/// @param momentum  of the dof, see predict_momentum();  @param after  velocity of the dof that was found
+/// Impulse of bias forces on a dof, from the momentum that the problem was solved with;
+/// work.scratch must have the external forces.
+/// @param momentum  of the dof, see predict_momentum();  @param after  its solved velocity
 double bias_impulse(const Tree& tree, const Workspace& work, const double* mass, double momentum, double after,
              double time_step, int dof) {
   double before = 0;
@@ -97,16 +101,16 @@ double bias_impulse(const Tree& tree, const Workspace& work, const double* mass,
   return momentum - before - time_step * (work.scratch[dof] + tree.damping[dof] * after);
 }
 
-/// The excess, less the kinetic energy that the tree has at the end; at its state of the beginning.
+/// Energy error, less the tree's final kinetic energy; at its state of the beginning.
 /// @param mass      its matrix, dofs x dofs
 /// @param momentum  that it was solved with, see predict_momentum()
-/// @param after     velocities that were found
+/// @param after     solved velocities
 /// @return          [J]
 double error_before_kinetic(const Tree& tree, Workspace& work, const double* mass,
                      std::span<const double> momentum, std::span<const double> after,
                      double time_step) {
-  // With b = M (after - before) - h (forces) - J^T g, what turning alone adds to the momentum, the work
-  // b (before + after) / 2 and the change of after^T M after / 2 with the pose should cancel.
+  // Bias impulse b = M (after - before) - h (forces) - J^T g. Its work b (before + after) / 2 and
+  // the change of after^T M after / 2 with the pose should cancel.
   work.scratch.resize(tree.dofs);
   external_forces(tree, work, work.scratch, true, true);
   double sum = 0;
@@ -146,8 +150,8 @@ double square_of_free(const Tree& tree, std::span<const unsigned char> held, con
   return sum;
 }
 
-/// The bias forces of a part of a tree's speeds, which stay.
-/// @param of_free  of its free joints, or of all else
+/// Bias forces of a part of a tree's velocities, which stay.
+/// @param of_free  of its free joints, or of all others
 void bias_of_joints(Tree& tree, Workspace& work, std::span<const unsigned char> held, bool of_free,
                   std::vector<double>& speeds, std::vector<double>& out) {
   speeds.assign(tree.v.begin(), tree.v.end());
@@ -161,9 +165,9 @@ void bias_of_joints(Tree& tree, Workspace& work, std::span<const unsigned char> 
   velocity_kinematics(tree);
 }
 
-/// The same of the free joints of a tree that servos hold. What moves as servos tell it has all the power that it
-/// takes; what free joints get of that alone, as centrifugal forces, is no excess: it swings as in a potential. Where
-/// it changes their inertia it does work, half of what the forces say that depend on both, and that is none either.
+/// Energy error of the free joints of a tree with prescribed joints. Servos give all the power that
+/// prescribed motion takes. Its centrifugal forces on free joints act as a potential, and are no
+/// error. The work of forces that depend on both motions counts by half.
 double error_of_free_joints(Tree& tree, Workspace& work, const double* mass, std::span<const double> momentum,
                       std::span<const double> after, double time_step, std::span<const unsigned char> held,
                       IslandEnergyErrors& memory) {
@@ -181,7 +185,7 @@ double error_of_free_joints(Tree& tree, Workspace& work, const double* mass, std
   return sum;
 }
 
-/// The potential energy that a displacement gives a tree, if it is lifted.
+/// Potential energy that a displacement adds to a tree.
 /// @param by  of each dof [m], [rad]
 /// @return    [J], >= 0
 double lift_energy(const Tree& tree, Workspace& work, const double* by) {
@@ -208,8 +212,8 @@ void list_held_dofs(const Problem& problem, std::vector<unsigned char>& held) {
   }
 }
 
-/// The part of a tree's speeds that joints have which nothing holds, and with it the root so that the tree has no
-/// momentum and no angular momentum.
+/// Internal motion: velocities of the free joints, with the root velocity that makes the tree's
+/// momentum and angular momentum zero.
 /// @param of_joints  out: of each dof;  @param momentum  out: that it has, of each dof
 void find_internal_motion(const Tree& tree, Workspace& work, std::span<const unsigned char> held,
                        std::vector<double>& of_joints, std::vector<double>& momentum) {
@@ -236,14 +240,14 @@ void find_internal_motion(const Tree& tree, Workspace& work, std::span<const uns
   add(0, root);
 }
 
-/// Takes energy from the joints that nothing holds, or gives it to them. Momentum and angular momentum stay if the tree
+/// Removes energy from the free joints, or adds it. Momentum and angular momentum stay if the tree
 /// is free.
-/// @param excess  [J]; < 0: what it should get
-/// @return        what it took [J]
+/// @param excess  [J]; < 0: to be added
+/// @return        removed energy [J]
 double correct_joint_energy(Tree& tree, Workspace& work, std::span<const unsigned char> held, double excess) {
   if (std::abs(excess) <= least * kinetic_energy(tree)) return 0;
   find_internal_motion(tree, work, held, work.scratch, work.saved_state);
-  double slope = 0, curve = 0;  // of the energy, along that motion
+  double slope = 0, curve = 0;  // of the energy, along the internal motion
   for (int k = 0; k < tree.dofs; ++k) {
     slope += work.saved_state[k] * tree.v[k];
     curve += work.saved_state[k] * work.scratch[k] / 2;
@@ -256,7 +260,7 @@ double correct_joint_energy(Tree& tree, Workspace& work, std::span<const unsigne
   return square > 0 ? excess : slope * slope / (4 * curve);
 }
 
-/// Takes energy from the free joints of a tree that servos hold, or gives it to them.
+/// Removes energy from the free joints of a tree with prescribed joints, or adds it.
 /// @param before  see EnergyError
 void correct_free_joint_energy(Tree& tree, Workspace& work, std::span<const unsigned char> held, double before) {
   find_internal_motion(tree, work, held, work.scratch, work.saved_state);
@@ -268,7 +272,7 @@ void correct_free_joint_energy(Tree& tree, Workspace& work, std::span<const unsi
   velocity_kinematics(tree);
 }
 
-/// Gives a single body what turning took from it.
+/// Restores a single body's loss of rotational energy.
 /// @param excess  [J]; nothing happens where it is a gain
 void restore_rotation_energy(Tree& tree, double excess) {
   const Vector3 drift = tree.velocity(0);
@@ -279,7 +283,7 @@ void restore_rotation_energy(Tree& tree, double excess) {
   velocity_kinematics(tree);
 }
 
-/// Takes what is left of an excess from all speeds: the world may have turned spinning into flying.
+/// Scales all velocities down to an energy: friction may have turned rotation into translation.
 /// @param most  kinetic energy [J]
 void scale_velocities(Tree& tree, double most) {
   const double all = kinetic_energy(tree);
@@ -340,7 +344,7 @@ void correct_energy(Tree& tree, Workspace& work, const EnergyError& excess, std:
     if (grounded) restore_rotation_energy(tree, sum);
   } else {
     sum -= correct_joint_energy(tree, work, held, sum);
-    if (!grounded && tree.has_floating_base) return;  // its momentum is right, and with that the energy of its turning
+    if (!grounded && tree.has_floating_base) return;  // its momentum is right, and so is the energy of its rotation
   }
   const double most = kinetic_energy(tree) - sum;
   remove_kinetic_energy(tree, work, sum);

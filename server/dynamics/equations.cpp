@@ -26,8 +26,8 @@ Inertia link_inertia(const Tree& tree, int i) {
   return out;
 }
 
-/// What the wrenches on all links do along each dof; leaves in each link's place those of all that
-/// it carries.
+/// Projects the wrenches on all links on each dof. Each link's wrench becomes the sum over its
+/// subtree.
 void project_wrenches(const Tree& tree, Workspace& work, std::span<double> out) {
   for (int i = static_cast<int>(tree.links.size()) - 1; i >= 0; --i) {
     const int first = tree.first_dof[i];
@@ -41,7 +41,7 @@ void project_wrenches(const Tree& tree, Workspace& work, std::span<double> out) 
   }
 }
 
-/// The mass matrix of a free root that carries `inertia`.
+/// Sets the mass matrix of a floating base with a composite inertia.
 void set_root_mass(const Inertia& inertia, double* mass, int n) {
   const Vector3& h = inertia.first_moment;
   const double coupling[3][3] = {{0, -h.z(), h.y()}, {h.z(), 0, -h.x()}, {-h.y(), h.x(), 0}};

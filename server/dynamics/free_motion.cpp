@@ -13,8 +13,8 @@ constexpr double most_rotation = 0.05; // of a Runge-Kutta step of a single body
 constexpr int most_rotation_steps = 8000;      // of one substep, of a single body
 constexpr int most_steps = 4000;      // of one substep, of the longest tree
 constexpr double tolerance = 1e-7;    // of a Dormand-Prince step, relative
-constexpr double most_bias_change = 3e-3;         // relative change of speed that bias forces may make
-constexpr double most_driven_bias_change = 0.045; // its square, where servos hold a tree, over a second [1/s]
+constexpr double most_bias_change = 3e-3;         // relative change of velocity by bias forces
+constexpr double most_driven_bias_change = 0.045; // its square, of trees that servos hold, over a second [1/s]
 
 using Quaternion4 = Eigen::Vector4d;  // w x y z
 
@@ -36,9 +36,9 @@ bool has_equal_inertias(const Vector3& inertia) {
   return most - inertia.minCoeff() <= 1e-12 * most;
 }
 
-/// Turns a single body for a time, without torque: its angular momentum stays.
+/// Rotates a single body without torque: its angular momentum stays.
 /// @param omega  in: at the beginning; out: at the end [rad/s]
-/// @return       how many steps it took
+/// @return       the number of steps
 int integrate_rotation(double* place, const Vector3& inertia, double time_step, Vector3& omega) {
   Quaternion4 q(place[0], place[1], place[2], place[3]);
   const Matrix3 r = rotation_matrix(place);
@@ -109,7 +109,7 @@ void position_rates(const Tree& tree, const double* q, const double* v, double* 
       }
       case JointType::fixed:
         break;
-      case JointType::spherical: {  // q * (0, v) / 2: the speeds are along the turned axes
+      case JointType::spherical: {  // q * (0, v) / 2: velocities are along the body's axes
         const double w = at[0], x = at[1], y = at[2], z = at[3];
         rates[0] = 0.5 * (-x * speed[0] - y * speed[1] - z * speed[2]);
         rates[1] = 0.5 * (w * speed[0] + y * speed[2] - z * speed[1]);
@@ -146,7 +146,8 @@ constexpr double weights[stage_count][6] = {
 constexpr double error_weights[stage_count] = {
     71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
 
-/// One step of the method: stages in `k`, each the rates of q and v; the new state in the tree.
+/// One step of Dormand and Prince: stages in `k`, each the rates of q and v; the new state in the
+/// tree.
 /// @return  the estimated error relative to the tolerance
 double dormand_prince_step(Tree& tree, Workspace& work, const PrescribedJoints& drive, const double* start, double* k, double h) {
   const int positions = static_cast<int>(tree.q.size()), size = positions + tree.dofs;
@@ -159,7 +160,7 @@ double dormand_prince_step(Tree& tree, Workspace& work, const PrescribedJoints& 
     position_rates(tree, tree.q.data(), tree.v.data(), k + stage * size);
     forward_dynamics(tree, work, drive, {k + stage * size + positions, static_cast<std::size_t>(tree.dofs)});
   }
-  double speed = 0;  // the fastest coordinate: small ones need no digits of their own
+  double speed = 0;  // scale of the error: the fastest coordinate
   for (int i = 0; i < tree.dofs; ++i) speed = std::max(speed, std::abs(tree.v[i]));
   double worst = 0;
   for (int i = 0; i < tree.dofs; ++i) {
@@ -175,7 +176,7 @@ double dormand_prince_step(Tree& tree, Workspace& work, const PrescribedJoints& 
   return worst;
 }
 
-/// The impulse of the fields, and of servos that hold speeds.
+/// Applies the impulse of external wrenches and of prescribed velocities.
 void kick(Tree& tree, Workspace& work, double time_step, const PrescribedJoints& drive) {
   const auto acts = [](const Wrench& w) { return !w.moment.isZero(0) || !w.force.isZero(0); };
   if (drive.prescribed.empty() && std::none_of(tree.external.begin(), tree.external.end(), acts)) return;
@@ -190,7 +191,7 @@ void kick(Tree& tree, Workspace& work, double time_step, const PrescribedJoints&
   for (int i = 0; i < tree.dofs; ++i) tree.v[i] = drive.prescribes(i) ? drive.velocity[i] : tree.v[i] + change[i];
 }
 
-/// Steps that a substep of a tree may take: as many links in all of them as some tenths of a second do.
+/// Largest number of steps in a substep: as many link updates as take some tenths of a second.
 int most_steps_of(const Tree& tree) {
   constexpr int all = 800'000;
   return std::clamp(all / static_cast<int>(tree.links.size()), most_steps, 10 * most_steps);
@@ -243,7 +244,7 @@ int integrate_tree(Tree& tree, Workspace& work, double time_step, const Prescrib
   return steps;
 }
 
-/// The momentum that belongs to the velocity after a flight, with the mass matrix of before it.
+/// Momentum of the velocity after free motion, with the mass matrix before it.
 void momentum_by_free_motion(Tree& tree, Workspace& work, double time_step, std::span<double> out) {
   const int n = tree.dofs;
   work.saved_state.assign(tree.q.begin(), tree.q.end());
@@ -258,7 +259,7 @@ void momentum_by_free_motion(Tree& tree, Workspace& work, double time_step, std:
   for (int i = 0; i < n; ++i) {
     out[i] = 0;
     for (int j = 0; j < n; ++j) {
-      // The joints' damping comes with the velocity that it leads to; see problem.h.
+      // Damping of joints is implicit in the final velocity; see problem.h.
       out[i] += work.mass[i * n + j] * work.stages[j];
     }
     out[i] += time_step * tree.damping[i] * work.stages[i];
@@ -279,7 +280,7 @@ int integrate_free_motion(Tree& tree, Workspace& work, double time_step, const P
 
 namespace {
 
-/// What a single body's angular velocity becomes within a substep by its own turning.
+/// Angular velocity of a single body after a substep of torque-free rotation.
 void rotate_freely(const Tree& tree, double time_step, Vector3& omega) {
   const Vector3& inertia = tree.links[0].inertia;
   if (omega.norm() * time_step > most_bias_change) {
@@ -288,7 +289,7 @@ void rotate_freely(const Tree& tree, double time_step, Vector3& omega) {
     integrate_rotation(place, inertia, time_step, omega);
     return;
   }
-  // By the midpoint rule, in the body's axes: its error is of order 3 in the angle. The axes turn, too.
+  // Midpoint rule in the body's axes, with an error of order 3 in the angle. The axes rotate, too.
   const Matrix3& r = tree.rotation[0];
   const auto change = [&](const Vector3& w) -> Vector3 {
     return w.cwiseProduct(inertia).cross(w).cwiseQuotient(inertia);
@@ -329,8 +330,8 @@ void momentum_of_body(const Tree& tree, Workspace& work, double time_step, std::
 void predict_momentum(Tree& tree, Workspace& work, double time_step, bool driven, std::span<double> out) {
   if (tree.is_single_body) return momentum_of_body(tree, work, time_step, out);
   const int n = tree.dofs;
-  // Bias forces turn the velocity and do no work, but an explicit step of them adds the square of
-  // its relative change to the energy: where that matters the substep is flown.
+  // Bias forces do no work, but an explicit step of them adds energy of second order in the
+  // relative change of velocity. Where that matters the substep is a free motion.
   bias_forces(tree, work, work.scratch);
   external_forces(tree, work, out, true, true);
   double energy = 0, change = 0;

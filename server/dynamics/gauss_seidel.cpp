@@ -192,7 +192,7 @@ void GaussSeidel::sweep_sliding(const Rows& point, const Sides& sides) {
   }
 }
 
-/// Any other block: the normal impulse or the only one, then friction of all kinds.
+/// Any other constraint: the normal impulse or the only one, then friction of all kinds.
 template <int A, int B>
 void GaussSeidel::sweep_other(const Rows& point, const Sides& sides) {
   const int na = size_of<A>(sides.size_a), nb = size_of<B>(sides.size_b);

@@ -1,17 +1,15 @@
 #pragma once
-// Sweeps over contacts, accelerated: for islands whose matrix is too expensive to factor, and for
-// those for which nothing else converged.
+// Projected Gauss-Seidel sweeps, accelerated, for islands whose matrix is too expensive to factor,
+// and for those for which no other method converged.
 //
-// Each contact in turn takes the impulses that its law wants with all others as they are
-// (non-smooth Gauss-Seidel: M. Jean, Comput. Methods Appl. Mech. Eng. 177, 1999). What a sweep
-// changes is taken as the residual of a nonlinear conjugate gradient method (M. Silcowitz-Hansen,
-// S. Niebe, K. Erleben, A nonsmooth nonlinear conjugate gradient method for interactive contact
-// force problems, The Visual Computer 26, 2010), which carries an impact through a heap in fewer
-// sweeps.
+// Each contact in turn takes the impulses of its law with all others fixed (non-smooth
+// Gauss-Seidel: M. Jean, Comput. Methods Appl. Mech. Eng. 177, 1999). The change by a sweep is the
+// residual of a nonlinear conjugate gradient method (M. Silcowitz-Hansen, S. Niebe, K. Erleben, The
+// Visual Computer 26, 2010). It carries an impact through a heap in fewer sweeps.
 //
-// Velocities are in coordinates w = C^T v with M = C C^T, in which the mass matrix is 1: an impulse
+// Velocities are in coordinates w = C^T v with M = C C^T, in which the mass matrix is 1. An impulse
 // g of a row j changes w by j g, and the row's speed is j w. So a contact's data is one array that
-// is read once, whatever the bodies are.
+// is read once, for any bodies.
 
 #include <span>
 #include <vector>
@@ -24,7 +22,7 @@ class GaussSeidel {
  public:
   /// Takes over a problem with its impulses; velocities follow from them.
   void start(const Problem& problem);
-  /// Each block once.
+  /// Each constraint once.
   void sweep();
   /// The conjugate direction's step, after a sweep and before another.
   void accelerate();
@@ -49,7 +47,7 @@ class GaussSeidel {
   };
   void factor(const Problem& problem);
   void add(const Problem& problem, const Constraint& constraint, int index);
-  /// The velocities that a block's rows act on.
+  /// The velocities that a constraint's rows act on.
   struct Sides {
     double* a;
     double* b;
@@ -67,9 +65,9 @@ class GaussSeidel {
   std::vector<double> rows_, w_;
   std::vector<double> factors_;  // C of all trees
   std::vector<int> factor_of_;   // of each tree, into factors_
-  // Of each row: its impulse, the speed that it seeks, 1 / (j j^T), j j_normal^T.
+  // Row data: impulse, target velocity, 1 / (j j^T), j j_normal^T.
   std::vector<double> impulses_, target_velocities_, compliances_, inverse_, coupling_;
-  // Of the conjugate directions.
+  // Conjugate directions.
   std::vector<double> impulses_before_, w_before_, direction_, w_direction_, change_;
   double square_ = 0;
 };

@@ -8,8 +8,8 @@
 namespace ziggurat::dynamics {
 namespace {
 
-/// How far a link may swing by itself within a step that is not divided, and how far it does in a part of one that is [rad].
-/// Neighbours swing against each other up to twice as fast, and from 2 on that is unstable.
+/// Largest swing of a link within an undivided step, and within a part of a divided one [rad].
+/// Neighbours swing against each other up to twice as fast, and from 2 rad on that is unstable.
 constexpr double swings_too_far = 0.7, swing_of_a_part = 0.5;
 
 /// Whether a servo or a limit holds a coordinate.
@@ -18,7 +18,8 @@ bool holds_joint(const Constraint& constraint) {
          constraint.impulse[0] < constraint.upper;
 }
 
-/// How many coordinates of joints are free in each tree: what is held all over is a rigid body, and does not swing.
+/// Counts free joint coordinates of each tree. A tree whose joints are all held is a rigid body,
+/// and does not swing.
 /// @return  whether any is
 bool find_unconstrained(const Problem& problem, GeometricStiffness& memory) {
   memory.free.clear();
@@ -29,7 +30,7 @@ bool find_unconstrained(const Problem& problem, GeometricStiffness& memory) {
   return std::ranges::any_of(memory.free, [](int count) { return count > 0; });
 }
 
-/// The impulses of contacts on each link, about its centre of mass.
+/// Adds the impulses of contacts on each link, about its centre of mass.
 void add_contacts(const Problem& problem, std::span<const ContactPoint> contacts, GeometricStiffness& memory) {
   for (const Constraint& constraint : problem.constraints) {
     if (constraint.kind != Constraint::Kind::contact || constraint.impulse[0] == 0) continue;
@@ -46,7 +47,7 @@ void add_contacts(const Problem& problem, std::span<const ContactPoint> contacts
   }
 }
 
-/// Those of forces from outside, and of inertia against the change of speeds.
+/// Adds the impulses of external forces, and of inertia against the change of velocity.
 void add_inertia(const Problem& problem, std::size_t i, GeometricStiffness& memory) {
   const Tree& tree = *problem.trees[i];
   const double* after = problem.velocity.data() + problem.offset[i];
@@ -63,7 +64,7 @@ void add_inertia(const Problem& problem, std::size_t i, GeometricStiffness& memo
   }
 }
 
-/// Those of joints, from the ends to the root.
+/// Adds the impulses of joints, from the leaves to the root.
 void add_joints(const Tree& tree, Vector3* impulse, Matrix3* dyad) {
   for (std::size_t link = tree.links.size() - 1; link > 0; --link) {
     const int parent = tree.links[link].parent;
@@ -79,18 +80,19 @@ Matrix3 stiffness(const Matrix3& dyad) {
   return dyad.trace() * Matrix3::Identity() - (dyad + dyad.transpose()) / 2;
 }
 
-/// Whether a link may swing too far, as if nothing but its own inertia were turned.
+/// Whether a link may swing too far, by its own inertia alone.
 /// @param stiff  h^2 K
 bool may_swing(const Tree& tree, std::size_t link, const Matrix3& stiff) {
   if (tree.links[link].joint == JointType::fixed) return false;
-  // All eigenvalues are below a bound where the rest up to it is positive definite (Sylvester).
+  // All eigenvalues are below a bound if the bound minus the matrix is positive definite
+  // (Sylvester).
   const double bound = swings_too_far * swings_too_far / 4 * tree.links[link].inertia.minCoeff();
   const Matrix3 rest = bound * Matrix3::Identity() - stiff;
   const double minor = rest(0, 0) * rest(1, 1) - rest(0, 1) * rest(0, 1);
   return !(rest(0, 0) > 0 && minor > 0 && rest.determinant() > 0);
 }
 
-/// The square of how fast a link swings while all else moves freely, times its step: of h K [rad^2/s].
+/// Squared swing rate of a link while all others move freely, times its step: of h K [rad^2/s].
 /// @param work  with the tree's factors
 double squared_swing_rate(const Tree& tree, int link, const Matrix3& stiff, const Workspace& work, GeometricStiffness& memory) {
   const Eigen::SelfAdjointEigenSolver<Matrix3> parts(stiff);
@@ -108,7 +110,7 @@ double squared_swing_rate(const Tree& tree, int link, const Matrix3& stiff, cons
   return most;
 }
 
-/// The tree's matrix, where servos and limits hold it against all that pulls, into the workspace's factors.
+/// Factors the tree's matrix with held joints as heavy dofs.
 void factor_with_held_joints(const Problem& problem, std::size_t i, Workspace& work) {
   constexpr double heavy = 1e6;
   const Tree& tree = *problem.trees[i];
@@ -119,7 +121,7 @@ void factor_with_held_joints(const Problem& problem, std::size_t i, Workspace& w
   factor_mass_matrix(tree, work, problem.time_step);
 }
 
-/// How far links of a tree swing in the step, at most [rad].
+/// Largest swing of a tree's links in the step [rad].
 double swing_angle(const Problem& problem, std::size_t i, Workspace& work, GeometricStiffness& memory) {
   const Tree& tree = *problem.trees[i];
   Matrix3* dyad = memory.dyad.data() + memory.first_link[i];

@@ -9,17 +9,19 @@
 namespace ziggurat::dynamics {
 namespace {
 
-/// How far an axis may turn by itself within a step that is not divided, and how far in a part of one that is [rad].
+/// Largest rotation of a nutating axis within an undivided step, and within a part of a divided one
+/// [rad].
 constexpr double too_far = 0.2, of_a_part = 0.12;
-/// Of an island that is divided: a heap need not know.
+/// Largest island that is divided for nutation.
 constexpr std::size_t most_trees = 8;
-/// What is nearer than this touches: a step that is too long for it may say that it lifts off [m].
+/// Gap below which surfaces count as touching: a step that is too long may wrongly separate them
+/// [m].
 constexpr double close = 1e-4;
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// How fast the axis of a body may turn by itself [rad/s]; 0 where it spins about a principal one.
+/// Nutation rate of a body [rad/s]; 0 where it spins about a principal axis.
 /// @param inertia  principal;  @param spin  along these axes
 double nutation(const Vector3& inertia, const Vector3& spin) {
   constexpr double little = 1e-4;  // sine of the angle between spin and angular momentum
@@ -30,8 +32,8 @@ double nutation(const Vector3& inertia, const Vector3& spin) {
   return spin.norm() * (sorted[2] - sorted[0]) / sorted[1];
 }
 
-/// How fast the axis of a tree that turns as one may turn by itself [rad/s].
-/// @param slow  what need not be known
+/// Nutation rate of a tree as one rigid body [rad/s].
+/// @param slow  slower spins count as none
 double nutation_of_whole(const Problem& problem, std::size_t index, double slow) {
   const Tree& tree = *problem.trees[index];
   const Vector3 spin = tree.spatial_velocity[0].angular;
@@ -39,14 +41,15 @@ double nutation_of_whole(const Problem& problem, std::size_t index, double slow)
   const double* mass = problem.mass_of(index);
   Matrix6 root;
   for (int i = 0; i < 6; ++i) root.row(i) = Eigen::Map<const Vector6>(mass + i * tree.dofs);
-  // About the centre of mass: what is left while it moves freely.
+  // Inertia about the centre of mass, which moves freely.
   const Matrix3 coupling = root.topRightCorner<3, 3>();
   const Matrix3 inertia = root.topLeftCorner<3, 3>() - coupling * coupling.transpose() / root(3, 3);
   const Eigen::SelfAdjointEigenSolver<Matrix3> principal(inertia);
   return nutation(principal.eigenvalues(), principal.eigenvectors().transpose() * spin);
 }
 
-/// What a torque on a link changes of its angular velocity, in a plane: the root of the determinant [1/(kg m^2)].
+/// Mobility of a link's rotation in a plane: the root of the determinant of its 2 x 2 block [1/(kg
+/// m^2)].
 /// @param normal  of the plane;  @param work  with the tree's factors;  @param memory  of each dof
 double mobility_across(const Tree& tree, std::size_t link, const Vector3& normal, const Workspace& work, std::vector<double>& memory) {
   const Vector3 one = normal.unitOrthogonal(), other = normal.cross(one);
@@ -62,9 +65,9 @@ double mobility_across(const Tree& tree, std::size_t link, const Vector3& normal
   return std::sqrt(std::max(0.0, one.dot(by_one) * other.dot(by_other) - one.dot(by_other) * other.dot(by_one)));
 }
 
-/// How fast the axes of a tree's rotors may turn by themselves [rad/s]: what turns on a revolute joint, by the most angular momentum
-/// that it has in the step, because a motor may spin it up within one.
-/// @param slow  what need not be known exactly
+/// Nutation rate of a tree's rotors on revolute joints [rad/s], by their largest angular momentum
+/// in the step: a motor may spin them up within one.
+/// @param slow  slower rotors are skipped
 double nutation_of_rotors(const Problem& problem, std::size_t index, double slow, Workspace& work) {
   const Tree& tree = *problem.trees[index];
   double fastest = 0;

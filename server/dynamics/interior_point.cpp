@@ -1,13 +1,13 @@
-// The interior point method for islands that strike: impulses and speeds of every contact stay
-// inside their cones, and the product of both goes to zero. The number of its steps hardly depends
-// on how many contacts there are and which of them hold, stick or slide.
+// Interior point method for islands with impacts. Impulses and speeds of every contact stay inside
+// their cones, and their product goes to zero. The number of steps hardly depends on the number and
+// state of contacts.
 //
-// A contact's impulse z = (mu g_n, g_t) and speed s = (u_n / mu + |u_t|, u_t) lie in the cone
-// x_0 >= |(x_1, x_2)| and have the product 0 where Coulomb's law holds: the term |u_t| is what
-// keeps sliders from lifting off (G. de Saxce, Z.-Q. Feng, Math. Comput. Modelling 28, 1998). Steps
-// are those of Nesterov and Todd with Mehrotra's corrector (L. Vandenberghe, The CVXOPT linear and
-// quadratic cone program solvers, 2010, sections 4 and 5), but with the derivative of |u_t|, which
-// makes the matrix unsymmetric: without it convergence is linear and slow.
+// A contact's impulse z = (mu g_n, g_t) and speed s = (u_n / mu + |u_t|, u_t) lie in the cone x_0
+// >= |(x_1, x_2)|. Their product is 0 where Coulomb's law holds. The term |u_t| keeps sliders from
+// lifting off (G. de Saxce, Z.-Q. Feng, Math. Comput. Modelling 28, 1998).
+// Steps are those of Nesterov and Todd with Mehrotra's corrector (L. Vandenberghe, The CVXOPT
+// linear and quadratic cone program solvers, 2010, sections 4 and 5). They include the derivative
+// of |u_t|, which makes the matrix unsymmetric. Without it convergence is linear and slow.
 
 #include <algorithm>
 #include <cmath>
@@ -43,7 +43,7 @@ Vector3 quotient(const Vector3& a, const Vector3& b) {
   return {x, (b[1] - x * a[1]) / a[0], (b[2] - x * a[2]) / a[0]};
 }
 
-/// How many times d leads from x to the border of the cone, at most 1.
+/// Step length along d from x to the boundary of the cone, at most 1.
 double step_to_cone_boundary(const Vector3& x, const Vector3& d) {
   const double a = d[0] * d[0] - d[1] * d[1] - d[2] * d[2];
   const double b = x[0] * d[0] - x[1] * d[1] - x[2] * d[2];
@@ -93,8 +93,8 @@ void scale_cone(InteriorPointConstraint& c) {
   c.hessian = lifted.inverse();
 }
 
-/// What the change of a block's impulse starts from, where its product is to become `target`.
-/// @param corrects  whether the change before is taken into account
+/// Right side of a constraint's step towards the complementarity product `target`.
+/// @param corrects  with the second-order term of the step before
 void set_right_side(const Constraint& constraint, double target, bool corrects, InteriorPointConstraint& c) {
   if (is_cone(constraint)) {
     Vector3 wanted = -product(c.scaled_point, c.scaled_point);
@@ -112,9 +112,9 @@ void set_right_side(const Constraint& constraint, double target, bool corrects, 
   if (c.upper_dual > 0) c.right_side[0] -= target / (c.upper - c.impulse[0]);
 }
 
-/// |u_t| is convex, so it grows by at least as much as its derivative told. What it grows by more
-/// is added to the speed's first part: that leads deeper into the cone, and no step leaves a residual
-/// that is large beside the products. Such residuals stopped the method in heaps that strike.
+/// Advances the speed of a cone. |u_t| is convex and grows by at least its derivative. The surplus
+/// is added to the speed's first part at once, which leads deeper into the cone. As a residual it
+/// stopped the method in heaps with impacts.
 void advance_cone_speed(double step_length, InteriorPointConstraint& c) {
   const double slip = tangential(c.speed), told = c.slip_gradient.dot(c.speed_step);
   c.speed += step_length * c.speed_step;
@@ -162,7 +162,7 @@ void VelocitySolver::enter_cones(const Problem& problem, double margin) {
   }
 }
 
-/// Linearises all blocks, with the matrix and the residuals.
+/// Linearises all constraints, with the matrix and the residuals.
 /// @return  the mean product of impulse and speed [J]
 double VelocitySolver::linearise_interior_point(Problem& problem) {
   assemble_mass(problem, matrix_);
@@ -208,7 +208,7 @@ double VelocitySolver::linearise_interior_point(Problem& problem) {
   return products / std::max(1, count);
 }
 
-/// The direction to products of `target`, in direction_ and the blocks' changes.
+/// The direction to products of `target`, in direction_ and the constraints' changes.
 /// @param corrects  whether the changes of the direction before are taken into account
 /// @return          how far it goes before one of the impulses or speeds leaves its bounds
 double VelocitySolver::interior_point_direction(Problem& problem, double target, bool corrects) {

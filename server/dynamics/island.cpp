@@ -1,4 +1,4 @@
-// One island in a substep: it flies, or its problem is solved and it moves by the solution.
+// One island in a substep: free motion, or motion by the solution of its problem.
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@
 namespace ziggurat::dynamics {
 namespace {
 
-/// Instead of the contact that pushes a tree.
+/// Values in place of the index of the only contact that acts on a tree.
 constexpr int no_contact = -1, several_contacts = -2;
 
 bool has_free_base(const Tree& tree) {
@@ -35,15 +35,16 @@ Vector6 momentum(const Tree& tree, const double* mass) {
   return out;
 }
 
-/// Where the centre of mass of a floating tree is, from its origin [m].
+/// Centre of mass of a floating tree, from its origin [m].
 /// @param mass  its matrix
 Vector3 centre_of_mass(const Tree& tree, const double* mass) {
   const int n = tree.dofs;
   return Vector3(mass[2 * n + 4], mass[0 * n + 5], mass[1 * n + 3]) / mass[3 * n + 3];
 }
 
-/// Gives a tree that was displaced the momentum that its velocities were before, about its centre of mass: the root's change with
-/// its shape. About another point it would be wrong: what struck something did not move along its velocity.
+/// Restores the momentum about the centre of mass of a tree after its displacement: the root's
+/// velocity changes with the shape. About another point it would be wrong, because a struck body
+/// did not move along its velocity.
 /// @param mass  its matrix before;  @param drift  see predict_momentum()
 void restore_momentum(Tree& tree, Workspace& work, const double* mass, std::span<const double, 6> drift) {
   Vector6 before = momentum(tree, mass);
@@ -71,7 +72,7 @@ void add(const SolverResult& outcome, Report& report) {
   report.residual = std::max(report.residual, outcome.residual);
 }
 
-/// Notes places and speeds of an island's trees.
+/// Saves positions and velocities of an island's trees.
 void save_states(const std::vector<Tree>& trees, std::span<const int> island, std::vector<double>& out) {
   out.clear();
   for (const int number : island) {
@@ -93,7 +94,8 @@ void restore_states(std::vector<Tree>& trees, std::span<const int> island, const
   }
 }
 
-/// Moves a tree of the island. What nothing fixed rubs keeps its momentum, and so does what would gain energy.
+/// Displaces a tree of the island. Without friction of the world it keeps its momentum, and so does
+/// a tree that would gain energy.
 void displace_tree(const Problem& problem, std::size_t i, std::span<const double> by, bool drifts,
               const IslandEnergyErrors& excesses, Workspace& work) {
   Tree& tree = *problem.trees[i];
@@ -111,7 +113,8 @@ void displace_tree(const Problem& problem, std::size_t i, std::span<const double
               !drifts);
 }
 
-/// Moves a tree that flew out of what it overlaps. A single body is not turned, so that its momenta and its energy stay.
+/// Displaces a tree in free motion out of a penetration. A single body is not rotated, so that its
+/// momenta and its energy stay.
 void displace_unconstrained(Tree& tree, std::span<const double> by) {
   if (tree.is_single_body && has_free_base(tree)) {
     integrate_positions(tree, std::array{0.0, 0.0, 0.0, by[3], by[4], by[5]});
@@ -122,7 +125,7 @@ void displace_unconstrained(Tree& tree, std::span<const double> by) {
   velocity_kinematics(tree);
 }
 
-/// Gives back to contacts, servos and limits what they gave, in world axes.
+/// Writes the impulses of contacts, servos and limits, in world axes.
 void write_impulses(const Problem& problem, std::span<ContactPoint> contacts, std::span<Servo> servos, std::span<Limit> limits) {
   for (const Constraint& constraint : problem.constraints) {
     const auto& g = constraint.impulse;
@@ -143,7 +146,8 @@ void write_impulses(const Problem& problem, std::span<ContactPoint> contacts, st
   }
 }
 
-/// Takes the velocities of a solution, and how far they move trees; those that are free have moved.
+/// Applies the velocities of a solution, and computes displacements; unconstrained trees have moved
+/// already.
 void apply_velocities(const Problem& problem, const std::vector<unsigned char>& free, std::vector<double>& step) {
   step.resize(problem.velocity.size());
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
@@ -156,7 +160,8 @@ void apply_velocities(const Problem& problem, const std::vector<unsigned char>& 
   }
 }
 
-/// Notes of each tree the contact that pushes it, or that several do: those of another body, or along another normal.
+/// Finds the contact that acts on each tree, or notes that several do: of another body, or along
+/// another normal.
 void find_only_contacts(const Problem& problem, std::vector<int>& out) {
   constexpr double parallel = 1 - 1e-6;  // cosine of the angle between normals
   out.assign(problem.trees.size(), no_contact);
@@ -172,9 +177,9 @@ void find_only_contacts(const Problem& problem, std::vector<int>& out) {
   }
 }
 
-/// Friction between two that meet within the substep acts when they do. So what turns them, about the points that meet, and what moves
-/// them are one impulse, and angular momentum stays. What is nipped between others moves as it is solved: friction of one contact
-/// balances impulses of another one, and is no part of its motion by itself.
+/// Friction between two bodies that meet within the substep acts at the time of impact. So linear
+/// and angular impulse belong together, and angular momentum stays. Bodies with several contacts
+/// are left out, whose friction balances other contacts' impulses.
 /// @param only  memory
 void wait_for_friction(const Problem& problem, std::span<const ContactPoint> contacts, std::vector<int>& only, std::vector<double>& step) {
   const auto waits = [&](const Constraint& constraint) {
@@ -196,29 +201,29 @@ void wait_for_friction(const Problem& problem, std::span<const ContactPoint> con
   }
 }
 
-/// Whether the world rubs the island.
+/// Whether the island has friction with the world.
 bool has_world_friction(const Problem& problem) {
   return std::ranges::any_of(problem.constraints, [](const Constraint& b) {
     return b.kind == Constraint::Kind::contact && (b.a < 0 || b.b < 0) && b.friction > 0;
   });
 }
 
-/// Whether the world carries it.
+/// Whether a contact with the world supports the island.
 bool is_supported_by_world(const Problem& problem) {
   return std::ranges::any_of(problem.constraints, [](const Constraint& b) {
     return b.kind == Constraint::Kind::contact && (b.a < 0 || b.b < 0) && b.impulse[0] > 0;
   });
 }
 
-/// Whether a motor moves something, however slowly.
+/// Whether a servo within its bounds moves something, however slowly.
 bool has_moving_motors(const Problem& problem) {
-  constexpr double rounding = 1e-7;  // of what a motor holds [m/s], [rad/s]
+  constexpr double rounding = 1e-7;  // of a servo that holds still [m/s], [rad/s]
   return std::ranges::any_of(problem.constraints, [](const Constraint& b) {
     return b.kind == Constraint::Kind::servo && b.is_unsaturated() && std::abs(b.target_velocity[0]) > rounding;
   });
 }
 
-/// Into how many parts the step of an island should be divided for what swings in it.
+/// Number of parts into which an island divides its step for links that rotate until impact.
 int parts_for_rotation(std::span<const RotationUntilImpact> swings, std::span<const int> island) {
   constexpr double most = 0.1;  // in a part [rad]
   double angle = 0;
@@ -243,8 +248,8 @@ bool System::violates_limit(int first_item, int last_item, int of) const {
   });
 }
 
-/// Advances an island where nothing holds it, as far as can be seen.
-/// @return  whether it flew, and hit nothing
+/// Integrates an island without active constraint.
+/// @return  whether it moved freely, and stayed within all limits
 bool System::integrate_free_island(int first_tree, int last_tree, int first_item, int last_item) {
   for (int i = first_item; i < last_item; ++i) {
     if (item_order_[i].kind != limit_item) return false;
@@ -261,7 +266,7 @@ bool System::integrate_free_island(int first_tree, int last_tree, int first_item
   return true;
 }
 
-/// The problem of the trees and items of one island.
+/// Assembles the problem of the trees and items of one island.
 void System::assemble_problem(int first_tree, int last_tree, int first_item, int last_item) {
   problem_.clear();
   problem_.time_step = time_step_;
@@ -292,7 +297,8 @@ void System::assemble_problem(int first_tree, int last_tree, int first_item, int
   }
 }
 
-/// Flies those trees of an island that are free, as far as they stay within the limits of their joints; others are free no more.
+/// Integrates the unconstrained trees of an island, as far as they stay within their limits; the
+/// others become constrained.
 /// @return  whether all did
 bool System::integrate_free_trees(int first_tree, int last_tree, int first_item, int last_item) {
   find_prescribed_joints(problem_, servos_, prescribed_joints_);
@@ -352,7 +358,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
     const std::span<const double> by(displacement_.data() + problem_.offset[i], problem_.trees[i]->dofs);
     if (!is_free_[i]) {
       displace_tree(problem_, i, by, !grounded, energy_errors_, work_);
-    } else if (std::ranges::any_of(by, [](double way) { return way != 0; })) {  // something is pushed out of it
+    } else if (std::ranges::any_of(by, [](double way) { return way != 0; })) {  // another body penetrates it
       displace_unconstrained(*problem_.trees[i], by);
     }
   }

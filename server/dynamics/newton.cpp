@@ -26,7 +26,7 @@ void add_impulse_of(const double* columns, std::span<const int> dofs, const doub
   for (std::size_t e = leading ? 6 : 0; e < dofs.size(); ++e) add(dofs[e]);
 }
 
-/// out += J^T impulse of a block, row by row.
+/// out += J^T impulse of a constraint, row by row.
 void add_rows_of(const Problem& problem, const Constraint& constraint, const double* impulse,
                  std::vector<double>& out) {
   const auto add_side = [&](int index, int first, std::span<const int> dofs) {
@@ -40,7 +40,7 @@ void add_rows_of(const Problem& problem, const Constraint& constraint, const dou
   add_side(constraint.b, constraint.jacobian_b, constraint.dofs_b);
 }
 
-/// A block's impulses by its linearised law.
+/// Sets a constraint's impulses by its linearised law.
 template <int R>
 void set_impulse(const LinearisedLaw& linear, const double* u, Constraint& constraint) {
   for (int r = 0; r < R; ++r) {
@@ -50,7 +50,7 @@ void set_impulse(const LinearisedLaw& linear, const double* u, Constraint& const
   }
 }
 
-/// What the linearised law changes of a block's impulses from speeds u to speeds w.
+/// Changes a constraint's impulses by its linearised law, from velocities u to w.
 template <int R>
 void change_impulse(const LinearisedLaw& linear, const double* u, const double* w, Constraint& constraint) {
   double change[R];
@@ -62,7 +62,7 @@ void change_impulse(const LinearisedLaw& linear, const double* u, const double* 
   }
 }
 
-/// The sum of a block's speeds and impulses, which is no number if one of them is none.
+/// Sum of a constraint's speeds and impulses, NaN if one of them is.
 /// @param scale  grows to the largest speed, or change of speed by an impulse
 template <int R>
 double add_to_scale(const Constraint& constraint, const double* u, double& scale) {
@@ -75,10 +75,11 @@ double add_to_scale(const Constraint& constraint, const double* u, double& scale
   return sum;
 }
 
-/// @param scale      out: the largest of the contacts' speeds, or change of speed by an impulse; of servos and limits
-///                   where nothing touches: a fast wheel does not say how exact contacts must be
+/// Finds the scale of speeds in an island.
+/// @param scale      out: the largest speed of contacts, or change of speed by an impulse; of
+///                   servos and limits if there is no contact
 /// @param of_joints  out: of servos and limits
-/// @return           false if a speed or an impulse is no number
+/// @return           false if a speed or an impulse is not finite
 bool find_scale(const Problem& problem, const Speeds& speeds, double& scale, double& of_joints) {
   double sum = 0;
   scale = of_joints = 0;
@@ -90,10 +91,11 @@ bool find_scale(const Problem& problem, const Speeds& speeds, double& scale, dou
     });
   }
   if (scale == 0) scale = of_joints;
-  return std::isfinite(sum);  // the maxima skip what is no number
+  return std::isfinite(sum);  // the maxima skip NaN
 }
 
-/// @param enough  a miss of more need not be exact
+/// Largest residual of the constraints.
+/// @param enough  larger residuals need not be exact
 double residual_beyond(const Problem& problem, const Speeds& speeds, double enough) {
   double worst = 0;
   for (std::size_t i = 0; i < problem.constraints.size() && worst <= enough; ++i) {
@@ -102,7 +104,7 @@ double residual_beyond(const Problem& problem, const Speeds& speeds, double enou
   return worst;
 }
 
-/// Of all blocks, see contact_law.h [J].
+/// Merit function of all constraints, see contact_law.h [J].
 double merit(const Problem& problem, const Speeds& speeds) {
   double sum = 0;
   for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
@@ -111,14 +113,14 @@ double merit(const Problem& problem, const Speeds& speeds) {
   return sum;
 }
 
-/// Whether masses are so alike that what is little for the speeds of one tree is so for those of another.
+/// Whether masses are so similar that one tolerance of speeds suits all trees.
 bool have_similar_masses(std::span<const double> masses) {
   constexpr double most = 100;  // the heaviest over the lightest
   const auto [least, greatest] = std::ranges::minmax(masses);
   return greatest <= most * least;
 }
 
-/// Of a problem that is not solved yet.
+/// Initial velocities of an unsolved problem.
 InitialVelocities initial_velocities(const Problem& problem) {
   InitialVelocities out;
   for (const Constraint& constraint : problem.constraints) {
@@ -145,7 +147,7 @@ void assemble_mass(const Problem& problem, BlockMatrix& matrix) {
   }
 }
 
-/// The speeds of all blocks at the present velocities.
+/// Computes the velocities u of all constraints at the present velocities.
 void VelocitySolver::compute_constraint_velocities(const Problem& problem) {
   constraint_velocities_.resize(problem.constraints.size());
   for (std::size_t i = 0; i < constraint_velocities_.size(); ++i) {
@@ -153,9 +155,8 @@ void VelocitySolver::compute_constraint_velocities(const Problem& problem) {
   }
 }
 
-/// One step of Newton's method. Speeds must be taken, and are taken at the velocities that it
-/// finds.
-/// @return  false if the matrix has no factors; then nothing has changed
+/// One step of Newton's method. Constraint velocities must be valid, and are updated.
+/// @return  false if the matrix is singular; then nothing has changed
 bool VelocitySolver::newton_step(Problem& problem) {
   kept_velocity_ = problem.velocity;
   assemble_mass(problem, matrix_);
@@ -184,8 +185,8 @@ bool VelocitySolver::newton_step(Problem& problem) {
   return true;
 }
 
-/// One more step with the factors of the last one, for what it left: near the solution the matrix
-/// hardly changes. Speeds must be taken, and are taken at the velocities that it finds.
+/// One step of the simplified Newton method, with the last factors: near the solution the matrix
+/// hardly changes. Constraint velocities must be valid, and are updated.
 void VelocitySolver::simplified_newton_step(Problem& problem) {
   for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
     Constraint& constraint = problem.constraints[i];
@@ -210,9 +211,9 @@ void VelocitySolver::simplified_newton_step(Problem& problem) {
   }
 }
 
-/// At the speeds that were taken.
+/// Residual at the present constraint velocities.
 /// @param scale  out: see find_scale()
-/// @return       infinite if a speed or an impulse is no number
+/// @return       infinite if a speed or an impulse is not finite
 double VelocitySolver::current_residual(const Problem& problem, double& scale) const {
   double of_joints = 0;
   return find_scale(problem, constraint_velocities_, scale, of_joints) ? residual_beyond(problem, constraint_velocities_, HUGE_VAL) : HUGE_VAL;
@@ -241,8 +242,8 @@ void Iterate::backtrack(Problem& problem, double share) const {
   }
 }
 
-/// Halves a step of Newton's method, from `earlier_`, until less is wrong than before.
-/// @param wrong  see merit(): before; out: after
+/// Line search: halves a step of Newton's method from `earlier_` until the merit function falls.
+/// @param wrong  merit before; out: after
 void VelocitySolver::line_search(Problem& problem, double& wrong) {
   constexpr int most = 6;
   const double before = wrong;
@@ -254,11 +255,11 @@ void VelocitySolver::line_search(Problem& problem, double& wrong) {
   }
 }
 
-/// Steps with the factors of the last one.
-/// @return  whether they converged; otherwise the problem holds the best state met
+/// Steps of the simplified Newton method.
+/// @return  whether they converged; otherwise the problem holds the best iterate
 bool VelocitySolver::simplified_newton(Problem& problem, SolverResult& outcome) {
   constexpr int most = 3;
-  constexpr double much = 0.1;  // less: new factors are worth their time
+  constexpr double much = 0.1;  // less progress: new factors are worth their time
   double scale = 0;
   for (int i = 0; i < most; ++i) {
     const double before = outcome.residual;
@@ -266,7 +267,7 @@ bool VelocitySolver::simplified_newton(Problem& problem, SolverResult& outcome) 
     simplified_newton_step(problem);
     outcome.residual = current_residual(problem, scale);
     if (outcome.residual <= options.tolerance(scale)) return true;
-    if (outcome.residual > before) {  // where contacts are redundant it may lead far away
+    if (outcome.residual > before) {  // with redundant contacts it may diverge
       earlier_.restore(problem);
       compute_constraint_velocities(problem);
       outcome.residual = before;
@@ -276,10 +277,10 @@ bool VelocitySolver::simplified_newton(Problem& problem, SolverResult& outcome) 
   return false;
 }
 
-/// Newton's method from the present state, whose speeds are taken. From the third step on it goes only as far as less is
-/// wrong: it went round, as between the two ends of a wheel's line that stick and slide by turns while its motor gives
-/// all that it has.
-/// @param most_stalled_iterations  iterations that lead no nearer and miss the law by much
+/// Newton's method from the present state, whose constraint velocities are computed. From the third
+/// step on it has a line search on the merit function. Without it the method cycles where a
+/// saturated motor's wheel alternates between sticking and sliding.
+/// @param most_far  stalled iterations with a large residual
 /// @return          whether it converged; then the problem holds the solution
 bool VelocitySolver::newton(Problem& problem, SolverResult& outcome, int most_far) {
   double scale = 0, wrong = HUGE_VAL;
@@ -304,7 +305,7 @@ bool VelocitySolver::newton(Problem& problem, SolverResult& outcome, int most_fa
   return false;
 }
 
-/// Shapes the matrix, if it is not too large for that, and keeps the state.
+/// Analyses the matrix, if it is not too large for that, and saves the state.
 /// @return  multiplications that a factorisation takes
 double VelocitySolver::analyse(Problem& problem) {
   start_.save(problem);
@@ -317,7 +318,7 @@ double VelocitySolver::analyse(Problem& problem) {
   return matrix_.work();
 }
 
-/// Whether the velocities and impulses of the last substep still solve the problem.
+/// Whether the last substep's velocities and impulses still solve the problem.
 bool VelocitySolver::is_warm_start_solved(const Problem& problem, SolverResult& outcome) {
   double scale = 0, of_joints = 0;
   compute_constraint_velocities(problem);
@@ -362,7 +363,7 @@ SolverResult VelocitySolver::solve(Problem& problem) {
   const bool found = interior_point(problem, outcome);
   outcome.converged = augmented_lagrangian(problem, outcome);
   if (outcome.converged && found) return outcome;
-  const SolverResult before = outcome;  // where redundant contacts hold each other up, their impulses hide a miss
+  const SolverResult before = outcome;  // large impulses of redundant contacts hide a residual
   start_.save(problem);
   augmented_lagrangian_after_sweeps(problem, outcome);
   if (outcome.residual > before.residual) {
@@ -387,7 +388,7 @@ void VelocitySolver::solve_without_rebound(Problem& problem, Iterate& out) {
 }
 
 bool VelocitySolver::gauss_seidel(Problem& problem, SolverResult& outcome, int most) {
-  constexpr int between = 10;  // sweeps from one look at the miss to the next
+  constexpr int between = 10;  // sweeps between two evaluations of the residual
   gauss_seidel_.start(problem);
   for (int sweep = 1; sweep <= most; ++sweep) {
     ++outcome.sweeps;
@@ -407,8 +408,8 @@ bool VelocitySolver::gauss_seidel(Problem& problem, SolverResult& outcome, int m
   return false;
 }
 
-/// Newton's method from a solution of the softened problem: it misses by more than soft surfaces give way, and would share loads
-/// at random.
+/// Polishes a solution of the regularised problem by Newton's method. Its residual exceeds the
+/// contacts' compliance, and would share loads at random.
 void VelocitySolver::polish(Problem& problem, SolverResult& outcome) {
   const double before = outcome.residual;
   start_.save(problem);
@@ -418,9 +419,9 @@ void VelocitySolver::polish(Problem& problem, SolverResult& outcome) {
   outcome.residual = before;
 }
 
-/// Some sweeps, then the softened problem from where they end. Sweeps find which contacts hold,
-/// stick and slide; where some of them contradict each other a little, as rolling friction and the
-/// two ends of a line do, only the softened problem ends.
+/// Sweeps, then the augmented Lagrangian from their result. Sweeps find which contacts hold, stick
+/// and slide. Where these conflict, as rolling friction and the two ends of a line do, only the
+/// augmented Lagrangian converges.
 bool VelocitySolver::augmented_lagrangian_after_sweeps(Problem& problem, SolverResult& outcome) {
   gauss_seidel_.start(problem);
   for (int sweep = 1; sweep <= options.sweeps_before_augmented_lagrangian; ++sweep) {

@@ -8,10 +8,11 @@
 namespace ziggurat::dynamics {
 namespace {
 
-/// No load presses surfaces in farther, and no more is pushed out in a substep [m].
+/// Largest penetration under load, and largest push-out in a substep [m].
 constexpr double most_penetration = 1e-7;
 
-/// A contact's normal moves by less than this where a coordinate moves by a unit: it is across the way [1], [m].
+/// Largest motion of a contact along its normal, by a unit of a coordinate, that counts as
+/// tangential [1], [m].
 constexpr double tangential_mobility = 1e-9;
 
 /// A right-handed frame whose first column is the normal.
@@ -27,8 +28,8 @@ Matrix3 frame_about(const Vector3& normal) {
   return frame;
 }
 
-/// Whether a limit's lower bound is the one that its joint may reach within a substep: the one that it
-/// passes at its speed, or else the nearer one.
+/// Whether a limit's lower bound is the active one: the bound that the joint's velocity passes
+/// within the substep, or else the nearer one.
 bool reaches_lower_bound(const Limit& limit, double q, double speed, double time_step) {
   const double end = q + time_step * speed;
   if (end < limit.lower || end > limit.upper) return end < limit.lower;
@@ -45,7 +46,7 @@ bool has_normal_mobility(const Problem& problem, const Constraint& constraint) {
   return moves(constraint.a, constraint.jacobian_a, constraint.dofs_a) || moves(constraint.b, constraint.jacobian_b, constraint.dofs_b);
 }
 
-/// Whether a link turns by enough that the ways of its points bend.
+/// Whether a link rotates enough that the paths of its points are curved.
 bool rotates(const Tree& tree, double time_step) {
   constexpr double least = 1e-6;  // [rad]
   return std::ranges::any_of(tree.spatial_velocity, [&](const Motion& motion) {
@@ -53,7 +54,8 @@ bool rotates(const Tree& tree, double time_step) {
   });
 }
 
-/// Whether a link turns so far in a substep that its speeds do not say where its points end.
+/// Whether a link rotates so far in a substep that velocities do not tell the final positions of
+/// its points.
 bool rotates_far(const Motion& motion, double time_step) {
   constexpr double most = 0.2;  // [rad]
   return motion.angular.squaredNorm() * time_step * time_step > most * most;
@@ -115,7 +117,7 @@ int Problem::add_columns(const Tree& tree, int rows) {
   return first;
 }
 
-/// Adds the columns of a contact on one side.
+/// Adds the Jacobian columns of a contact on one side.
 /// @return  where they begin in the Jacobian
 int Problem::add_contact_columns(const Tree& tree, int link, const Vector3& point, const Constraint& constraint,
                       double sign) {
@@ -144,8 +146,8 @@ int Problem::add_contact_columns(const Tree& tree, int link, const Vector3& poin
   return first;
 }
 
-/// About what a unit impulse changes of the speeds, as if the dofs did not couple; equal for the
-/// rows that friction treats alike.
+/// Computes the velocity change by a unit impulse, without coupling of dofs; equal for the rows of
+/// a friction disc.
 void Problem::compute_mobility(Constraint& constraint) const {
   constraint.mobility.fill(0);
   const auto add_side = [&](int index, int first, std::span<const int> dofs) {
@@ -170,14 +172,14 @@ void Problem::compute_mobility(Constraint& constraint) const {
   add_side(constraint.a, constraint.jacobian_a, constraint.dofs_a);
   add_side(constraint.b, constraint.jacobian_b, constraint.dofs_b);
   for (int r = 1; r < constraint.rows; r += r == 3 ? 1 : 2) {
-    if (r == 3) continue;  // turning about the normal is alone
+    if (r == 3) continue;  // rotation about the normal is a disc of its own
     constraint.mobility[r] = constraint.mobility[r + 1] = (constraint.mobility[r] + constraint.mobility[r + 1]) / 2;
   }
   for (int r = 0; r < constraint.rows; ++r) constraint.mobility[r] = std::max(constraint.mobility[r], 1e-12);
 }
 
-/// By how much a link's velocity at a point of contact changes in a second while the speeds of all coordinates stay [m/s^2].
-/// @param tree  its place in the island
+/// Bias acceleration of a link at a point of contact, at dv/dt = 0 [m/s^2].
+/// @param tree  its index in the island
 Vector3 Problem::point_bias_acceleration(int tree, int link, const Vector3& point, const ContactPoint& contact) const {
   const Motion& motion = trees[tree]->spatial_velocity[link];
   if (first_bias_acceleration[tree] < 0 || (rotates_far(motion, time_step) && !contact.has_point_velocity)) return Vector3::Zero();
@@ -187,9 +189,9 @@ Vector3 Problem::point_bias_acceleration(int tree, int link, const Vector3& poin
   return spatial.linear + spatial.angular.cross(arm) + motion.angular.cross(contact.has_point_velocity ? contact.point_velocity : with_it);
 }
 
-/// What a contact that does not rebound seeks. Surfaces that are pressed together give way like stiff springs,
-/// all of a pair alike: so contacts that are more than needed share a load by how far each is pressed in.
-/// How rigid ones share it depends on all that came before.
+/// Sets the target velocity and compliance of a contact without restitution. Touching surfaces are
+/// stiff springs, equal for all points of a pair. So redundant contacts share a load by their
+/// penetration; rigid ones share it by their history.
 void Problem::set_normal_target(Constraint& constraint) const {
   constraint.target_velocity[0] = -constraint.gap / time_step;
   if (compliance_factor == 0) {
@@ -203,8 +205,9 @@ void Problem::set_normal_target(Constraint& constraint) const {
   if (weight > 0) constraint.compliance = std::min(constraint.compliance, most_penetration / (time_step * time_step * weight));
 }
 
-/// Lets what touches stay together where both sides turn: by half of what their points part faster by within the substep while all
-/// coordinates keep their speeds. The normal turns with the side whose face it is, or with both.
+/// Adds half of the gap's second derivative at constant joint velocities to the target velocity,
+/// where both sides rotate: touching points stay together to second order. The normal turns with
+/// the side whose face it is, or with both.
 void Problem::add_rotation_correction(Constraint& constraint, const ContactPoint& contact) const {
   if (first_bias_acceleration[constraint.a] < 0 && first_bias_acceleration[constraint.b] < 0) return;
   const LinkIndex sides[] = {contact.a, contact.b};
@@ -221,14 +224,14 @@ void Problem::add_rotation_correction(Constraint& constraint, const ContactPoint
   }
   for (int r = 1; r < std::min(constraint.rows, 3); ++r) constraint.target_velocity[r] = -time_step / 2 * constraint.frame.col(r).dot(faster);
   const auto far = [&](int i) { return rotates_far(trees[indices[i]]->spatial_velocity[sides[i].link], time_step); };
-  const bool rebounds = contact.restitution > 0;  // then impacts have an order of their own, and energy its bound
+  const bool rebounds = contact.restitution > 0;  // its impact is timed, and its energy bounded
   if (rebounds || (!contact.has_point_velocity && (far(0) || far(1)))) return;
   const Vector3 normal = constraint.frame.col(0);
   const Vector3 normal_turns = contact.has_point_velocity ? contact.face_angular_velocity.cross(normal) : Vector3(turning.cross(normal));
   constraint.gap_acceleration = normal.dot(faster) + normal_turns.dot(speed);
   const double alone = std::max(0.0, constraint.target_velocity[0]);
   constraint.target_velocity[0] -= time_step / 2 * constraint.gap_acceleration;
-  if (constraint.impulse[0] == 0 && !contact.has_point_velocity) constraint.target_velocity[0] = std::min(constraint.target_velocity[0], alone);  // whose face an impact is on is not known
+  if (constraint.impulse[0] == 0 && !contact.has_point_velocity) constraint.target_velocity[0] = std::min(constraint.target_velocity[0], alone);  // the face of an impact is unknown
 }
 
 void Problem::add(const ContactPoint& contact, int a, int b, int source) {
@@ -256,7 +259,7 @@ void Problem::add(const ContactPoint& contact, int a, int b, int source) {
   constraint.kind = Constraint::Kind::contact;
   constraint.source = source;
   constraint.gap = contact.gap;
-  if (!has_normal_mobility(*this, constraint)) {  // what cannot come nearer presses with any impulse, and friction with it: with none
+  if (!has_normal_mobility(*this, constraint)) {  // without normal mobility any normal impulse is a solution: it is zero
     constraint.law = Constraint::Law::off;
     return;
   }
@@ -399,14 +402,14 @@ bool Problem::become_displacement() {
   const auto bounces = [&](const Constraint& constraint) { return rebounded(constraint); };
   const bool rebounding = std::ranges::any_of(constraints, bounces);
   if (!rebounding && std::ranges::none_of(constraints, [&](const Constraint& constraint) { return penetrates(constraint); })) return false;
-  const auto holds = [&](const Constraint& constraint) {  // through the impact: what it holds did not move when it was struck
+  const auto holds = [&](const Constraint& constraint) {  // through the impact: held coordinates did not move before it
     return rebounding && (constraint.kind == Constraint::Kind::servo ? constraint.is_unsaturated() : constraint.impulse[0] > 0);
   };
   for (Constraint& constraint : constraints) {
     if (constraint.law == Constraint::Law::off) continue;
     if (constraint.kind == Constraint::Kind::servo && !holds(constraint)) {
       constraint.law = Constraint::Law::off;
-      constraint.impulse.fill(0);  // sweeps begin with what all impulses do
+      constraint.impulse.fill(0);  // sweeps start from all impulses
       continue;
     }
     const double after = gap_after(constraint);
@@ -416,9 +419,9 @@ bool Problem::become_displacement() {
     constraint.upper = std::numeric_limits<double>::infinity();
     if (constraint.kind == Constraint::Kind::servo) {
       constraint.target_velocity[0] = 0;
-    } else if (bounced) {  // it turned round at the surface, not at the substep's beginning
+    } else if (bounced) {  // it rebounded at the surface, not at the substep's beginning
       constraint.target_velocity[0] = constraint.target_gap - after;
-    } else {  // overlaps go four fifths a substep; the last micrometre stays
+    } else {  // four fifths of a penetration are resolved per substep; the last micrometre stays
       constraint.target_velocity[0] = constraint.gap < 0 ? -0.8 * std::min(0.0, after + allowed_overlap) : -after;
     }
     constraint.compliance = 0;

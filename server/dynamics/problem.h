@@ -1,8 +1,9 @@
 #pragma once
-// The velocity problem of one island in one substep: velocities v and impulses g with
+// The velocity problem of one island in one substep, for velocities v and impulses g:
 //   M v = p + J^T g,   u = J v,   g in the contact law of (u, g).
-// M: mass matrices of its trees at the beginning, with the implicit damping of joints; p: the
-// momentum without the impulses; J: rows that give the speeds u at contacts and servos.
+// M: mass matrices of its trees at the beginning, with the implicit damping of joints. p: momentum
+// without the impulses. J: constraint Jacobian, which gives the velocities u at contacts, servos
+// and limits.
 
 #include <array>
 #include <span>
@@ -15,7 +16,7 @@
 
 namespace ziggurat::dynamics {
 
-/// The rows of one contact (normal; two tangents; turning about normal and tangents) or servo.
+/// Rows of one contact (normal; two tangents; rotation about normal and tangents), servo or limit.
 struct Constraint {
   static constexpr int most_rows = 6;
   enum class Law : unsigned char {
@@ -25,30 +26,30 @@ struct Constraint {
   };
   Law law = Law::off;
   int rows = 0;        ///< 1, 3 or 6
-  int a = -1, b = -1;  ///< places of the trees in the island, or -1
+  int a = -1, b = -1;  ///< indices of the trees in the island, or -1
   int jacobian_a = 0, jacobian_b = 0;  ///< into Problem::jacobian: per dof of the tree, a column of `rows`
   std::span<const int> dofs_a, dofs_b;  ///< that move each side, ascending; other columns are zero
   double friction = 0, spinning_friction = 0, rolling_friction = 0;  ///< bounds over the normal impulse: 1, [m], [m]
   double lower = 0, upper = 0;
-  std::array<double, most_rows> target_velocity{};      ///< the speeds that the impulses seek [m/s], [rad/s]
+  std::array<double, most_rows> target_velocity{};      ///< the velocities that impulses drive to [m/s], [rad/s]
   std::array<double, most_rows> impulse{};   ///< [N s], [N m s]
-  std::array<double, most_rows> mobility{};  ///< about what a unit impulse changes of u
+  std::array<double, most_rows> mobility{};  ///< velocity change by a unit impulse, without coupling of dofs
 
-  double compliance = 0;  ///< of a contact: the speed into each other that a normal impulse leaves [1/kg]
+  double compliance = 0;  ///< of a contact: closing velocity that a normal impulse leaves [1/kg]
 
-  std::array<double, most_rows> multiplier{};  ///< of the softened law, see contact_law.h [N s], [N m s]
+  std::array<double, most_rows> multiplier{};  ///< of the regularised law, see contact_law.h [N s], [N m s]
 
   double gap = 0;                   ///< of contacts and limits [m] or [rad]
-  double gap_acceleration = 0;                  ///< of a contact that turns: by how much faster its surfaces part in a second without forces [m/s^2]
-  double range = 0;                 ///< of a limit: between its bounds [m] or [rad]
+  double gap_acceleration = 0;                  ///< of a contact that rotates: the gap's second derivative without forces [m/s^2]
+  double range = 0;                 ///< of a limit: distance of its bounds [m] or [rad]
   double restitution = 0;           ///< of a contact
-  bool has_impact = false;             ///< a contact that is met within the substep and rebounds
-  double target_gap = 0;                  ///< of one that bounces: the gap at the substep's end [m]
-  double restitution_velocity = 0;                ///< and its speed with which the work of the impact is right [m/s]
-  double impact_time = 0;                   ///< and when, from the substep's beginning [s]
+  bool has_impact = false;             ///< a contact with an impact within the substep, that rebounds
+  double target_gap = 0;                  ///< of an impact: the gap at the substep's end [m]
+  double restitution_velocity = 0;                ///< and the velocity before it that makes its work right [m/s]
+  double impact_time = 0;                   ///< and its time, from the substep's beginning [s]
   Matrix3 frame = Matrix3::Zero();  ///< columns: normal and tangents of a contact
   int source = 0;                   ///< into the contacts, servos or limits of the system
-  /// Of a servo: it does not give all that it has.
+  /// Whether a servo's impulse is strictly within its bounds: then it reaches its target velocity.
   bool is_unsaturated() const { return lower < impulse[0] && impulse[0] < upper; }
   enum class Kind : unsigned char { contact, servo, limit } kind = Kind::contact;
 };
@@ -69,53 +70,55 @@ struct Problem {
   std::vector<double> momentum;  ///< p
   std::vector<double>
       inverse_mass;  ///< of each dof as if it were alone: 1 / M_kk [1/kg] or [1/(kg m^2)]
-  std::vector<Motion> bias_acceleration;                    ///< of each link of the trees that turn, see bias_accelerations()
-  std::vector<int> first_bias_acceleration;                 ///< of each tree, in `bias`; -1: not needed, or it hardly turns
+  std::vector<Motion> bias_acceleration;                    ///< of each link of rotating trees, see bias_accelerations()
+  std::vector<int> first_bias_acceleration;                 ///< of each tree, in `bias_acceleration`; -1: not needed, or it hardly rotates
   std::vector<double> total_mass;              ///< of each tree [kg]
   double weight = 0;                           ///< of all trees [N]
-  std::vector<double> carried;                 ///< memory of solve_velocities(): what carries each tree, times gravity [N s m/s^2]
-  std::vector<Vector3> pressed;                ///< likewise: what contacts gave each tree in the last substep [N s]
+  std::vector<double> carried;                 ///< memory of solve_velocities(): supporting impulse of each tree, times gravity [N s m/s^2]
+  std::vector<Vector3> pressed;                ///< likewise: contact impulse on each tree in the last substep [N s]
   std::vector<double> velocity;                ///< v: start and solution
-  bool has_sequential_impacts = false;                        ///< its impacts were taken in the order of time: they say where all of it ends
-  std::vector<std::pair<int, int>> couplings;  ///< pairs of trees that meet in a block
+  bool has_sequential_impacts = false;                        ///< impacts were resolved in the order of time
+  std::vector<std::pair<int, int>> couplings;  ///< pairs of trees with a common constraint
 
   void clear();
-  /// Adds a tree at the end, with its momentum; it is placed and moved.
+  /// Adds a tree at the end, with its momentum; its kinematics are valid.
   /// @param is_driven  whether servos hold some of its coordinates
   void add(Tree& tree, Workspace& work, bool is_driven);
   /// Mass matrix of a tree, without the joints' damping, row by row.
   const double* mass_of(std::size_t tree) const { return mass.data() + mass_offset[tree]; }
-  /// Places of the trees in the island.
+  /// Adds a constraint between trees of the island, given by their indices.
   void add(const ContactPoint& contact, int a, int b, int source);
   void add(const Servo& servo, int index, int source);
   /// A limit that may be reached within the substep.
   void add(const Limit& limit, int index, int source);
 
-  /// Speeds at a block for the present velocities.
+  /// Velocities u of a constraint at the present solution.
   void constraint_velocity(const Constraint& constraint, double* u) const { constraint_velocity(constraint, u, velocity.data()); }
-  /// For other velocities, of each dof.
+  /// Velocities u at other velocities v of the dofs.
   void constraint_velocity(const Constraint& constraint, double* u, const double* v) const;
-  /// Lets limits hold at that of their bounds which the present velocities pass.
-  /// @return  whether there is one that held at the other
+  /// Switches limits to the bound that the present velocities pass.
+  /// @return  whether one was switched
   bool switch_limits();
-  /// Makes all surfaces as much harder as the last substep's impulses need so as not to press them in too far.
+  /// Reduces the compliance of all contacts so that the last substep's impulses penetrate no deeper
+  /// than allowed.
   void bound_penetration();
   /// Makes all surfaces rigid.
   void make_rigid();
-  /// Of a solved problem: whether a contact was met and rebounded. Between two walls all that it was given may add up to nothing.
+  /// Whether a contact of a solved problem had an impact. Between two walls its impulses may sum to
+  /// zero.
   bool rebounded(const Constraint& constraint) const { return constraint.has_impact && (has_sequential_impacts || constraint.impulse[0] > 0); }
-  /// Whether a surface is pressed in, or a joint beyond its limit, by more than allowed_overlap.
+  /// Whether a contact or limit is violated by more than allowed_overlap.
   bool penetrates(const Constraint& constraint) const { return constraint.kind != Constraint::Kind::servo && constraint.law != Constraint::Law::off && constraint.gap < -allowed_overlap; }
-  /// What the present velocities leave of its gap [m], [rad].
+  /// Gap at the substep's end with the present velocities [m], [rad].
   double gap_after(const Constraint& constraint) const;
-  /// Whether they leave two trees overlapping that do.
+  /// Whether the present velocities leave a penetration between two trees.
   bool leaves_trees_penetrating() const;
 
-  /// Turns the problem into that of the smallest displacement that undoes overlaps: v in [m] and
+  /// Becomes the problem of the smallest displacement that resolves penetration: v in [m] and
   /// [rad], without momentum and friction.
-  /// @return  false if there is nothing to undo
+  /// @return  false if there is no penetration
   bool become_displacement();
-  /// Of such a problem: leaves what rebounds where its velocity takes it, and begins anew.
+  /// Removes the target gaps of impacts from a displacement problem, and starts it anew.
   void leave_rebounds();
 
  private:
@@ -127,7 +130,7 @@ struct Problem {
   void add_rotation_correction(Constraint& constraint, const ContactPoint& contact) const;
 };
 
-/// Calls f with a block's number of rows, as a number that the compiler knows.
+/// Calls f with a constraint's number of rows as a compile-time constant.
 template <class F>
 void dispatch_rows(int rows, F f) {
   switch (rows) {
@@ -140,8 +143,8 @@ void dispatch_rows(int rows, F f) {
   }
 }
 
-/// Whether a side's touched dofs begin with the first six of its tree: those of a free root, or of joints on
-/// the way from a fixed one.
+/// Whether a side's dofs begin with the first six of its tree: those of a floating base, or of the
+/// first joints of a fixed one.
 inline bool begins_with_floating_base(std::span<const int> dofs) { return dofs.size() >= 6 && dofs[5] == 5; }
 
 }  // namespace ziggurat::dynamics

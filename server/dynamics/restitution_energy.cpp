@@ -40,8 +40,9 @@ double push(const Problem& problem, Workspace& work, std::vector<double>& start,
   return sum;
 }
 
-/// What contacts that do not rebound take of the work of pushes: these press, and do not move what is held.
-/// @param change, fall  see push(): of an impulse that holds both, each has its share
+/// Work of pushes that contacts without restitution take up: they transmit load, and hold bodies in
+/// place.
+/// @param change, fall  see push(): an impulse that holds both is divided among them
 double work_held(const Problem& problem, const std::vector<double>& change, const std::vector<double>& fall) {
   double sum = 0;
   for (const Constraint& constraint : problem.constraints) {
@@ -57,8 +58,8 @@ double work_held(const Problem& problem, const std::vector<double>& change, cons
   return sum;
 }
 
-/// What servos do in the substep, of which v is the solution. What they give for the rebounds they give in the impacts, at the speed that they
-/// have then.
+/// Work of servos in the substep, of which v is the solution. Their additional impulses act in the
+/// impacts, at the velocity after them.
 double work_of_servos(const Problem& problem, const Iterate& without) {
   double sum = 0;
   for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
@@ -87,7 +88,8 @@ bool push_throughout(const Problem& problem, const std::vector<double>& start, c
   });
 }
 
-/// What such pushes give: their work on the way, without what a kick at the beginning of each substep has more of it.
+/// Work of distributed pushes along the displacement, less the surplus of an impulse at the
+/// substep's beginning.
 /// @param step  of each dof [rad], [m]
 double work_throughout(const Problem& problem, Workspace& work, const RestitutionEnergy& rebound, const std::vector<double>& step) {
   double sum = 0;
@@ -145,7 +147,7 @@ void scale_velocities(const Problem& problem, double excess) {
   }
 }
 
-/// How much of the way back takes an energy: a t - b t^2 = energy, or where that is the most.
+/// Step length that removes an energy: a t - b t^2 = energy, or where that is largest.
 double way_back(double a, double b, double energy) {
   if (a <= 0) return 0;
   const double square = a * a - 4 * b * energy;
@@ -153,8 +155,8 @@ double way_back(double a, double b, double energy) {
   return std::min(1.0, way);
 }
 
-/// The work of all contacts and limits in the substep, as a function of the share of the way from the solution
-/// without rebound to the present one: at 0, and its first and second derivative, the second halved.
+/// Work of all contacts and limits in the substep, as a quadratic function of the share of the
+/// rebound: value at 0, first derivative, half of the second.
 struct Work {
   double none = 0, slope = 0, curve = 0;  // [J]
   double size = 0;                        // of what is summed

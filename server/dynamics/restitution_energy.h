@@ -1,7 +1,7 @@
 #pragma once
-// Where bodies that are no balls rebound, Newton's law of restitution at each point can add energy: several
-// points strike at once, friction turns the body, or it turns far within the substep. An island takes as much
-// of the way from the impact without rebound to that with it as adds none.
+// Energy bound of restitution. Newton's law at each point can add energy where several points
+// strike at once, friction turns the body, or it rotates far within the substep. An island takes
+// the largest share of its rebound that adds none.
 
 #include <optional>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace ziggurat::dynamics {
 
-/// What bounds the rebounds of an island in a substep.
+/// Energy bound of an island's impacts in a substep.
 struct RestitutionEnergy {
   double most_energy = 0;  ///< kinetic and potential, at the substep's end [J]
   std::optional<double> throughout;   ///< the same without pushes, where these act throughout the substep [J]
@@ -27,16 +27,17 @@ bool rebounds(const Problem& problem);
 /// @param problem  solved, its trees as they were
 void bound_restitution(Problem& problem, VelocitySolver& solver, Workspace& work, RestitutionEnergy& out);
 
-/// Whether what moves rebounds to where they should be lifts bodies by more than they have energy for: several
-/// points of a mechanism that rebound at different times.
-/// @param problem  that of the displacement, solved, its trees with the velocities that they will have; moves them
+/// Whether the displacement to the target gaps lifts bodies by more than their energy allows:
+/// several points of a mechanism that rebound at different times.
+/// @param problem  the displacement problem, solved, its trees with their final velocities; moves
+///                 them
 /// @param step     displacements without it, of each dof [rad], [m]
 bool lifts_too_much(const Problem& problem, Workspace& work, const RestitutionEnergy& rebound,
                     const std::vector<double>& step);
 
-/// Shortens what moves rebounds to where they should be, until it moves nothing by more than it could have moved: points
-/// that strike at different times may ask for what only a large turn satisfies.
-/// @param problem  that of the displacement, solved, its trees with the velocities that they will have
+/// Scales the displacement to the target gaps down to the distance that the change of velocity
+/// allows. Points that strike at different times may ask for a large rotation.
+/// @param problem  the displacement problem, solved, its trees with their final velocities
 void bound_way(Problem& problem, const RestitutionEnergy& rebound);
 
 /// Takes what the rebounds gained all the same, at the substep's end: where bodies turn far, or what undoes overlaps

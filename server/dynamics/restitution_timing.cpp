@@ -44,7 +44,7 @@ void find_carried(Problem& problem) {
   }
 }
 
-/// What a tree falls with [m/s^2].
+/// Acceleration of a tree in free fall [m/s^2]; 0 if it is supported.
 Vector3 fall_of(const Problem& problem, int index) {
   if (index < 0 || !problem.trees[index]->has_floating_base) return Vector3::Zero();
   const Vector3& gravity = problem.trees[index]->gravity;
@@ -52,12 +52,13 @@ Vector3 fall_of(const Problem& problem, int index) {
   return problem.carried[index] > all / 2 ? Vector3(Vector3::Zero()) : gravity;
 }
 
-/// What free fall accelerates the surfaces of a contact apart by [m/s^2].
+/// Relative acceleration of a contact's surfaces in free fall, along the normal [m/s^2].
 double pull_of(const Problem& problem, const Constraint& constraint) {
   return constraint.frame.col(0).dot(fall_of(problem, constraint.a) - fall_of(problem, constraint.b));
 }
 
-/// What pushes give a tree along a direction at the substep's beginning, without what contacts held of it in the last one [m/s].
+/// Velocity change of a tree by pushes along a direction, less the load that contacts held in the
+/// last substep [m/s].
 double push_of(const Problem& problem, int index, const Vector3& along) {
   if (index < 0 || !problem.trees[index]->has_floating_base) return 0;
   double push = 0;
@@ -72,7 +73,7 @@ double kick_of(const Problem& problem, const Constraint& constraint) {
   return push_of(problem, constraint.a, normal) - push_of(problem, constraint.b, normal);
 }
 
-/// How fast the surfaces of a contact part at the substep's beginning, without that [m/s].
+/// Separation velocity of a contact's surfaces at the substep's beginning, without pushes [m/s].
 double parting_of(const Problem& problem, const Constraint& constraint) {
   double u[Constraint::most_rows];
   problem.constraint_velocity(constraint, u);
@@ -113,8 +114,8 @@ void aim(const Problem& problem, Constraint& constraint) {
   aim(problem, constraint, before + kick, pull);
 }
 
-/// Whether a contact is still met when another one, which is met earlier, has rebounded: a ball on a plate does not reach the
-/// floor below that.
+/// Whether a contact still has an impact after an earlier one has rebounded: a ball on a plate does
+/// not reach the floor below that.
 bool is_met_after(const Problem& problem, const Constraint& later, const Constraint& earlier) {
   if (is_large(problem, earlier)) return true;
   const double own = response(problem, earlier, earlier), cross = response(problem, earlier, later);
@@ -139,7 +140,7 @@ bool holds_up(const Problem& problem, const Constraint& constraint) {
   return is_on(constraint.a) || is_on(constraint.b);
 }
 
-/// Whether an impact pushes what another block holds.
+/// Whether an impact pushes what another constraint holds.
 bool disturbs(const Problem& problem, const Constraint& impact, const Constraint& held) {
   constexpr double slight = 1e-3;  // of what it does to itself
   const double cross = std::abs(response(problem, impact, held));
@@ -207,7 +208,8 @@ bool squeeze(const Constraint& one, const Constraint& other) {
   return false;
 }
 
-/// Whether a servo of a solved problem gives all that it has, or a limit holds: then what moves fast is not so for the whole substep.
+/// Whether a servo of a solved problem is saturated, or a limit holds: then fast bodies are not
+/// fast for the whole substep.
 bool is_strained(const Problem& problem) {
   return std::ranges::any_of(problem.constraints, [](const Constraint& constraint) {
     return (constraint.kind == Constraint::Kind::servo && constraint.impulse[0] != 0 && !constraint.is_unsaturated()) ||
@@ -215,8 +217,8 @@ bool is_strained(const Problem& problem) {
   });
 }
 
-/// Lets contacts with restitution that something sets in motion towards each other within the substep rebound, too: as from the speed
-/// that they would have without each other, from the beginning on.
+/// Gives restitution to contacts that close within the substep by motors, pushes or other impacts:
+/// from the closing velocity without these contacts, from the beginning on.
 /// @param problem  solved
 /// @return         whether it must be solved again
 bool aim_what_is_thrown(Problem& problem, VelocitySolver& solver) {

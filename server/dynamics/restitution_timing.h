@@ -5,7 +5,7 @@
 
 namespace ziggurat::dynamics {
 
-/// Solves an island's problem, all of whose blocks are there, for its velocities. Contacts with restitution seek the speeds with
+/// Solves an island's problem, all of whose constraints are there, for its velocities. Contacts with restitution seek the speeds with
 /// which they rebound.
 ///
 /// What carries a body still does in the impact; what nothing carries falls freely before and after it. A push that

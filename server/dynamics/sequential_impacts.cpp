@@ -16,7 +16,8 @@ constexpr double still = 1e-9;  // what is slower does not come nearer [m/s]
 using Row = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_dofs_struck, 1>;
 using Mass = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, most_dofs_struck, most_dofs_struck>;
 
-/// Of a block's first speed, for a tree: zero if it is not a side of it.
+/// Jacobian row of a constraint's first velocity for a tree: zero if the constraint does not act on
+/// it.
 Row row_of(const Problem& problem, const Constraint& constraint, int tree) {
   Row row = Row::Zero(problem.trees[tree]->dofs);
   const auto add = [&](int index, int first) {

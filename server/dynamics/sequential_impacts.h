@@ -7,7 +7,7 @@
 
 namespace ziggurat::dynamics {
 
-/// Of a tree whose responses are worked out.
+/// Largest tree whose responses are computed.
 inline constexpr int most_dofs_struck = 32;
 
 /// A contact with restitution that may be met within a substep.
@@ -17,8 +17,8 @@ struct RestitutionContact {
   double pull = 0;   ///< what free fall accelerates its surfaces apart by [m/s^2]
 };
 
-/// What a unit of a block's first impulse changes of another block's first speed [1/kg]. The first one's trees have no more than
-/// `most_dofs_struck`.
+/// Velocity change of a constraint's first row by a unit impulse of another's first row [1/kg]. The
+/// first one's trees have no more than `most_dofs_struck`.
 double response(const Problem& problem, const Constraint& impulse, const Constraint& speed);
 
 /// Lets impacts take place in the order of time, those of one moment together, and has their contacts seek the speeds and gaps that

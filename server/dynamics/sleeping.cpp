@@ -1,4 +1,4 @@
-// Islands that rest sleep: which do, and what wakes them.
+// Sleep of islands, and events that wake them.
 
 #include <algorithm>
 #include <bit>
@@ -10,14 +10,14 @@
 namespace ziggurat::dynamics {
 namespace {
 
-/// A hash of numbers, one after the other: it changes with each of them.
+/// Combines a hash with a number.
 std::uint64_t hash_combine(std::uint64_t hash, double number) {
   const double unsigned_zero = number + 0.0;
   hash = (hash ^ std::bit_cast<std::uint64_t>(unsigned_zero)) * 0x9E3779B97F4A7C15U;
   return hash ^ (hash >> 29);
 }
 
-/// Whether all coordinates of an island are so slow that it rests.
+/// Whether all coordinates of an island are below the bounds of sleep.
 /// @param island  numbers of its trees
 bool is_slow(const std::vector<Tree>& trees, std::span<const int> island, const SleepOptions& rest) {
   for (const int number : island) {
@@ -30,7 +30,7 @@ bool is_slow(const std::vector<Tree>& trees, std::span<const int> island, const 
   return true;
 }
 
-/// Whether an island's kinetic energy is what the miss of its solution may have given it.
+/// Whether the residual of an island's solution explains its kinetic energy.
 bool is_below_residual(const std::vector<Tree>& trees, std::span<const int> island, const SleepOptions& rest,
               double miss) {
   double energy = 0, mass = 0;
@@ -41,12 +41,12 @@ bool is_below_residual(const std::vector<Tree>& trees, std::span<const int> isla
     if (!(2 * its <= own * rest.swept_fastest * rest.swept_fastest)) return false;
     energy += its, mass += own;
   }
-  constexpr double some = 3;  // each is pushed by the misses of several contacts
+  constexpr double some = 3;  // several contacts' residuals add up on a body
   const double most = std::min(some * miss, rest.swept_velocity);
   return 2 * energy <= mass * most * most;
 }
 
-/// How much faster a point of a link may become within a substep by what pushes its tree.
+/// Velocity change of a point of a link by the tree's wrenches within a substep.
 /// @param reach  distance of the point from the tree's origin [m]
 double wrench_velocity_change(const Tree& tree, double reach, double time_step) {
   double sum = 0;
@@ -59,7 +59,7 @@ double wrench_velocity_change(const Tree& tree, double reach, double time_step) 
   return time_step * sum;
 }
 
-/// The same by a servo that reaches its speed.
+/// Velocity change of a point by a servo that reaches its target.
 double servo_velocity_change(const Tree& tree, const Servo& servo, const Vector3& point) {
   const Motion axis = servo.dof >= 0 ? tree.motion_subspace[servo.dof] : servo.direction;
   const double now = servo.dof >= 0 ? tree.v[servo.dof]
@@ -106,7 +106,7 @@ void System::clear_wrenches() {
   });
 }
 
-/// Whether what acts on a sleeper is no longer what it was.
+/// Whether wrenches or commands of a sleeper have changed.
 bool System::has_changed_load(int index) const {
   const SleepState& sleeper = sleep_states_[index];
   if (sleeper.command != sleeper.command_asleep) return true;
@@ -138,7 +138,7 @@ bool System::comes_to_touch(const ContactPoint& contact) const {
     faster += wrench_velocity_change(tree, (contact.point - tree.origin).norm(), time_step_);
   }
   if (wake_flags_[mover] & commanded) {
-    const auto is_its = [&](int i) {  // what it had before may be the servo of another now
+    const auto is_its = [&](int i) {  // its old servo's number may belong to another tree now
       return i >= 0 && i < static_cast<int>(servos_.size()) && servos_[i].tree == mover;
     };
     for (int i = sleep_states_[mover].first_servo; is_its(i); i = next_servo_[i]) {
@@ -148,7 +148,7 @@ bool System::comes_to_touch(const ContactPoint& contact) const {
   return contact.gap + time_step_ * (apart - faster) < 1e-5;
 }
 
-/// One number per tree that changes with the commands of its servos, and which they are.
+/// Hashes the commands of each tree's servos, and lists its servos.
 void System::hash_servo_commands() {
   for (const Servo& servo : servos_) {
     if (servo.tree < 0) continue;
@@ -199,9 +199,9 @@ bool System::wake_disturbed(double time_step, std::span<ContactPoint> contacts, 
   return woke;
 }
 
-/// Lets an island sleep that has been at rest for long enough.
-/// @param carried     whether the world carries it
-/// @param swept_miss  by how much its solution misses the law, if it was only swept [m/s]; else 0
+/// Lets an island sleep that has been below the bounds for long enough.
+/// @param carried     whether the world supports it
+/// @param swept_miss  residual of its solution if it was only swept [m/s]; else 0
 void System::update_sleep(int first_tree, int last_tree, bool carried, double swept_miss) {
   if (!sleeping.enabled) return;
   const std::span<const int> island(tree_order_.data() + first_tree,

@@ -10,7 +10,7 @@
 namespace ziggurat::dynamics {
 namespace {
 
-/// The order of contacts in an island: it depends on the island alone.
+/// Order of contacts in an island: it depends on the island alone.
 bool is_earlier(const ContactPoint& a, const ContactPoint& b) {
   const auto key = [](const ContactPoint& c) {
     return std::tuple(c.a.tree, c.b.tree, c.a.link, c.b.link, c.point.x(), c.point.y(), c.point.z(), c.gap);
@@ -18,7 +18,7 @@ bool is_earlier(const ContactPoint& a, const ContactPoint& b) {
   return key(a) < key(b);
 }
 
-/// The tree that leads those which one is joined with.
+/// Root of a tree's set in the union-find forest.
 int island_root(int tree, std::vector<int>& parent) {
   while (parent[tree] != tree) tree = parent[tree] = parent[parent[tree]];
   return tree;
@@ -40,7 +40,7 @@ void IslandsToSubdivide::add(std::span<const int> of_island, int parts) {
   trees.insert(trees.end(), of_island.begin(), of_island.end());
 }
 
-/// Sorts trees that are awake and what acts on them by island; islands by their first tree.
+/// Sorts awake trees and their constraints by island; islands by their first tree.
 void System::build_islands() {
   parent_.resize(trees.size());
   island_.resize(trees.size());
@@ -100,7 +100,7 @@ void System::build_islands() {
   }
 }
 
-/// Those that take part.
+/// Lists the active trees that are awake.
 void System::list_awake() {
   awake_.clear();
   for_each_active([&](int tree) {
@@ -108,10 +108,10 @@ void System::list_awake() {
   });
 }
 
-/// Asks for the memory of the islands after one: for the trees of the second, and, when they are there,
-/// for all that the first is made of.
+/// Prefetches the memory of the islands after one: the trees of the second, and all data of the
+/// first.
 void System::prefetch_after(std::size_t island) const {
-  constexpr int most = 4;  // trees or items: a large island does not fit anyway
+  constexpr int most = 4;  // trees or items: a large island exceeds the cache anyway
   const auto each = [](const std::vector<int>& first, std::size_t i, auto visit) {
     if (i + 1 >= first.size()) return;
     for (int k = first[i]; k < std::min(first[i + 1], first[i] + most); ++k) visit(k);

@@ -24,7 +24,8 @@ int position_count_of(JointType joint) {
   }
 }
 
-/// q := q turned by `turn`, on its right side (about the turned axes) or left (about the fixed).
+/// Rotates a quaternion by the vector `turn`: q * exp(turn) about its own axes, or exp(turn) * q
+/// about the fixed ones.
 void rotate_quaternion(double* q, const Vector3& turn, bool right) {
   const Quaternion before(q[0], q[1], q[2], q[3]);
   const Quaternion by = exponential(turn);
@@ -44,7 +45,7 @@ void root_kinematics(Tree& tree, const math::Pose& fixed) {
   tree.position[0] = tree.origin = Vector3(q[0], q[1], q[2]);
 }
 
-/// Of trees that were taken apart.
+/// Model of cleared trees.
 const std::shared_ptr<const TreeModel>& empty_model() {
   static const auto mechanism = [] {
     std::vector<Link> links(1);
@@ -99,7 +100,7 @@ TreeModel::TreeModel(std::vector<Link> with, unsigned with_freedoms)
   is_single_body = size == 1 && has_floating_base;
 }
 
-/// The dofs on the way to each link.
+/// Lists the dofs between the root and each link.
 void TreeModel::list_ancestor_dofs() {
   for (std::size_t i = 0; i < links.size(); ++i) {
     const auto begin = static_cast<std::ptrdiff_t>(ancestor_dofs.size());
@@ -176,7 +177,7 @@ bool Tree::share_model(const Tree& other) {
   return true;
 }
 
-/// The state at rest, with memory for what follows from it.
+/// Sets the state to rest, with memory for all results.
 void Tree::reset_state() {
   const std::size_t size = links.size();
   q.assign(static_cast<std::size_t>(model_->position_count), 0);

@@ -11,7 +11,7 @@
 
 namespace ziggurat::dynamics {
 
-/// How a link moves in its parent.
+/// Joint between a link and its parent.
 enum class JointType : std::uint8_t {
   floating,   ///< the root of a tree that moves: up to six degrees of freedom in the world
   fixed,      ///< the root of a tree that stands on the world
@@ -34,13 +34,13 @@ struct Link {
   bool operator==(const Link& other) const;
 };
 
-/// Freedoms of a floating root: bits of turning about x, y, z and moving along x, y, z of the
+/// Freedoms of a floating root: bits of rotation about x, y, z and translation along x, y, z of the
 /// world.
 constexpr unsigned all_freedoms = 0b111111;
 constexpr unsigned upright_freedoms = 0b111100;  ///< turns about z only
 constexpr unsigned planar_freedoms = 0b011100;   ///< as well, and keeps its height
 
-/// How a tree is built: what does not change.
+/// Constant data of a tree.
 struct TreeModel {
   TreeModel(std::vector<Link> links, unsigned freedoms);
 
@@ -56,8 +56,9 @@ struct TreeModel {
   std::vector<int> ancestor_dofs;         ///< the dofs from the root to each link, one after the other
   std::vector<int> ancestor_dofs_end;      ///< of each link, into `ways`
   std::vector<int> dof_numbers;   ///< 0, 1, … dofs - 1
-  /// Of each dof: whether it turns a link that carries no other and is round about the axis. Then the tree's mass does not depend on its
-  /// place, and its motion does nothing to the link's angular momentum along the axis.
+  /// Symmetric rotors, for each dof: its joint turns a link without children that is symmetric
+  /// about the axis. Then the mass matrix does not depend on the angle, and other motion leaves the
+  /// link's axial angular momentum unchanged.
   std::vector<unsigned char> is_symmetric_rotor;
   std::vector<Matrix3> joint_in_parent_rotation, link_in_joint_rotation;  ///< rotations X_PJ and X_JL of each link
   bool has_floating_base = false;  ///< floating with all six freedoms: dofs 0 to 5 are the world's axes
@@ -73,10 +74,10 @@ class Tree {
   /// @param root      pose of link 0 in the world
   /// @param freedoms  of a floating root
   Tree(std::vector<Link> links, const math::Pose& root, unsigned freedoms = all_freedoms);
-  /// One that is built like another.
+  /// Builds a tree that shares another's model.
   Tree(const Tree& like, const math::Pose& root);
 
-  // What does not change: see TreeModel, to which these refer.
+  // Constants: views of the TreeModel.
   std::span<const Link> links;
   unsigned freedoms = 0;
   int dofs = 0;
@@ -94,35 +95,34 @@ class Tree {
   /// axes, as far as it has the freedoms; joints: their speeds. [rad/s], [m/s]
   std::vector<double> v;
 
-  // What acts in the coming substep.
+  // Forces of the coming substep.
   Vector3 gravity{0, 0, 0};  ///< acceleration of all links, world axes [m/s^2]
-  /// Of each link, torque and force at its centre of mass, world axes [N m], [N]: of fields, which
-  /// change with the place. They act as one impulse at the beginning, so that the substep is
-  /// symplectic: stiff fields stay stable where a Taylor step would pump energy into them.
+  /// External wrench on each link at its centre of mass, world axes [N m], [N]. It acts as one
+  /// impulse at the beginning, so that the substep is symplectic. A Taylor step would pump energy
+  /// into stiff fields.
   std::vector<Wrench> external;
-  /// The same when it fell asleep: what it rests under.
+  /// External wrenches when the tree fell asleep.
   std::vector<Wrench> external_at_sleep;
 
-  // What follows from q, by forward_kinematics().
+  // Results of forward_kinematics(), from q.
   std::vector<Matrix3> rotation;  ///< of each link in the world
   std::vector<Vector3> position;  ///< of each link's centre of mass in the world [m]
-  std::vector<Motion> motion_subspace;       ///< of each dof: the motion that its unit speed gives, about O
+  std::vector<Motion> motion_subspace;       ///< of each dof: motion vector of its unit speed, about O
   Vector3 origin{0, 0, 0};        ///< O: the root's centre of mass [m]
 
-  // What follows from v as well, by velocity_kinematics().
+  // Results of velocity_kinematics(), from q and v.
   std::vector<Motion> spatial_velocity;  ///< of each link, about O
 
-  double integrator_step = 0;  ///< the step that the integrator would take next [s]
+  double integrator_step = 0;  ///< the integrator's next step [s]
 
-  /// The state: what the next substep reads.
+  /// Archives the state: all that the next substep reads.
   void archive(math::Archive& archive);
 
-  /// Uses another's mechanism if it is the same: what many trees have in common is in memory, and
-  /// in the caches, once.
+  /// Shares another tree's model if it is equal, so that memory and caches hold it once.
   /// @return  whether it is
   bool share_model(const Tree& other);
 
-  /// Leaves one link that is fixed to the world: nothing that moves. Takes no memory.
+  /// Becomes one link that is fixed to the world, without dofs. Takes no memory.
   void clear() noexcept;
 
   std::span<const int> dofs_of(int link) const;   ///< that move a link, ascending
@@ -141,15 +141,16 @@ class Tree {
   friend void forward_kinematics(Tree& tree);
 };
 
-/// Asks for the memory of a tree's state and of what follows from it: see prefetch.h.
+/// Prefetches a tree's state and kinematics: see prefetch.h.
 void prefetch(const Tree& tree);
 
-/// Poses, axes and origin from q.
+/// Forward kinematics: poses, motion subspaces and origin from q.
 void forward_kinematics(Tree& tree);
-/// Motions of links from v; needs forward_kinematics().
+/// Velocity kinematics: spatial velocities of links from v; needs forward_kinematics().
 void velocity_kinematics(Tree& tree);
 
-/// q moved by the displacement `step` in the coordinates of v: turns by the exponential map.
+/// Integrates positions: q moves by a displacement in the coordinates of v, rotations by the
+/// exponential map.
 /// @param step  [rad], [m]
 void integrate_positions(Tree& tree, std::span<const double> step);
 

@@ -7,23 +7,24 @@
 namespace ziggurat::dynamics {
 namespace {
 
-/// How fast a contact pushes out what is pressed in, without what it asks for because its surfaces turn [m/s].
+/// Velocity at which a contact resolves its penetration, without the correction for rotation [m/s].
 double push_out_velocity(const Problem& problem, const Constraint& constraint) { return constraint.target_velocity[0] - problem.time_step / 2 * std::max(0.0, -constraint.gap_acceleration); }
 
-/// Whether it may do no more than that.
+/// Whether a contact's impulse is small enough to be that of resolving a penetration.
 bool may_only_push_out(const Problem& problem, const Constraint& constraint) {
   const double out = push_out_velocity(problem, constraint);
   return constraint.compliance > 0 && out > 0 && std::abs(constraint.impulse[0]) * constraint.mobility[0] <= 2 * out;
 }
 
-/// Whether a block does more, or a joint is beyond its limit, as a scene may begin.
+/// Whether a constraint has a larger impulse, or a joint violates its limit, as at the start of a
+/// scene.
 bool holds(const Problem& problem, const Constraint& constraint) {
   return (constraint.impulse[0] != 0 && !may_only_push_out(problem, constraint)) ||
          (constraint.kind == Constraint::Kind::limit && constraint.gap < -problem.allowed_overlap);
 }
 
-/// Whether bodies would pass through a surface on the way that gravity bends, though their speed at its end does not say so:
-/// what a push nearly carries.
+/// Whether bodies cross a surface on the parabola of free fall, though their final velocity does
+/// not say so.
 bool crosses_surface(const Problem& problem, const Constraint& constraint) {
   if (constraint.kind != Constraint::Kind::contact) return false;
   const auto fall = [&](int index) -> Vector3 {
@@ -31,13 +32,13 @@ bool crosses_surface(const Problem& problem, const Constraint& constraint) {
     return problem.trees[index]->gravity;
   };
   const double pull = constraint.frame.col(0).dot(fall(constraint.a) - fall(constraint.b));
-  if (pull <= 0) return false;  // as for all that lies on something
+  if (pull <= 0) return false;  // as of all supported bodies
   double u[Constraint::most_rows];
   problem.constraint_velocity(constraint, u);
   return constraint.gap + problem.time_step * (u[0] - problem.time_step / 2 * pull) < -problem.allowed_overlap;
 }
 
-/// Finds the velocity of a tree that nothing touches.
+/// Finds the velocity of a tree without constraints.
 void find_free_velocity(const Problem& problem, int index, Workspace& work, UnconstrainedVelocities& out) {
   if (index < 0 || std::exchange(out.is_known[index], 1)) return;
   const Tree& tree = *problem.trees[index];
@@ -48,10 +49,10 @@ void find_free_velocity(const Problem& problem, int index, Workspace& work, Unco
   solve_mass_matrix(tree, work, velocity);
 }
 
-/// Whether surfaces that are pressed together would come closer without the contact. What it gives says little: of many contacts each
-/// gives a part of what holds.
+/// Whether penetrating surfaces would approach without the contact. Its impulse tells little:
+/// redundant contacts share the load.
 bool closes_without_contact(const Problem& problem, const Constraint& constraint, Workspace& work, UnconstrainedVelocities& memory) {
-  constexpr double slow = 1e-3;  // of the speed that it is pushed out with
+  constexpr double slow = 1e-3;  // of the push-out velocity
   find_free_velocity(problem, constraint.a, work, memory);
   find_free_velocity(problem, constraint.b, work, memory);
   double u[Constraint::most_rows];
@@ -81,7 +82,7 @@ std::size_t find_unconstrained(const Problem& problem, std::span<const Servo> se
     if (constraint.impulse[0] == 0 || !may_only_push_out(problem, constraint) || !(is_free(constraint.a) || is_free(constraint.b))) continue;
     if (closes_without_contact(problem, constraint, work, memory)) touch(constraint);
   }
-  for (std::size_t before = count + 1; 0 < count && count < before;) {  // what one of two gets the other one gets, too
+  for (std::size_t before = count + 1; 0 < count && count < before;) {  // an impulse acts on both of its trees
     before = count;
     for (const Constraint& constraint : problem.constraints) {
       if (constraint.impulse[0] != 0 && constraint.a >= 0 && constraint.b >= 0 && out[constraint.a] != out[constraint.b]) touch(constraint);

@@ -1,5 +1,6 @@
 #pragma once
-// Which trees of an island nothing holds: they may fly, and so move by an integrator of second order.
+// Trees of an island without active constraints: they move freely, by an integrator of higher
+// order.
 
 #include <span>
 #include <vector>
@@ -8,21 +9,21 @@
 
 namespace ziggurat::dynamics {
 
-/// Velocities at the substep's end if nothing touched, of the trees of an island that were asked for.
+/// Velocities at the substep's end without constraints, of some trees of an island.
 struct UnconstrainedVelocities {
   std::vector<double> velocity;           ///< of each dof, as Problem::velocity
   std::vector<unsigned char> is_known;    ///< of each tree
 };
 
-/// Notes which trees of an island nothing but motors of joints acts on: what they come near does not hold them, and what they
-/// overlap only pushes them out.
+/// Finds the trees of an island on which no constraint but motors of joints acts. Contacts without
+/// impulse do not hold them, nor do those that only resolve an overlap.
 /// @param problem  solved
 /// @param memory   to work in
-/// @return         how many
+/// @return         their number
 std::size_t find_unconstrained(const Problem& problem, std::span<const Servo> servos, Workspace& work, UnconstrainedVelocities& memory,
                       std::vector<unsigned char>& out);
 
-/// Contacts of trees that fly gave nothing.
+/// Clears the impulses of contacts between unconstrained trees.
 /// @param free  see find_unconstrained()
 void clear_contact_impulses(Problem& problem, std::span<const unsigned char> free);
 

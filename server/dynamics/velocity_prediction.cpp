@@ -1,4 +1,4 @@
-// What a substep sets in motion: how fast it will be, before it is known what it meets.
+// Prediction of velocities within a substep, before contacts are found.
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +9,12 @@
 namespace ziggurat::dynamics {
 namespace {
 
-/// Of an island that is looked at: a larger heap has no room to be thrown far.
+/// Largest island that is predicted: larger heaps leave bodies no room.
 constexpr int most_bodies = 64;
-/// How far from a joint something may be that it turns [m].
+/// Typical distance of an obstacle from a revolute joint [m].
 constexpr double lever = 0.5;
 
-/// What pushes on a tree give its links at most [m/s].
+/// Largest velocity change of a tree's links by external wrenches [m/s].
 double wrench_velocity(const Tree& tree, double time_step) {
   double most = 0;
   for (std::size_t i = 0; i < tree.links.size(); ++i) {
@@ -23,15 +23,15 @@ double wrench_velocity(const Tree& tree, double time_step) {
   return most;
 }
 
-/// How fast a servo changes what it moves, if it is as strong as that takes [m/s].
-/// @param least  what need not be known exactly
+/// Velocity change that a servo asks for, if it is strong enough [m/s].
+/// @param least  smaller changes are not scaled by the lever
 double servo_change(const Servo& servo, const Tree& tree, double least) {
   if (servo.dof < 0 || servo.upper <= 0) return 0;
   const double change = std::abs(servo.target_velocity - tree.v[servo.dof]);
   return change <= least || tree.motion_subspace[servo.dof].angular.isZero(0) ? change : lever * change;
 }
 
-/// How fast two trees, or a tree and the world, part at a contact [m/s].
+/// Separation velocity of two trees, or a tree and the world, at a contact [m/s].
 double separation_velocity(const std::vector<Tree>& trees, const ContactPoint& contact) {
   const auto velocity = [&](const LinkIndex& side, const Vector3& point) -> Vector3 {
     if (side.tree < 0) return Vector3::Zero();
@@ -41,7 +41,7 @@ double separation_velocity(const std::vector<Tree>& trees, const ContactPoint& c
   return contact.normal.dot(velocity(contact.a, contact.point) - velocity(contact.b, contact.point + contact.offset_to_b));
 }
 
-/// Whether a joint reaches a limit within the substep, so fast that it matters.
+/// Whether a joint reaches a limit within the substep faster than a threshold.
 bool strikes_limit(const Limit& limit, const Tree& tree, double time_step, double least) {
   const int dof = joint_dof(tree, limit.link);
   const double q = tree.q[tree.first_position[limit.link]], speed = tree.v[dof], end = q + time_step * speed;
@@ -49,9 +49,9 @@ bool strikes_limit(const Limit& limit, const Tree& tree, double time_step, doubl
   return std::abs(speed) * (tree.motion_subspace[dof].angular.isZero(0) ? 1 : lever) > least;
 }
 
-/// Notes which of the fast trees something strikes, or a joint's limit.
+/// Finds the fast trees that have an impact with another one or a limit.
 /// @param fast   of each tree
-/// @param least  slower blows do not matter [m/s]
+/// @param least  slower impacts are ignored [m/s]
 void find_impacts(const std::vector<Tree>& trees, const std::vector<unsigned char>& fast, std::span<const ContactPoint> contacts,
                 std::span<const Limit> limits, double time_step, double least, std::vector<int>& out) {
   const auto is_fast = [&](int tree) { return tree >= 0 && fast[tree]; };
