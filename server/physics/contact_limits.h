@@ -1,5 +1,6 @@
 #pragma once
-// How many contacts a world may have: beyond it a substep would take minutes, and all memory.
+// Limits of the number of contacts of a world: beyond them a substep would take minutes, and all
+// memory.
 
 #include <cstddef>
 #include <stdexcept>

@@ -1,5 +1,5 @@
 #pragma once
-// What contact sensors feel: sums up how the watched links are touched.
+// Contact sensing: sums up the contacts of watched links.
 
 #include "physics/plugin.h"
 

@@ -18,7 +18,7 @@ class ExternalForces final : public Plugin {
     math::Vector3 torque = math::Vector3::Zero();  ///< in W [N m]
   };
 
-  /// Those of the substeps from the next one on.
+  /// Sets the forces of the substeps from the next one on.
   void set(std::vector<Force> pushes) { forces_ = std::move(pushes); }
 
   void before_substep(std::span<Body> bodies, double substep) override;

@@ -59,8 +59,9 @@ class Plugin {
   /// @param substep  its length [s]
   virtual void before_substep(std::span<Body> /*bodies*/, double /*substep*/) {}
 
-  /// Of the coming substep, after before_substep(). A core may divide the substep for them; it then
-  /// calls choose_stiff() once for each set of entities, and push_stiff() in each part.
+  /// Stiff pairs of the coming substep, after before_substep(). A core may divide the substep for
+  /// them. It then calls choose_stiff() once for each set of entities, and push_stiff() in each
+  /// part.
   virtual std::span<const StiffPair> stiff_pairs() const { return {}; }
   /// Chooses the forces that these entities exert on each other, and that what stands exerts.
   /// @param entities  of each whether it belongs to the set
@@ -71,9 +72,9 @@ class Plugin {
 
   /// Contacts cost time: they are reported only if a plug-in asks for them.
   virtual bool wants_contacts(std::span<const Body> /*bodies*/) const { return false; }
-  /// Each pair that touches is reported once in a substep, in ascending order of a and b: as begun
-  /// if it did not touch in the substep before, otherwise as persisting. Then what has ended, as
-  /// it last was; one of its bodies may have been removed.
+  /// Contact events: each touching pair is reported once in a substep, in ascending order of a and
+  /// b. It has begun if it did not touch in the substep before, otherwise it persists. Then ended
+  /// pairs follow, as they last were; one of their bodies may have been removed.
   virtual void contact_begins(std::span<Body> /*bodies*/, const LinkContact&) {}
   virtual void contact_persists(std::span<Body> /*bodies*/, const LinkContact&) {}
   virtual void contact_ends(std::span<Body> /*bodies*/, const LinkContact&) {}
@@ -81,7 +82,8 @@ class Plugin {
   /// Called with the poses at the substep's end, after its contacts.
   virtual void after_substep(std::span<Body> /*bodies*/, double /*substep*/) {}
 
-  /// What the next substep reads beyond the bodies. @param bodies  as they are then
+  /// Archives the state that the next substep reads beyond the bodies. @param bodies  as they are
+  /// then
   virtual void archive(math::Archive& /*archive*/, std::span<const Body> /*bodies*/) {}
 };
 

@@ -12,7 +12,7 @@ namespace ziggurat::physics {
 
 class Plugins {
  public:
-  /// Those that the scene chooses, and those that every world has.
+  /// Makes the plug-ins that the scene chooses, and those of every world.
   Plugins(const scene::Physics& physics, Core& core);
 
   /// One more, which acts behind the others.

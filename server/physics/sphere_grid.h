@@ -1,6 +1,6 @@
 #pragma once
-// Finds spheres near a place among many, in a time that does not depend on their number: a grid for
-// each power of two of their diameters.
+// Hierarchical grid of spheres, one level for each power of two of their diameters. A query takes
+// the same time for any number of spheres.
 
 #include <LinearMath/btVector3.h>
 

@@ -1,8 +1,8 @@
-// Box against box: separating axes with signed distance, then the incident face clipped
-// against the reference face (S. Gottschalk 1996 for the axes; the clipping is Sutherland and
-// Hodgman's). Boxes that overlap always get a contact. Of those that are apart and not turned
-// against each other, two that pass diagonally may get none, as the clipped face is empty: so
-// blocks of a lattice, which touch their diagonal neighbours along an edge, can slide past them.
+// Box against box: separating axes with signed distance (S. Gottschalk 1996), then the incident
+// face clipped against the reference face (Sutherland and Hodgman).
+// Boxes that overlap always get a contact. Separate ones that are aligned and pass diagonally may
+// get none, as the clipped face is empty. So blocks of a lattice, which touch their diagonal
+// neighbours along an edge, can slide past them.
 
 #include "physics/contact/pairs.h"
 #include "physics/contact/polygon.h"
@@ -93,8 +93,8 @@ void touch_face(const OrientedBox& a, const OrientedBox& b, const Separation& fa
   clip_faces(b, face.axis_b, -face.a_to_b, a, false, reach, out);
 }
 
-/// What else the best face would meet, above the point where edges cross: it may be there within the substep. A plank that lies
-/// on another one's edge rocks on both of its own edges.
+/// Adds further points of the best face, above the point where edges cross: they may touch within
+/// the substep. A plank that lies on another one's edge rocks on both of its own edges.
 void add_beside(const OrientedBox& a, const OrientedBox& b, const Separation& face, const Separation& edge, btScalar reach,
                 btScalar prefer, Manifold& out) {
   constexpr btScalar along = btScalar(0.98);  // cosine of the angle between their normals

@@ -36,7 +36,7 @@ void contact_points(const Capsule& a, const Capsule& b, const PosedPair& at, Man
   const btScalar cosine = first.axis.dot(second.axis);
   constexpr btScalar parallel = btScalar(0.9999);  // within 0.8 degrees
   if (btFabs(cosine) < parallel) {
-    // Where the lines are nearest, moved into both segments (C. Ericson, 2005, 5.1.9).
+    // Nearest points of the lines, moved into both segments (C. Ericson, 2005, 5.1.9).
     const btVector3 between = second.center - first.center;
     const btScalar of_first = first.axis.dot(between), of_second = second.axis.dot(between);
     const btScalar line = (of_first - cosine * of_second) / (1 - cosine * cosine);

@@ -116,7 +116,7 @@ void clip_features(const BestFace& face, const Body& reference, const Body& inci
   }
 }
 
-/// Where a side is along another line.
+/// Position of a side along another line.
 struct Station {
   btVector3 on_other;
   btScalar distance;
@@ -181,7 +181,8 @@ void add_line(const Body& a, const Body& b, const Nearest& near, btScalar reach,
   }
 }
 
-/// What else of the two the best face would meet, below the nearest point: it may be there within the substep.
+/// Adds further points of the best face, below the nearest point: they may touch within the
+/// substep.
 void add_beside(const BestFace& face, const Body& a, const Body& b, const Nearest& near, btScalar reach, btScalar prefer,
                 Manifold& out) {
   const btScalar cosine = face.b_to_a().dot(near.b_to_a);
@@ -212,8 +213,8 @@ Nearest nearest_sharp(const Body& a, const Body& b, const PosedPair& at, const N
   return beside;
 }
 
-/// Takes what separates best. Between cores edges are round: where they touch or nearly do, the direction is
-/// one between the faces that meet there, and the point is not on the surface.
+/// Takes the axis of largest separation. Edges between cores are round: near a touch the direction
+/// is one between the faces that meet there, and the point is off the surface.
 /// @param sharp  of the shapes themselves
 void sharpen(Nearest& near, const BestFace& face, const Nearest& sharp) {
   if (sharp.distance == -BT_LARGE_FLOAT) return;

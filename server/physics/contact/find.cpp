@@ -68,7 +68,7 @@ bool inside(const Hull& hull, const btVector3& p, btScalar slack) {
 }
 bool inside(const HalfSpace&, const btVector3& p, btScalar slack) { return p.z() <= slack; }
 
-// How far the shape reaches along a unit direction of its frame [m]:
+// Extent of the shape along a unit direction of its frame [m]:
 btScalar reach_of(const Box& box, const btVector3& d) { return box.half.dot(d.absolute()); }
 btScalar reach_of(const Cylinder& cylinder, const btVector3& d) {
   return cylinder.radius * btSqrt(d.x() * d.x() + d.y() * d.y()) +
@@ -159,8 +159,9 @@ struct Across {
   }
 };
 
-/// The deepest point. Of those as deep as overlaps may be, one at a place that turns with the bodies: which one is deeper
-/// by rounding, or is found first, changes from one substep to the next, and what rests on others would tremble.
+/// The deepest point; of those within the usual overlap, one at a place that turns with the bodies.
+/// Otherwise rounding would change it from one substep to the next, and resting bodies would
+/// vibrate.
 int steadily_deepest(const Manifold& contacts, const Across& across) {
   constexpr btScalar same = btScalar(1e-6);  // depth [m]
   const btVector3 towards = across.first + btScalar(0.6) * across.second;  // no symmetry of squares has points at the same place

@@ -9,7 +9,7 @@
 
 namespace ziggurat::physics::contact {
 
-/// What a function needs besides the shapes.
+/// Poses and options of a pair of shapes.
 struct PosedPair {
   const btTransform& a;  ///< pose of A
   const btTransform& b;  ///< pose of B

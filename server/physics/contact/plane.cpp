@@ -15,7 +15,7 @@ void add(const btVector3& point, const btTransform& plane, btScalar reach, Manif
   if (distance <= reach) out.add(point - out.normal * distance, distance);
 }
 
-/// Of many points over one plane only the lowest can carry: ties keep their order.
+/// Points over one plane: only the lowest of many can carry. Ties keep their order.
 void keep_lowest(Manifold& contacts, int most) {
   if (contacts.count <= most) return;
   sort_few(contacts.points.data(), contacts.points.data() + contacts.count,
@@ -28,8 +28,8 @@ constexpr btScalar flat_tilt = 0.02;
 /// From this cosine of the tilt on a cylinder stands on a cap; below, it lies on its side.
 constexpr btScalar standing = 0.7;
 
-/// The lowest direction in a cap that is nearly flat, as one of 4096 that are fixed in the body, so that it does not
-/// change with every rounding: a cylinder tips over each point of its rim alike.
+/// The lowest direction in a cap that is nearly flat, one of 4096 that are fixed in the body. So it
+/// does not change with every rounding, and a cylinder tips over each point of its rim alike.
 /// @param x, y  in the cap;  @param down  the direction, of the length of the sine of the tilt
 btVector3 steady(const btVector3& x, const btVector3& y, const btVector3& down) {
   constexpr btScalar steps = 1024, rounding = btScalar(1e-11);
@@ -53,7 +53,8 @@ void add_lower_face(const Box& box, const PosedPair& at, Manifold& out) {
   }
 }
 
-/// The same of a hull, and other corners that are as low as its lowest one: an edge or a corner that carries may be of other faces.
+/// Points of a hull, and other corners as low as its lowest one: an edge or a corner that carries
+/// may belong to other faces.
 void add_lower_face(const Hull& hull, const PosedPair& at, Manifold& out) {
   constexpr btScalar as_low = btScalar(1e-5);  // [m]
   const Polyhedron& polyhedron = *hull.polyhedron;

@@ -1,5 +1,5 @@
-// The state of the core: what its next substep reads. Boxes of the broad phase are not in it: what
-// is near does not depend on them.
+// State of the core: all that its next substep reads. Boxes of the broad phase are left out: pairs
+// do not depend on them.
 
 #include "physics/archive.h"
 
@@ -26,7 +26,7 @@ void Colliders::archive(math::Archive& archive) {
     archive("rested", group.was_static);
     archive("low", group.low);
     archive("high", group.high);
-    // A update_poses() leaves out the boxes of what rests.
+    // update_poses() leaves out the boxes of static groups.
     if (archive.reads() && group.proxy) update_box(group, 0, true);
   }
 }
@@ -65,14 +65,14 @@ void archive_fields(math::Archive& archive, ContactCache& contacts) {
   archive("part", contacts.part_);
   archive("resting", contacts.resting_);
   archive("live", contacts.live_);
-  // Places of pairs that are no more are a byte each: there are as many as there once were pairs.
+  // Dead pairs take a byte each: there are as many as there once were pairs.
   const std::size_t colliders = contacts.colliders_.all.size();
   const std::size_t most_pairs = std::min(colliders * colliders / 2, 2 * most_near_pairs + colliders);
   try {
     archive.list("pairs", contacts.pairs_, 1 + most_pairs);
     archive.list("unused", contacts.unused_);
     contacts.check_pairs(archive);
-  } catch (...) {  // what is half read still gets destroyed
+  } catch (...) {  // half-read lists still get destroyed
     contacts.pairs_.clear();
     contacts.unused_.clear();
     throw;
@@ -99,8 +99,8 @@ void archive_fields(math::Archive& archive, ContactCache& contacts) {
   contacts.overlap_candidates_.clear();
 }
 
-/// What was read may index lists. A pair must be one that find_contacts() can make: of two entities in the
-/// order of their colliders, one of which moves, or of one that moves and the floor.
+/// Checks pairs that were read, because they index lists. Each is of two entities in the order of
+/// their colliders, one of which moves, or of a moving one and the floor.
 void ContactCache::check_pairs(const math::Archive& archive) const {
   if (!archive.reads()) return;
   const std::size_t most = colliders_.all.size();

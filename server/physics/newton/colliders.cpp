@@ -16,13 +16,13 @@
 namespace ziggurat::physics {
 namespace {
 
-// How much larger than needed a new box is made: by some steps at the present speed, as far as that
-// is little for its size, and at least by so much [m].
+// Slack of a new box: some steps at the present speed, at most a share of its size, at least this
+// distance [m].
 constexpr double least_slack = 1e-3;
 constexpr double steps_ahead = 12;
 constexpr double share_of_size = 0.1;
 
-constexpr std::size_t most_ahead = 8;  // colliders whose memory is asked for
+constexpr std::size_t most_ahead = 8;  // colliders that are prefetched
 
 bool inside(const btVector3& outer_low, const btVector3& outer_high, const btVector3& low,
             const btVector3& high) {
@@ -39,7 +39,7 @@ std::size_t index_of(const btBroadphaseProxy& proxy) {
   return reinterpret_cast<std::size_t>(proxy.m_clientObject);
 }
 
-/// A link's collider, without a place. None if nothing touches the link by itself.
+/// Makes a link's collider, without a pose. None if the link has no contacts of its own.
 std::optional<Collider> make_collider(const Body& body, const scene::Entity& entity,
                                       std::size_t i) {
   const scene::Link& link = entity.links[i];
@@ -63,7 +63,7 @@ std::optional<Collider> make_collider(const Body& body, const scene::Entity& ent
   return collider;
 }
 
-/// The fastest that a point of it may be [m/s].
+/// Largest speed of a point of a collider [m/s].
 double speed_of(const Collider& collider) {
   return collider.velocity.length() + collider.angular_velocity.length() * collider.radius;
 }
@@ -81,7 +81,7 @@ struct Colliders::Filter final : btOverlapFilterCallback {
   const std::vector<ColliderGroup>& groups;
 };
 
-/// Which groups' boxes meet one.
+/// Collects the groups whose boxes meet one.
 struct Colliders::Hits final : btBroadphaseAabbCallback {
   explicit Hits(std::vector<std::size_t>& out) : found(out) {}
   bool process(const btBroadphaseProxy* proxy) override {
@@ -97,7 +97,7 @@ Colliders::Colliders() : filter_(std::make_unique<Filter>(groups)) {
 
 double speculative_margin(const Colliders& colliders, double time_step) { return 1e-3 + std::max(15.0, 1.5 * colliders.gravity) * time_step * time_step; }
 
-/// Takes all pairs out first, at once: a box without pairs is gone in logarithmic time.
+/// Removes all pairs first, at once: a box without pairs is gone in logarithmic time.
 Colliders::~Colliders() {
   struct All final : btOverlapCallback {
     bool processOverlap(btBroadphasePair&) override { return true; }
@@ -124,7 +124,7 @@ void Colliders::add(const Body& body, const scene::Entity& entity, const dynamic
   make_room(groups, made.size());
   for (Collider& collider : made) {  // only Bullet allocates, which does not throw
     set_pose(collider, tree);
-    // What stands never leaves its box, so its links may have one each: a tighter one.
+    // Static links have a box each, which is tighter: they never leave it.
     const bool joins = &collider != &made.front() && collider.moves && groups.back().moves;
     if (!joins) groups.push_back({collider.entity, all.size(), 0, collider.moves});
     ++groups.back().count;
@@ -137,13 +137,13 @@ void Colliders::add(const Body& body, const scene::Entity& entity, const dynamic
 }
 
 Bounds Collider::bounds() const {
-  btVector3 extent = pose.getBasis().absolute() * half_extents;  // no larger than a ball needs
+  btVector3 extent = pose.getBasis().absolute() * half_extents;  // at most that of the bounding sphere
   extent.setMin(btVector3(radius, radius, radius));
   extent += btVector3(reach, reach, reach);
   return {pose.getOrigin() - extent, pose.getOrigin() + extent};
 }
 
-/// Takes the boxes of its colliders, where they are.
+/// Sets a group's box about its colliders.
 void Colliders::enclose(ColliderGroup& group) {
   group.low.setValue(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
   group.high = -group.low;
@@ -159,7 +159,8 @@ void Colliders::insert(ColliderGroup& group, std::size_t index) {
                                         1, nullptr);
 }
 
-/// Tells the broad phase of new groups: one after another, 40 000 boxes in a row took minutes.
+/// Inserts new groups into the broad phase in bit-reversed order: 40 000 boxes in a row took
+/// minutes.
 void Colliders::insert_new_groups() {
   in_bit_reversed_order(groups.size() - inserted_,
                         [&](std::size_t i) { insert(groups[inserted_ + i], inserted_ + i); });
@@ -217,8 +218,8 @@ btTransform Colliders::pose(const Collider& collider, const dynamics::System& sy
   return transform_of(system.trees[collider.entity], collider.part) * collider.in_part;
 }
 
-/// Bullet's boxes only grow: a body that fell fast would keep a large one, and a neighbour in
-/// each pair it makes, forever. Ours are renewed when too small or much too large.
+/// Updates a group's box in the broad phase when it is too small or much too large. Bullet's boxes
+/// only grow: a fast body would keep a large one, with a neighbour in each pair, forever.
 /// @param step     how far it moves in the substep [m]
 /// @param shrinks  whether a box may be too large
 void Colliders::update_box(ColliderGroup& group, double step, bool shrinks) {
@@ -267,7 +268,7 @@ void Colliders::update_poses(const dynamics::System& system, double time_step, c
   });
 }
 
-/// Asks for the memory that update_poses() takes for the groups after one.
+/// Prefetches the memory that update_poses() takes for the groups after one.
 void Colliders::prefetch_after(const ColliderGroup& group, const dynamics::System& system) const {
   const auto later = [&](std::size_t by) -> const ColliderGroup* {
     const std::size_t index = static_cast<std::size_t>(&group - groups.data()) + by;
@@ -284,7 +285,7 @@ void Colliders::prefetch_after(const ColliderGroup& group, const dynamics::Syste
   }
 }
 
-/// Takes the poses and motions of its colliders, and notes whether it is fast.
+/// Updates poses and velocities of a group's colliders, and notes whether it is fast.
 /// @return  how far it moves [m]
 double Colliders::update_poses(ColliderGroup& group, const dynamics::System& system, double time_step) {
   double fastest = 0;
@@ -363,7 +364,7 @@ void Colliders::find_pairs(std::vector<ColliderPair>& out) {
     const ColliderGroup& b = groups[index_of(*pairs[i].m_pProxy1)];
     if (!(a.is_unchanged() && b.is_unchanged())) find_pairs(a, b, out);
   }
-  // Bullet's order depends on all that the broad phase has seen, which no snapshot has.
+  // Bullet's order depends on the history of the broad phase, which no snapshot has.
   std::ranges::sort(out, {}, [](const ColliderPair& near) { return std::tie(near.a, near.b); });
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// What can touch: the shapes of all parts, where they are, and which of them come near each other
-// within a substep (Bullet's trees of boxes).
+// Colliders: the shapes of all parts, their poses, and the broad phase that finds pairs near each
+// other within a substep (Bullet's trees of boxes).
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 
@@ -23,15 +23,15 @@ struct Bounds {
   btVector3 low{0, 0, 0}, high{0, 0, 0};  ///< corners [m]
 };
 
-/// What each substep reads and writes comes first, and fills four lines of the cache.
+/// Data that each substep reads and writes comes first, and fills four lines of the cache.
 struct alignas(64) Collider {
   static constexpr std::size_t floor = static_cast<std::size_t>(-1);
 
-  // Of the coming substep:
+  // State of the coming substep:
   btTransform pose = btTransform::getIdentity();  ///< X_WS
   btVector3 velocity{0, 0, 0};                    ///< of the shape's centre [m/s]
   btVector3 angular_velocity{0, 0, 0};            ///< [rad/s]
-  double reach = 0;                               ///< how far its surface may come [m]
+  double reach = 0;                               ///< distance that its surface may move [m]
 
   double radius = 0;           ///< of the sphere about the shape's centre that holds it [m]
   btVector3 half_extents{0, 0, 0};     ///< half extents of the box about it and its centre, in its axes [m]
@@ -39,13 +39,13 @@ struct alignas(64) Collider {
   std::uint32_t part = 0;      ///< into Body::parts
   bool is_centred = true;         ///< in_part is the identity
   bool moves = false;
-  bool is_present = false;  ///< otherwise removed; the floor is not, either
-  bool has_wheels = false;    ///< has wheels: does not rub on what is below or above it
+  bool is_present = false;  ///< false: removed; also false of the floor
+  bool has_wheels = false;    ///< has wheels: no friction with bodies below or above it
 
   std::size_t group = 0;  ///< into the broad phase's groups
   std::size_t link = 0;   ///< into Body::links
   bool is_on_fixed_base = false;    ///< on joints from something that stands: its centre moves on a circle
-  bool is_single_body = false;  ///< the only part of its entity, which moves freely, and its centre is the part's
+  bool is_single_body = false;  ///< the only part of a free entity, with its centre at the part's
   scene::Surface surface;
   contact::Shape shape;
   btTransform in_part = btTransform::getIdentity();  ///< X_PS
@@ -54,7 +54,8 @@ struct alignas(64) Collider {
   void archive(math::Archive& archive);
 };
 
-/// What the broad phase sees as one box: all colliders of an entity that moves, or one that stands.
+/// A box of the broad phase: all colliders of an entity that moves, or one of an entity that
+/// stands.
 struct ColliderGroup {
   std::size_t entity = 0;
   std::size_t first = 0, count = 0;  ///< into Colliders::all
@@ -64,7 +65,7 @@ struct ColliderGroup {
   btVector3 low{0, 0, 0}, high{0, 0, 0};  ///< corners of the box about those of its colliders [m]
   btBroadphaseProxy* proxy = nullptr;     ///< none: removed
 
-  /// It is as it was in the substep before.
+  /// Whether it stood in the substep before, and still does.
   bool is_unchanged() const { return is_static && was_static; }
 };
 
@@ -81,15 +82,16 @@ class Colliders {
   std::vector<Collider> all;
   std::vector<ColliderGroup> groups;
   std::optional<std::size_t> floor;  ///< into `all`
-  bool has_woken = false;                 ///< one that rested in the substep before does no more
-  /// As add_predictions() found them, one after the other: few.
+  bool has_woken = false;                 ///< one that rested in the substep before has woken
+  /// Predicted motions of colliders, see add_predictions(): few.
   struct PredictedCollider {
     std::size_t index = 0;  ///< into `all`
     Collider collider;
   };
   std::vector<PredictedCollider> predicted;
-  double gravity = 0;  ///< what pulls all that falls [m/s^2]
-  /// Entities that move by more than half of what does not move yet may come, see speculative_margin(): two of them may strike each other so fast.
+  double gravity = 0;  ///< largest acceleration of free fall [m/s^2]
+  /// Entities that move in the substep by more than half of speculative_margin(): two of them may
+  /// have an impact fast enough to matter.
   std::vector<int> fast_entities;
 
   bool is_static(const Collider& collider) const {
@@ -97,35 +99,37 @@ class Colliders {
   }
 
   void add_floor(const scene::Surface& surface);
-  /// Those of a body whose tree is placed.
+  /// Adds the colliders of a body whose tree has valid kinematics.
   /// @throws std::bad_alloc; then nothing changes
   void add(const Body& body, const scene::Entity& entity, const dynamics::Tree& tree);
-  /// The last ones added are gone; others stay as places without a shape.
+  /// Removes an entity's colliders. The last ones added are gone; others stay as places without a
+  /// shape.
   void remove(std::size_t entity);
-  /// Where a body was put, with all its pairs forgotten.
+  /// Resets the poses of a body that was put elsewhere, and forgets all its pairs.
   void reset_poses(std::size_t entity, const dynamics::Tree& tree);
 
-  /// The groups of an entity, which stand together: groups are in the order of their entities.
+  /// Groups of an entity: groups are in the order of their entities.
   std::span<ColliderGroup> groups_of(std::size_t entity);
 
-  /// Where they were in the last substep.
+  /// Archives their state in the last substep.
   void archive(math::Archive& archive);
 
-  /// Takes the poses and motions of all trees that are awake.
+  /// Updates poses and velocities of all trees that are awake.
   void update_poses(const dynamics::System& system, double time_step);
-  /// Those of some trees that are awake, for a part of the substep.
+  /// Updates some trees that are awake, for a part of the substep.
   void update_poses(const dynamics::System& system, double time_step, const TreeSet& active);
-  /// Notes which colliders of some trees move otherwise now than is known of them, and widens their reach. Until the next update_poses().
-  /// @return  whether there are such: then others may be near
+  /// Adds colliders of some trees whose motion differs from the known ones, and extends their
+  /// reach. Until the next update_poses().
+  /// @return  whether there are such: then there may be other pairs
   bool add_predictions(std::span<const int> trees, const dynamics::System& system, double time_step);
-  /// Groups that move and whose poses the last update_poses() took, ascending.
+  /// Moving groups that the last update_poses() updated, ascending.
   std::span<const std::size_t> updated_groups() const { return updated_groups_; }
   /// X_WS of a collider now.
   btTransform pose(const Collider& collider, const dynamics::System& system) const;
-  /// Pairs whose boxes overlap, of which at least one moves, without those that are as they were in
-  /// the substep before. The floor is in none.
+  /// Finds pairs whose boxes overlap, of which at least one moves. Pairs that were static in the
+  /// substep before are left out, and the floor is in none.
   void find_pairs(std::vector<ColliderPair>& out);
-  /// Those among some trees that were followed last, and with what stands.
+  /// Finds pairs among some trees that were updated last, and with what stands.
   void find_pairs(std::vector<ColliderPair>& out, const TreeSet& active);
   /// Levels of the broad phase's trees, of the taller one.
   int tree_depth();
@@ -149,7 +153,8 @@ class Colliders {
   std::vector<std::size_t> updated_groups_, hits_;
 };
 
-/// How far a surface may come within a substep without moving yet [m].
+/// Speculative margin: distance at which pairs without velocity still get contacts in a substep
+/// [m].
 double speculative_margin(const Colliders& colliders, double time_step);
 
 }  // namespace ziggurat::physics

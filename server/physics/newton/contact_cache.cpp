@@ -11,7 +11,7 @@
 namespace ziggurat::physics {
 namespace {
 
-/// The other links of an entity that stands are a part of the world, too.
+/// Link of a collider in dynamics/. All links of an entity that stands are parts of the world.
 dynamics::LinkIndex link_of(const Collider& collider) {
   if (collider.entity == Collider::floor) return {};
   return {static_cast<int>(collider.entity), static_cast<int>(collider.part)};
@@ -36,7 +36,7 @@ double squared_distance(const math::Vector3& a, const math::Vector3& b) {
   return (to_bullet(a) - to_bullet(b)).length2();
 }
 
-/// How two colliders come together in a substep.
+/// Approach of two colliders in a substep.
 struct Approach {
   double least = BT_LARGE_FLOAT;  ///< distance of all points [m]
   double fastest = 0;             ///< speed at which points close [m/s]
@@ -57,9 +57,9 @@ Approach approach_of(const contact::Manifold& found, const Collider& a, const Co
   return out;
 }
 
-/// A bound of the distances at which points may come close, see approach_of(): from the fastest
-/// that the surfaces can approach each other. Radii are larger than they are, because points may
-/// lie a little outside [m].
+/// Bound of the distances at which points may come close, see approach_of(): from the fastest
+/// possible approach of the surfaces. Radii are enlarged, because points may lie a little outside
+/// [m].
 double most_distance_to_touch(const Collider& a, const Collider& b, double time_step, double slack) {
   constexpr double larger = 1.5;
   const double arm = larger * a.radius + a.reach + b.reach;  // from a to points on b
@@ -68,14 +68,14 @@ double most_distance_to_touch(const Collider& a, const Collider& b, double time_
   return slack + time_step * speed;
 }
 
-/// Half of it; the floor has none [m].
+/// Smallest half extent; the floor has none [m].
 double smallest_extent(const Collider& collider) {
   if (collider.entity == Collider::floor) return BT_LARGE_FLOAT;
   return std::min({collider.half_extents.x(), collider.half_extents.y(), collider.half_extents.z()});
 }
 
-/// Whether a body may turn so far in a substep that another side of it lands: it turns, or an
-/// impact turns it.
+/// Whether a body may rotate so far in a substep, by itself or by an impact, that another side of
+/// it lands.
 bool tumbles(const Collider& a, const Collider& b, const Approach& approach, double time_step) {
   constexpr double far = 0.05;  // [rad]
   const double turning = (a.angular_velocity - b.angular_velocity).length();
@@ -83,9 +83,10 @@ bool tumbles(const Collider& a, const Collider& b, const Approach& approach, dou
          far;
 }
 
-/// Where two colliders that move touch, see dynamics::ContactPoint. What is apart meets later in the substep, each with its own point.
+/// Sets the points of contact of two moving colliders, see dynamics::ContactPoint. Separate
+/// surfaces meet later in the substep, each with its own point.
 /// @param on_a, on_b  in the colliders' frames [m]
-/// @param apart       closer surfaces count as together [m]
+/// @param apart       gap below which surfaces count as together [m]
 void set_contact_points(const Collider& a, const math::Vector3& on_a, const Collider& b, const math::Vector3& on_b,
                    double apart, dynamics::ContactPoint& contact) {
   const math::Vector3 from = from_bullet(a.pose * to_bullet(on_a)), way = from_bullet(b.pose * to_bullet(on_b)) - from;
@@ -98,7 +99,7 @@ void set_contact_points(const Collider& a, const math::Vector3& on_a, const Coll
   }
 }
 
-/// Whether a collider touches with a round surface, so that its point of contact is not always the same.
+/// Whether a collider touches with a round surface, so that its point of contact moves on it.
 bool is_round(const Collider& collider, const btVector3& normal) {
   constexpr btScalar upright = btScalar(0.7);  // cosine of the steepest axis of what lies on its side
   const auto lies = [&] { return btFabs(collider.pose.getBasis().getColumn(2).dot(normal)) < upright; };
@@ -106,8 +107,9 @@ bool is_round(const Collider& collider, const btVector3& normal) {
          ((std::holds_alternative<contact::Cylinder>(collider.shape) || std::holds_alternative<contact::Capsule>(collider.shape)) && lies());
 }
 
-/// Notes how the point of contact moves where one of two colliders that move is round and the other one is not: with its centre,
-/// and as the other one's face turns; about the normal as it turns itself, unless that turns it far in the substep.
+/// Sets the velocity of the point of contact between a round collider and a flat one. It moves with
+/// the round one's centre and the flat face's rotation, and about the normal with the round one's
+/// small rotations.
 void set_point_velocity(const Collider& a, const Collider& b, double time_step, dynamics::ContactPoint& contact) {
   constexpr double far = 0.2;  // [rad]
   const btVector3 normal = to_bullet(contact.normal);
@@ -124,9 +126,9 @@ void set_point_velocity(const Collider& a, const Collider& b, double time_step, 
   contact.point_velocity = from_bullet(is_ball ? round.velocity + tilt : round.velocity + tilt + turning * normal.cross(arm));
 }
 
-/// Whether a body that seems to pass what stands may yet come there, because the ways of what turns are bent, and its axis turns, too: each changes
-/// a way by up to r (w h)^2 / 2.
-/// @param slack  what counts as close [m]
+/// Whether a body that seems to pass a static one may still reach it. Rotation curves its path and
+/// turns its axis: each changes the path by up to r (w h)^2 / 2.
+/// @param slack  gap that counts as close [m]
 bool may_rotate_into(const Collider& a, const Collider& b, double time_step, double slack) {
   constexpr double far = 0.05;  // [rad]
   if (a.moves && b.moves) return false;
@@ -143,18 +145,18 @@ bool may_rotate_into(const Collider& a, const Collider& b, double time_step, dou
   return false;
 }
 
-/// How two colliders turn in a substep.
+/// Rotation of two colliders in a substep.
 struct RotationOutcome {
   bool tumbles = false;  ///< one so far that other points may touch
-  bool may_overlap = false;  ///< nothing touches, but points may come to overlap as one turns
-  double rotation_until_impact = 0;      ///< one that swings, until they meet [rad]
+  bool may_overlap = false;  ///< no contact, but rotation may bring one
+  double rotation_until_impact = 0;      ///< of one on a fixed base, until the impact [rad]
 };
 
-/// The points of two colliders that may touch within the substep.
-/// @param slack        what counts as close [m]
+/// Collides two colliders: points that may touch within the substep.
+/// @param slack        gap that counts as close [m]
 /// @param most_points  of those that tumble
 contact::Manifold collide(const Collider& a, const Collider& b, double time_step, double slack, int most_points, RotationOutcome& out) {
-  constexpr double far = 0.2;  // a swing whose way bends [rad]
+  constexpr double far = 0.2;  // rotation whose path is curved [rad]
   const double reach = a.reach + b.reach;
   contact::Manifold found =
       contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::face,
@@ -179,7 +181,7 @@ contact::Manifold collide(const Collider& a, const Collider& b, double time_step
   return found;
 }
 
-/// The points where two colliders may touch as something throws them within the substep.
+/// Collides two colliders with their predicted motions.
 contact::Manifold collide_predicted(const Colliders& colliders, std::size_t a, std::size_t b, double time_step, double slack, int most_points,
                                  RotationOutcome& out) {
   const auto ways_of = [&](std::size_t index) {
@@ -200,7 +202,7 @@ contact::Manifold collide_predicted(const Colliders& colliders, std::size_t a, s
   return {};
 }
 
-/// Whether each of two colliders is chosen, or stands.
+/// Whether each of two colliders is active, or stands.
 bool both_active(std::size_t a, std::size_t b, const Colliders& colliders, const TreeSet& active) {
   const auto counts = [&](const Collider& collider) { return !collider.moves || active.contains[collider.entity]; };
   return counts(colliders.all[a]) && counts(colliders.all[b]);
@@ -216,7 +218,7 @@ dynamics::ContactPoint contact_of(const Collider& a, const Collider& b, const ma
   law.b = link_of(b);
   law.normal = normal;
   law.friction = rolls ? 0 : a.surface.friction * b.surface.friction;
-  // Only a point or a line of contact can roll; each carries its share of the normal force.
+  // Rolling friction acts at a point or a line of contact; each has its share of the normal force.
   if (count <= 2) {
     law.rolling_friction = a.surface.rolling_friction + b.surface.rolling_friction;
     law.spinning_friction = a.surface.spinning_friction + b.surface.spinning_friction;
@@ -238,18 +240,18 @@ std::span<dynamics::ContactPoint> ContactCache::find_contacts(double time_step) 
 
 std::span<dynamics::ContactPoint> ContactCache::find_contacts(double time_step, const TreeSet& active, double force_share) {
   force_share_ = force_share;
-  together_gap_ = HUGE_VAL;  // parts are short, and magnets' bonds ask for all of the angular momentum
+  together_gap_ = HUGE_VAL;  // parts are short, and magnetic bonds need exact angular momentum
   colliders_.find_pairs(near_pairs_, active);
   std::swap(pairs_of_part_, pairs_of_previous_part_);
   collide_pairs(time_step);
-  for (const int number : pairs_of_previous_part_) {  // what came apart in this part of the substep
+  for (const int number : pairs_of_previous_part_) {  // pairs that came apart in this part of the substep
     if (pairs_[number].last_part != part_) pairs_[number].count = 0;
   }
   drop_internal_edges();
   return contacts_;
 }
 
-/// All pairs that are near, and those with the floor.
+/// Collides all near pairs, and those with the floor.
 void ContactCache::collide_pairs(double time_step) {
   ++part_;
   time_step_ = time_step;
@@ -326,18 +328,18 @@ void ContactCache::collide_pair(CachedPair& pair, double time_step) {
   overlap_candidates_.push_back({static_cast<std::size_t>(&pair - pairs_.data()), found.count == 0, turning.may_overlap || turning.tumbles});
 }
 
-/// Appends the pair's contacts, each with the impulse of the point of the last substep that is
-/// nearest: on either body, or moved with one.
-/// @param length  [s]
+/// Matches new points with those of the last substep, and appends the pair's contacts with their
+/// impulses. The nearest point counts: on either body, or moved with one.
+/// @param time_step  [s]
 void ContactCache::match_points(const contact::Manifold& found, CachedPair& pair, double time_step) {
-  constexpr double same = 25e-6;  // 5 mm apart is another contact [m^2]
+  constexpr double same = 25e-6;  // points more than 5 mm apart differ [m^2]
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
   const int old_count = pair.count;
   auto& old = previous_points_;
   std::copy_n(pair.points.begin(), old_count, old.begin());
   std::array<bool, most_points> taken{};
-  // A point of what rolls moves with neither surface, but with the body that rolls.
+  // The contact point of a rolling body moves with that body's centre.
   const math::Vector3 with_a = time_step * from_bullet(a.velocity), with_b = time_step * from_bullet(b.velocity);
   pair.count = found.count;
   if (found.count > 0) pair.normal = from_bullet(found.normal);

@@ -1,5 +1,5 @@
 #pragma once
-// Contact points of a substep for dynamics/, and what is remembered of them.
+// Contact cache: contact points of a substep for dynamics/, with the impulses of the last substep.
 
 #include <array>
 #include <cstdint>
@@ -14,10 +14,10 @@
 
 namespace ziggurat::physics {
 
-/// Of a pair of colliders.
+/// Key of a pair of colliders.
 inline std::uint64_t key_of(std::size_t a, std::size_t b) { return std::uint64_t{a} << 32 | b; }
 
-/// What all contacts of a pair have in common, where they are now.
+/// Common data of all contacts of a pair, at the present poses.
 /// @param count  of its points
 dynamics::ContactPoint contact_of(const Collider& a, const Collider& b, const math::Vector3& normal,
                          int count);
@@ -26,37 +26,37 @@ class ContactCache {
  public:
   explicit ContactCache(Colliders& colliders) : colliders_(colliders) {}
 
-  /// Trees of the last find_contacts() that swing far until they meet something.
+  /// Trees of the last find_contacts() that rotate far until their impact.
   std::vector<dynamics::RotationUntilImpact> rotations_until_impact;
 
-  /// Contacts of the coming substep, with the impulses of the last one; without those of pairs that
-  /// both rest, which do nothing as long as both do.
+  /// Finds contacts of the coming substep, with the impulses of the last one. Static pairs are left
+  /// out, because they do nothing while both sides rest.
   std::span<dynamics::ContactPoint> find_contacts(double time_step);
-  /// Those and the others: where something wakes in the substep.
+  /// Adds the contacts of static pairs: for substeps in which something wakes.
   std::span<dynamics::ContactPoint> add_resting_contacts();
-  /// The same for a part of the substep in which only some trees move, all of them awake: contacts
+  /// Finds contacts for a part of the substep in which only some trees move, all of them awake:
   /// among them, and with what stands.
-  /// @param share  of the substep's forces that act in the part
+  /// @param force_share  of the substep's forces that act in the part
   std::span<dynamics::ContactPoint> find_contacts(double time_step, const TreeSet& active, double force_share);
-  /// To be called before the first part of a set of trees.
+  /// Begins the parts of a set of trees; to be called before the first one.
   void begin_parts(const TreeSet& active);
-  /// Leaves out the contacts of all others, until the next find_contacts().
+  /// Keeps the contacts of a set of trees only, until the next find_contacts().
   std::span<dynamics::ContactPoint> keep_contacts(const TreeSet& active);
-  /// Which colliders were near each other at the last find_contacts().
+  /// Pairs of the last find_contacts().
   std::span<const ColliderPair> near_pairs() const { return near_pairs_; }
-  /// Notes the impulses that dynamics/ has written to them.
+  /// Stores the impulses that dynamics/ has written.
   /// @param more  parts of the substep are still to come
   void store_impulses(bool more = false);
-  /// Contacts between what stands and bodies that turned far in the substep, or are not where their velocities led, where they
-  /// overlap now.
+  /// Finds new overlaps with static colliders: of bodies that rotated far in the substep, or are
+  /// off their predicted positions.
   std::span<dynamics::ContactPoint> find_new_overlaps(const dynamics::System& system);
-  /// Forgets what touched an entity, before it is removed or moved; wakes what rested there.
+  /// Forgets an entity's pairs, before it is removed or moved; wakes bodies that touched it.
   void forget(std::size_t entity, dynamics::System& system);
 
-  /// What touches, in ascending order.
+  /// Lists all touching pairs, in ascending order.
   void list_contacts(std::vector<LinkContact>& out) const;
 
-  /// What is remembered. @pre the colliders have been read
+  /// Archives the cache. @pre the colliders have been read
   friend void archive_fields(math::Archive& archive, ContactCache& contacts);
 
  private:
@@ -74,8 +74,8 @@ class ContactCache {
     static constexpr std::size_t prefetched_bytes = 384;  // with two points [bytes]
     std::uint32_t a = 0, b = 0;  // colliders
     bool live = false;
-    bool covers_internal_edge = false;      // contacts of others were dropped because of it
-    bool is_static = false;       // both sides did in the substep in which it was seen last
+    bool covers_internal_edge = false;      // it covers internal edges, so its contacts are kept
+    bool is_static = false;       // both sides rested when it was seen last
     unsigned last_substep = 0;        // the substep in which it was near last
     unsigned last_part = 0;         // likewise, counting parts as substeps
     int count = 0;
@@ -109,7 +109,7 @@ class ContactCache {
   std::size_t awake_ = 0;               // that the last collide_pairs() saw
   std::unordered_map<std::uint64_t, int>
       places_;                         // of pairs by their colliders; not with the floor
-  double together_gap_ = 0;                   // what is farther apart and touches meets later in the substep [m]
+  double together_gap_ = 0;                   // gap above which touching surfaces meet later in the substep [m]
   double time_step_ = 0;                  // of the coming substep or part [s]
   double force_share_ = 1;                   // of a substep's forces, that acts in the coming one
   unsigned substep_ = 0, part_ = 0;    // how many there were; part_: of both
@@ -121,13 +121,14 @@ class ContactCache {
   std::vector<int> neighbours_;   // of a collider, in is_inside_neighbour()
   std::vector<CachedPair*> carriers_;   // of the contacts that drops_internal_edge() looks at
   std::vector<dynamics::ContactPoint> contacts_;
-  /// Where a contact is remembered.
+  /// Index of a contact's point in the cache.
   struct CacheIndex {
     int pair = 0, point = 0;
   };
   std::vector<CacheIndex> cache_indices_;                   // of each contact
-  std::array<CachedPoint, most_points> previous_points_;  // of the pair under way, a substep ago
-  /// A pair one side of which stands and the other one turns far in the substep, or may be struck so that it does.
+  std::array<CachedPoint, most_points> previous_points_;  // of the present pair, a substep ago
+  /// A pair with a static side whose other side rotates far in the substep, or may do so after an
+  /// impact.
   struct OverlapCandidate {
     std::size_t pair = 0;
     bool has_no_contact = false;  // no contact was found
@@ -135,19 +136,19 @@ class ContactCache {
   };
   std::vector<OverlapCandidate> overlap_candidates_;
   std::vector<dynamics::ContactPoint> overlaps_;     // of these
-  /// A pair of a collider that moves and one of a body that has, or may have, others beside it.
+  /// A moving collider on a base, a body that may have several colliders beside each other.
   struct Support {
     std::size_t mover = 0;   // a collider
     std::size_t entity = 0;  // of the base; Collider::floor: all that stands
     std::size_t part = 0;    // of it
-    std::size_t base = 0;      // its collider: places of pairs depend on others that were there
+    std::size_t base = 0;      // its collider: pair numbers depend on the history
     int pair = 0;
     auto operator<=>(const Support&) const = default;
   };
   std::vector<Support> supports_;
 };
 
-/// Leaves the contacts of some pairs.
+/// Keeps the contacts of some pairs.
 template <class IsKept>
 void ContactCache::keep_if(IsKept is_kept) {
   std::size_t kept = 0;

@@ -12,7 +12,7 @@
 namespace ziggurat::physics {
 namespace {
 
-/// What the dialect takes where a scene says nothing is for its own clock.
+/// Clears the dialect's default damping: it is meant for its own clock.
 void clear_default_damping(Body& body, const scene::Physics& physics) {
   if (physics.clock != scene::Clock::nominal) return;
   for (LinkBody& link : body.links) {
@@ -35,13 +35,14 @@ std::vector<CoordinateJoint> coordinate_joints_of(const scene::Entity& entity, c
   return made;
 }
 
-/// Those of an entity: joints stand in the order of their entities.
+/// Joints of an entity: joints stand in the order of their entities.
 std::span<CoordinateJoint> joints_of(std::size_t entity, std::vector<CoordinateJoint>& joints) {
   return {std::ranges::lower_bound(joints, entity, {}, &CoordinateJoint::entity),
           std::ranges::upper_bound(joints, entity, {}, &CoordinateJoint::entity)};
 }
 
-/// Entities of a kind mostly come one after the other, or by turns with a few others.
+/// Shares models with recent entities: equal ones mostly follow each other, or alternate with a few
+/// others.
 void share_mechanism(dynamics::Tree& tree, const std::vector<dynamics::Tree>& trees) {
   constexpr std::size_t most = 8;
   for (std::size_t i = 0; i < std::min(most, trees.size()); ++i) {

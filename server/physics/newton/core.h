@@ -19,7 +19,7 @@
 
 namespace ziggurat::physics {
 
-/// What acts on a set of trees that takes a substep in parts, in its order.
+/// Forces on a set of trees that takes a substep in parts, in its order.
 struct DeferredForces {
   std::vector<dynamics::Wrench> wrenches;  ///< on their links
   std::vector<math::Vector3> gravity;    ///< that was taken from them: of the first ones, or of all [m/s^2]
@@ -51,7 +51,7 @@ class NewtonCore {
   friend void archive_fields(math::Archive& archive, NewtonCore& core);
 
  private:
-  /// A body that is held to a motion over the ground.
+  /// A body whose servos hold it to a motion over the ground.
   struct GroundServo {
     std::size_t entity = 0;
     std::array<double, 3> impulses{};  // of the last substep [N s], [N m s]
@@ -65,7 +65,7 @@ class NewtonCore {
     int splits = 1;                   // of the scene's substep, see substep()
     double force_share = 1;           // of the substep's forces and impulses, that act in it
     bool is_followed = false;                // other parts follow
-    int parts_left = 1;               // until motors should be at their targets, with this one
+    int parts_left = 1;               // until motors should reach their targets, with this one
     int most_parts = 1;               // into which islands may divide it
     bool is_part = false;             // it is one of these
     double allowed_overlap = 1e-6;    // that remains [m]

@@ -1,4 +1,5 @@
-// Where colliders stand flush beside each other, in the world or in one body, their inner edges are none.
+// Internal edges between colliders that stand flush beside each other, in the world or in one body,
+// get no contacts.
 
 #include <algorithm>
 
@@ -8,10 +9,10 @@
 namespace ziggurat::physics {
 namespace {
 
-constexpr btScalar most_step = 1e-5;  // steps in a surface that are none [m]
-constexpr btScalar slack = 1e-4;  // how far beside a collider a point may lie in it [m]
+constexpr btScalar most_step = 1e-5;  // largest step in a surface that counts as flush [m]
+constexpr btScalar slack = 1e-4;  // tolerance of points inside a collider [m]
 
-/// How far a collider reaches along a direction, from the world's origin [m].
+/// Height of a collider along a direction, from the world's origin [m].
 btScalar support_height(const Collider& collider, const btVector3& up) {
   const btVector3 in_it = collider.pose.getBasis().transpose() * up;
   return up.dot(collider.pose.getOrigin()) + contact::reach_along(collider.shape, in_it);
@@ -19,8 +20,9 @@ btScalar support_height(const Collider& collider, const btVector3& up) {
 
 }  // namespace
 
-/// Whether a point on the base of `cover` is inside of another collider of the base than that of `hidden`, which ends flush with it:
-/// of those near the mover. Notes the pair with it, rather one without contacts.
+/// Whether a point on the base of `cover` is inside of another collider of that base near the
+/// mover, which ends flush with it. The pair of `hidden` does not count. Notes the pair, rather one
+/// without contacts.
 /// @param height  of the surface of `cover` along `up` [m]
 bool ContactCache::is_inside_neighbour(const Collider& cover, const CachedPair& hidden, std::size_t mover, const btVector3& up, btScalar height,
                               const btVector3& point) {
@@ -42,9 +44,10 @@ bool ContactCache::is_inside_neighbour(const Collider& cover, const CachedPair& 
   return carrier != nullptr;
 }
 
-/// Whether contacts of a collider with `hidden` lie in a seam that its contacts with `seen` cover:
-/// `hidden` is nowhere above the surface of `seen`, which goes on where they touch, in its neighbours too. Both are of one
-/// body, or stand. Then it drops them, and what covers them is not dropped any more: where four tiles meet two would hide each other.
+/// Drops the contacts of a collider with `hidden` if they lie on an internal edge that `seen`
+/// covers. Then `hidden` is nowhere above the surface of `seen`, which continues at the contacts,
+/// also in its neighbours. Both belong to one body, or stand. Covering pairs are kept: where four
+/// tiles meet, two would hide each other.
 bool ContactCache::drops_internal_edge(CachedPair& seen, CachedPair& hidden, std::size_t mover) {
   if (hidden.covers_internal_edge) return false;
   carriers_.assign(1, &seen);
@@ -66,7 +69,7 @@ bool ContactCache::drops_internal_edge(CachedPair& seen, CachedPair& hidden, std
   return true;
 }
 
-/// Notes a pair that touches for each of its sides that moves, where the other may have others beside it.
+/// Notes the supports of a touching pair: each moving side, on a base with several colliders.
 void ContactCache::list_supports(const CachedPair& pair) {
   const int number = static_cast<int>(&pair - pairs_.data());
   const auto note = [&](std::size_t mover, std::size_t on) {
@@ -81,8 +84,8 @@ void ContactCache::list_supports(const CachedPair& pair) {
   if (colliders_.all[pair.b].moves) note(pair.b, pair.a);
 }
 
-/// Drops contacts with inner edges: those between colliders that stand flush beside each other, in
-/// the world or in one body.
+/// Drops contacts with internal edges, between colliders that stand flush beside each other, in the
+/// world or in one body.
 void ContactCache::drop_internal_edges() {
   if (!std::ranges::is_sorted(supports_)) std::ranges::sort(supports_);
   const auto same_base = [](const Support& a, const Support& b) {

@@ -1,5 +1,6 @@
 #pragma once
-// At which time the speeds of trees are that forces change too fast for whole substeps.
+// Synchronisation of velocities and positions where trees change between whole substeps and
+// leapfrog steps.
 
 #include <span>
 #include <vector>
@@ -9,21 +10,20 @@
 
 namespace ziggurat::physics {
 
-/// Of each tree.
+/// Time of each tree's velocities relative to its positions.
 struct LeapfrogSync {
   enum VelocityTime : unsigned char {
-    unknown,  ///< it met something, was driven, or is new
+    unknown,  ///< it had a contact or a servo, or is new
     half_step_before,     ///< of half a substep before
     same_time      ///< of now
   };
   std::vector<unsigned char> of_tree, is_constrained;  ///< the second is working memory
 };
 
-/// A whole substep takes what pushes as an impulse at its beginning, so that speeds are those of half a substep before; in parts
-/// they are those of now. What flies freely from one to the other keeps its energy if its speeds change by what pushes in that half.
-/// To be called before a substep, with what pushes in it.
-/// @param length    of the substep [s]
-/// @param division  of it; null: nothing is divided
+/// Shifts velocities by half a step's impulse where a tree in free motion changes between both
+/// methods, which conserves its energy. Whole substeps apply forces at their beginning, so
+/// velocities are those of half a substep before. Leapfrog steps end with velocities of the same
+/// time. To be called before a substep, with its external wrenches.
 void synchronise_velocities(LeapfrogSync& lags, dynamics::System& system, dynamics::Workspace& work, double time_step, const SubstepPartition* division,
                  std::span<const dynamics::ContactPoint> contacts, std::span<const dynamics::Servo> servos);
 

@@ -11,7 +11,7 @@
 namespace ziggurat::physics {
 namespace {
 
-/// The velocity of a motor that seeks a position.
+/// Target velocity of a position motor.
 double approach(double error, const dynamics::Tree& tree, dynamics::Workspace& work, int dof,
                 double time_step, double left, double impulse, bool& is_factored) {
   const double velocity = error / left;

@@ -1,6 +1,6 @@
-// A contact is linear in the displacement. What turns far in a substep, as when it strikes a floor
-// with a corner, may overlap by a part of its size at the end, with corners that were far away. So may
-// what is struck or pushed out of an overlap to where its velocity did not lead.
+// Overlap recovery. Contacts are linear in the displacement. A body that rotates far in a substep,
+// as at an impact of a corner, may penetrate with other corners at its end. So may a body that an
+// impact or a push-out moves off its predicted path.
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace ziggurat::physics {
 namespace {
 
-constexpr btScalar most_gap = btScalar(1e-3);  // points that must not come to overlap, either [m]
+constexpr btScalar most_gap = btScalar(1e-3);  // gap below which points are checked for overlap [m]
 constexpr double least_overlap = 2e-5;               // [m]
 
 bool overlaps_deeply(const contact::Manifold& found) {
@@ -19,9 +19,9 @@ bool overlaps_deeply(const contact::Manifold& found) {
                      [](const contact::ManifoldPoint& point) { return point.distance < -least_overlap; });
 }
 
-/// How far a point of a collider may be from where its velocity before the substep would have brought it [m].
-/// @param now     its pose behind it
-/// @param length  of the substep [s]
+/// Bound of the distance of a collider's points from their predicted positions [m].
+/// @param now     its pose after the substep
+/// @param time_step  of the substep [s]
 double predicted_pose_error(const Collider& moving, const btTransform& now, double time_step) {
   const btVector3 way = now.getOrigin() - moving.pose.getOrigin() - time_step * moving.velocity;
   double turn = 0;
@@ -35,7 +35,7 @@ double predicted_pose_error(const Collider& moving, const btTransform& now, doub
 }  // namespace
 
 std::span<dynamics::ContactPoint> ContactCache::find_new_overlaps(const dynamics::System& system) {
-  const double known = speculative_margin(colliders_, time_step_);  // contacts were looked for as far
+  const double known = speculative_margin(colliders_, time_step_);  // the margin with which contacts were found
   overlaps_.clear();
   for (const OverlapCandidate& turned : overlap_candidates_) {
     const CachedPair& pair = pairs_[turned.pair];

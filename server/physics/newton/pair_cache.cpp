@@ -1,4 +1,4 @@
-// Which pairs of colliders are remembered.
+// Pairs of colliders in the contact cache.
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 
 namespace ziggurat::physics {
 
-/// The pair of a place that remembers it; a new one if it is new.
+/// Returns the pair with a number, or makes a new one.
 ContactCache::CachedPair& ContactCache::pair_of(std::size_t a, std::size_t b, int& place) {
   if (place == 0) {
     if (unused_.empty()) {
@@ -46,7 +46,7 @@ void ContactCache::drop_pair(std::size_t number) {
   }
 }
 
-/// Pairs that came apart lose their memory.
+/// Drops pairs that came apart.
 void ContactCache::drop_separated_pairs() {
   for (std::size_t i = 1; i < pairs_.size(); ++i) {
     const CachedPair& pair = pairs_[i];

@@ -1,6 +1,5 @@
 #pragma once
-// Which pairs each collider is in, so that one which is removed or moved is forgotten without a
-// look at all other pairs.
+// Lists of each collider's pairs: removing a collider visits no other pairs.
 
 #include <array>
 #include <cstddef>
@@ -14,10 +13,10 @@ class PairLists {
   /// Makes lists for this many colliders. Those beyond must be empty.
   void resize(std::size_t colliders) { first_.resize(colliders, 0); }
   void clear() { first_.clear(), links_.clear(); }
-  /// Makes memory for pairs with lower numbers than this: add() takes none then.
+  /// Reserves memory for pairs with lower numbers than this: add() takes none then.
   void make_room(std::size_t pairs);
-  /// Puts a pair into the lists of its colliders.
-  /// @param pair  its number, > 0;  @param b  none: what has no list
+  /// Adds a pair to the lists of its colliders.
+  /// @param pair  its number, > 0;  @param b  none: a collider without a list
   void add(int pair, std::size_t a, std::optional<std::size_t> b);
   void remove(int pair);
   /// Appends a collider's pairs to `out`, in any order.
@@ -25,7 +24,7 @@ class PairLists {
 
  private:
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
-  /// Where a pair stands in the lists of its two colliders.
+  /// Links of a pair in the lists of its two colliders.
   struct Links {
     std::array<std::size_t, 2> colliders{none, none};
     std::array<int, 2> previous{}, next{};  // 0: none

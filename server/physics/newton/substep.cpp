@@ -1,4 +1,4 @@
-// How the core moves all trees on by a substep: at once, and in parts where something asks for that.
+// A substep of all trees: as a whole, and in parts where a stiff pair or an island asks for them.
 
 #include <algorithm>
 #include <utility>
@@ -8,21 +8,21 @@
 namespace ziggurat::physics {
 namespace {
 
-/// What an overlap of bodies that magnets press together may remain [m]: with 64 N a micrometre is
-/// 3e-4 of the bond of two magnets of 10 mm.
+/// Penetration that remains between magnetic bodies [m]: with 64 N a micrometre is 3e-4 of the bond
+/// of two magnets of 10 mm.
 constexpr double overlap_of_magnets = 1e-7;
 
-/// Into how many a substep may be divided for what is pulled too hard or nutates too far.
+/// Largest number of parts of a substep for geometric or gyroscopic stiffness.
 constexpr int most_parts = 200;
 
-/// Those of all trees, if none are chosen.
+/// Calls visit for the items of all trees, if none are chosen.
 template <class Item, class Visit>
 void each_of(std::vector<Item>& items, const TreeSet* active, Visit visit) {
   if (active) return physics::each_of(items, *active, visit);
   std::for_each(items.begin(), items.end(), visit);
 }
 
-/// Notes what pushes some trees.
+/// Saves the external wrenches of some trees.
 void save_wrenches(const dynamics::System& system, const TreeSet& active, DeferredForces& out) {
   out.wrenches.clear();
   for (const int number : active.trees) {
@@ -31,7 +31,7 @@ void save_wrenches(const dynamics::System& system, const TreeSet& active, Deferr
   }
 }
 
-/// Takes it from them, and their gravity.
+/// Moves the external wrenches and gravity of some trees to the deferred forces.
 void defer_forces(dynamics::System& system, const TreeSet& active, DeferredForces& out) {
   save_wrenches(system, active, out);
   out.gravity.clear();
@@ -48,7 +48,7 @@ void defer_forces(dynamics::System& system, const TreeSet& active, DeferredForce
   }
 }
 
-/// Pushes them so, times `share`.
+/// Applies the deferred forces, times `share`.
 void apply_deferred(dynamics::System& system, const TreeSet& active, const DeferredForces& deferred, double share) {
   auto push = deferred.wrenches.begin();
   for (const int number : active.trees) {
@@ -58,7 +58,7 @@ void apply_deferred(dynamics::System& system, const TreeSet& active, const Defer
   }
 }
 
-/// Gives trees back their gravity at its end, also where something throws.
+/// Restores the gravity of trees at its end, also after an exception.
 struct GravityGuard {
   dynamics::System& system;
   const TreeSet& active;
@@ -71,7 +71,7 @@ struct GravityGuard {
   }
 };
 
-/// Gives trees back their speeds at its end, also where something throws.
+/// Restores the velocities of trees at its end, also after an exception.
 struct VelocityGuard {
   dynamics::System& system;
   dynamics::PredictedVelocities& foresight;
@@ -79,15 +79,17 @@ struct VelocityGuard {
   ~VelocityGuard() { swap_velocities(system.trees, foresight); }
 };
 
+/// Sets the active trees.
 /// @param trees  ascending
-/// @param holds  whether it becomes the set of these trees, or of all others, which it does not list
+/// @param holds  whether it becomes the set of these trees, or of all others, which it does not
+///               list
 void set_active(TreeSet& out, std::span<const int> trees, bool holds, std::size_t count) {
   out.trees.assign(trees.begin(), holds ? trees.end() : trees.begin());
   out.contains.assign(count, !holds);
   for (const int tree : trees) out.contains[tree] = holds;
 }
 
-/// Takes several steps: each undoes four fifths of an overlap, and turns what it pushes.
+/// Recovers overlaps by several steps: each resolves four fifths, and rotates the bodies.
 void recover_overlaps(dynamics::System& system, ContactCache& contacts, std::span<const int> trees) {
   constexpr int most_passes = 4;
   for (int pass = 0; pass < most_passes; ++pass) {
@@ -98,7 +100,7 @@ void recover_overlaps(dynamics::System& system, ContactCache& contacts, std::spa
 }
 
 /// Wakes all trees but some.
-/// @return  whether something slept
+/// @return  whether one slept
 bool wake_all_except(dynamics::System& system, const TreeSet& those) {
   bool woke = false;
   for (std::size_t i = 0; i < those.contains.size(); ++i) {
@@ -111,7 +113,7 @@ bool wake_all_except(dynamics::System& system, const TreeSet& those) {
 
 }  // namespace
 
-/// Tells the solver what a share allows, and collects its servos and limits.
+/// Sets the system's options for a part, and collects its servos and limits.
 void NewtonCore::prepare(std::span<Body> bodies, const SubstepPart& part) {
   system_.allowed_overlap = part.allowed_overlap;
   system_.compliance_factor = part.compliance_factor;
@@ -145,8 +147,8 @@ void NewtonCore::prepare(std::span<Body> bodies, const SubstepPart& part) {
   });
 }
 
-/// The impulses of this substep are where the next one begins. Those of a part without forces are
-/// not: the ones of the substep before are nearer to what comes.
+/// Stores the impulses: the next substep starts from them. A part without forces stores none: the
+/// substep before is a better start.
 void NewtonCore::store_impulses(const SubstepPart& part) {
   contacts_.store_impulses(part.is_followed);
   if (part.force_share == 0) return;
@@ -162,7 +164,7 @@ void NewtonCore::store_impulses(const SubstepPart& part) {
   });
 }
 
-/// Wakes what something disturbs. Then what rests may be touched, too.
+/// Wakes disturbed sleepers. Then contacts of other sleepers are needed, too.
 /// @param contacts  in and out;  @param woke  whether something woke before
 /// @return          whether something has woken
 bool NewtonCore::wake_disturbed(const SubstepPart& part, std::span<dynamics::ContactPoint>& contacts, bool woke) {
@@ -172,7 +174,7 @@ bool NewtonCore::wake_disturbed(const SubstepPart& part, std::span<dynamics::Con
   return system_.wake_disturbed(part.time_step, contacts, servos_, part.trees()) || woke;
 }
 
-/// Moves on what wake_disturbed() has been told.
+/// Advances by the constraints of wake_disturbed().
 void NewtonCore::step(const SubstepPart& part) {
   system_.rotations_until_impact = contacts_.rotations_until_impact;
   const dynamics::Report report = system_.advance(limits_);
@@ -196,7 +198,7 @@ void NewtonCore::substep(std::span<Body> bodies, double time_step, int splits, P
   prepare(bodies, whole);
   std::span<dynamics::ContactPoint> contacts = contacts_.find_contacts(time_step);
   bool woke = false;
-  if (stiff) {  // what takes the substep in parts must be awake
+  if (stiff) {  // trees with parts must be awake
     partition_.partition(stiff->stiff_pairs(), contacts_.near_pairs(), {}, colliders_.all, system_.trees);
     woke = wake_all_except(system_, partition_.trees_with(0));
   }
@@ -207,7 +209,7 @@ void NewtonCore::substep(std::span<Body> bodies, double time_step, int splits, P
     step(whole);
     return step_divided_islands(bodies, whole);
   }
-  if (woke) {  // what has just woken, or is thrown, may touch others
+  if (woke) {  // trees that woke or were accelerated may touch others
     partition_.partition(stiff->stiff_pairs(), contacts_.near_pairs(), contacts, colliders_.all, system_.trees);
   }
   synchronise_velocities(leapfrog_sync_, system_, work_, time_step, &partition_, contacts, servos_);
@@ -225,9 +227,10 @@ void NewtonCore::substep(std::span<Body> bodies, double time_step, int splits, P
   }
 }
 
-/// Looks for contacts again with the speeds that things are set in motion with within the substep: what they would pass through is
-/// beyond the reach that their speeds at its beginning give them. What they strike may be thrown, too.
-/// @param contacts  in and out;  @param woke  in: whether something woke; out: also by what is thrown
+/// Finds contacts again with the velocities that servos, wrenches and impacts give within the
+/// substep. Their obstacles are beyond the reach of the initial velocities. Impacts may accelerate
+/// further bodies.
+/// @param contacts  in and out;  @param woke  in: whether something woke; out: also by an impact
 /// @return          whether there are other contacts
 bool NewtonCore::predict_contacts(const SubstepPart& part, std::span<dynamics::ContactPoint>& contacts, bool& woke) {
   constexpr int most_blows = 8;
@@ -243,7 +246,7 @@ bool NewtonCore::predict_contacts(const SubstepPart& part, std::span<dynamics::C
   return any;
 }
 
-/// Moves some trees on by a part of the substep. What they may touch is awake.
+/// Advances some trees by a part of the substep. Trees that they may touch are awake.
 void NewtonCore::step_part(std::span<Body> bodies, const SubstepPart& part) {
   colliders_.update_poses(system_, part.time_step, *part.active);
   prepare(bodies, part);
@@ -253,10 +256,10 @@ void NewtonCore::step_part(std::span<Body> bodies, const SubstepPart& part) {
   step(part);
 }
 
-/// Moves a set of trees on in steps of length / count. Forces act in the middle of each, as
-/// impulses: a step ends half-way between two of them, so that places and velocities belong
-/// together to second order (drift, kick, drift). All that acts does so, gravity and motors too,
-/// because friction that holds against a force must have the same share of what presses.
+/// Moves a set of trees by leapfrog steps of length / count (drift, kick, drift). Forces act as
+/// impulses in the middle of each. A step ends half-way between two of them, so positions and
+/// velocities agree to second order. Gravity and motors act alike, because friction against a force
+/// needs the same share of the normal load.
 void NewtonCore::step_leapfrog(std::span<Body> bodies, double time_step, int splits, int count,
                                   Plugin& stiff) {
   const TreeSet& active = partition_.trees_with(count);
@@ -264,7 +267,7 @@ void NewtonCore::step_leapfrog(std::span<Body> bodies, double time_step, int spl
   part.active = &active;
   part.splits = splits;
   part.allowed_overlap = overlap_of_magnets;
-  part.compliance_factor = 0;  // half of the parts have no forces, so nothing that presses
+  part.compliance_factor = 0;  // half of the parts have no forces, so no normal load
   contacts_.begin_parts(active);
   stiff.choose_stiff(active.contains);
   stiff.push_stiff(bodies, -1);
@@ -285,7 +288,7 @@ void NewtonCore::step_leapfrog(std::span<Body> bodies, double time_step, int spl
   }
 }
 
-/// Moves the islands on that the whole substep left as they were.
+/// Advances the islands that the whole substep left unchanged.
 void NewtonCore::step_divided_islands(std::span<Body> bodies, const SubstepPart& whole) {
   std::swap(islands_to_subdivide_, system_.islands_to_subdivide);
   for (const auto& [parts, first, last] : islands_to_subdivide_.islands) {
@@ -299,7 +302,7 @@ void NewtonCore::step_divided_islands(std::span<Body> bodies, const SubstepPart&
   }
 }
 
-/// Moves chosen_ on in equal parts. What pushes it stays the same.
+/// Advances active_ in equal parts, under constant wrenches.
 void NewtonCore::step_in_parts(std::span<Body> bodies, const SubstepPart& whole, int count) {
   save_wrenches(system_, active_, deferred_forces_);
   SubstepPart part = whole;

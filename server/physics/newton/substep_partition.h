@@ -1,6 +1,6 @@
 #pragma once
-// Which trees take a substep in parts, because forces between them change too fast for it: those of
-// stiff pairs, and all that they may touch meanwhile.
+// Partition of trees by the number of parts of their substep. Stiff pairs, whose forces change too
+// fast for a whole substep, take parts, with all trees that they may touch meanwhile.
 
 #include <span>
 #include <vector>
@@ -13,18 +13,18 @@ namespace ziggurat::physics {
 
 class SubstepPartition {
  public:
+  /// Partitions the trees of a substep.
   /// @param pairs  the stiff ones
   /// @param near   colliders that may touch within the substep
-  /// @param contacts  likewise, of those that have just woken
+  /// @param contacts  likewise, of trees that have just woken
   void partition(std::span<const StiffPair> pairs, std::span<const ColliderPair> near,
             std::span<const dynamics::ContactPoint> contacts, const std::vector<Collider>& colliders,
             const std::vector<dynamics::Tree>& trees);
 
   bool is_divided(int tree) const { return parts_[tree] > 0; }
-  /// Into how many parts the sets of trees divide the substep: ascending, each once.
+  /// Numbers of parts that occur: ascending, each once.
   const std::vector<int>& part_counts() const { return part_counts_; }
-  /// The trees whose substep has so many parts; 0: that take it as a whole. Valid until the next
-  /// call.
+  /// Trees with this number of parts; 0: with a whole substep. Valid until the next call.
   const TreeSet& trees_with(int count);
 
  private:

@@ -16,8 +16,8 @@ bool is_round(const Collider& collider) {
          std::holds_alternative<contact::Capsule>(collider.shape);
 }
 
-/// How its surface turns [rad/s]: what is round about an axis is the same however it turns about
-/// it. The points of a ball that turns would be carried back to its side or its top.
+/// Angular velocity of a collider's surface [rad/s], without rotation about its axis of symmetry.
+/// The points of a spinning ball would be carried back to its side or its top.
 btVector3 surface_angular_velocity(const Collider& collider) {
   if (std::holds_alternative<contact::Sphere>(collider.shape)) return {0, 0, 0};
   const btVector3& turning = collider.angular_velocity;
@@ -26,8 +26,7 @@ btVector3 surface_angular_velocity(const Collider& collider) {
   return turning - axis * axis.dot(turning);
 }
 
-/// Where a collider's surface is after some time. What swings goes on in the screw motion that it
-/// is in.
+/// Pose of a collider's surface after some time. On a fixed base it continues its screw motion.
 btTransform pose_after(const Collider& collider, double time) {
   if (!collider.moves) return collider.pose;
   const math::Quaternion turn = dynamics::exponential(from_bullet(surface_angular_velocity(collider)) * time);
@@ -42,8 +41,7 @@ btTransform pose_after(const Collider& collider, double time) {
                      collider.pose.getOrigin() + way);
 }
 
-/// The fastest that two surfaces can approach each other along a normal from b to a, also later
-/// where they swing [m/s].
+/// Fastest approach of two surfaces along a normal from b to a, also later in a screw motion [m/s].
 double fastest_approach(const Collider& a, const Collider& b, const btVector3& normal) {
   const auto centre = [](const Collider& collider, const btVector3& towards) {
     return collider.is_on_fixed_base ? collider.velocity.length() : towards.dot(collider.velocity);
@@ -58,25 +56,25 @@ double least_distance(const contact::Manifold& found) {
   return least;
 }
 
-/// A collider, and where it is when it meets another one.
+/// A collider, and its pose at an impact.
 struct ColliderAtImpact {
   const Collider& collider;
   const btTransform& pose_at_impact;
 
-  /// Where a point of its surface is now.
+  /// A point of its surface at its present position.
   btVector3 point_now(const btVector3& point) const { return collider.pose * pose_at_impact.invXform(point); }
-  /// Where it would be now if it had the lever already that it has then.
+  /// A point with the lever that it has at the impact.
   btVector3 point_with_impact_lever(const btVector3& point) const {
     return point - pose_at_impact.getOrigin() + collider.pose.getOrigin();
   }
-  /// The velocity that it has then.
+  /// The velocity of a point at the impact.
   btVector3 velocity(const btVector3& point) const {
     return collider.velocity + collider.angular_velocity.cross(point - pose_at_impact.getOrigin());
   }
 };
 
-/// Carries points that are found later back to where they are now. Where they rebound, with the
-/// levers of the touch, as far apart as their speeds then bring together in that time.
+/// Carries points of the impact back to the present poses. Rebounds keep the levers of the touch,
+/// and their distance is that of their closing velocity over the time.
 /// @param time  until then [s]
 void carry_points_back(contact::Manifold& found, const ColliderAtImpact& a, const ColliderAtImpact& b, double time) {
   const bool turned = rebounds_at_touch_pose(a.collider, b.collider);
@@ -88,7 +86,7 @@ void carry_points_back(contact::Manifold& found, const ColliderAtImpact& a, cons
     point.distance =
         turned ? point.distance - time * found.normal.dot(a.velocity(then_a) - b.velocity(then_b))
                : found.normal.dot(on_a - on_b);
-    // Opposite the point of the body that moves, or of the first one.
+    // Opposite the point of the moving body, or of the first one.
     point.on_b = a.collider.moves ? on_a - found.normal * point.distance : on_b;
     point.offset_when_met =
         a.collider.moves ? on_b - point.on_b : on_a - (on_b + found.normal * point.distance);
@@ -112,7 +110,7 @@ bool rebounds_at_touch_pose(const Collider& a, const Collider& b) {
 }
 
 double arm_rotation(const Collider& collider, double time) {
-  constexpr double on_axis = 1e-3;  // of its size: what is so near the axis only turns
+  constexpr double on_axis = 1e-3;  // of its size: a centre so near the axis only rotates
   if (!collider.is_on_fixed_base) return 0;
   const double turning = collider.angular_velocity.length();
   return time * (collider.velocity.length() > on_axis * turning * collider.radius
@@ -122,8 +120,8 @@ double arm_rotation(const Collider& collider, double time) {
 
 contact::Manifold time_of_impact(const Collider& a, const Collider& b, double time_step, double near,
                                 double& time) {
-  constexpr int most_steps = 256;  // what turns much faster than it comes takes many
-  constexpr int most_near = 12;    // what is followed to the touch, nearer than `near`
+  constexpr int most_steps = 256;  // for bodies that rotate much faster than they approach
+  constexpr int most_near = 12;    // steps that follow to the touch, below `near`
   constexpr double touch = 1e-7;   // [m]
   int left = has_rotating_normal(a, b) || rebounds_at_touch_pose(a, b) ? most_near : 0;
   contact::Manifold met;
@@ -137,7 +135,7 @@ contact::Manifold time_of_impact(const Collider& a, const Collider& b, double ti
     const double approach = fastest_approach(a, b, found.normal);
     const double follow = left > 0 ? touch : near;
     if (distance <= near ||
-        met.count > 0) {  // also when they have passed each other: then the normal says so
+        met.count > 0) {  // also after they have passed each other: the normal shows it
       met = found;
       time = now;
       carry_points_back(met, {a, pose_a}, {b, pose_b}, now);
@@ -145,7 +143,7 @@ contact::Manifold time_of_impact(const Collider& a, const Collider& b, double ti
     }
     if (approach <= 0) break;
     const double next = now + (distance - follow / 2) / approach;
-    const bool ends_near = distance - approach * (time_step - now) <= near;  // what falls may meet where its speed alone does not lead
+    const bool ends_near = distance - approach * (time_step - now) <= near;  // gravity may bring them together where their speeds do not
     if (next >= time_step && (met.count > 0 || !ends_near)) break;
     now = std::min(next, time_step);
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Trees that take a substep, or a part of one, together.
+// A set of trees that take a substep, or a part of one, together.
 
 #include <algorithm>
 #include <cstddef>
