@@ -1,4 +1,4 @@
-// What a substep of the equations of motion and the contact solver costs, without collision
+// Cost of a substep of the equations of motion and the contact solver, without collision
 // detection: two-wheeled robots that drive, boxes at rest, towers.
 //
 // usage: bench_dynamics          prints microseconds of CPU time per substep

@@ -202,7 +202,7 @@ double their_stack(double h, const Stack& stack, bool stiff) {
   return (model.place(stack.count) - start).norm();
 }
 
-// ---- What a substep costs.
+// ---- Cost of a substep.
 
 scene::Entity robot(double x, double y) {
   using scenes::at;

@@ -1,5 +1,5 @@
 #pragma once
-// What a simulation is made of.
+// Parts of a simulation.
 
 #include <cstddef>
 #include <cstdint>

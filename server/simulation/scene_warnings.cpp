@@ -179,7 +179,8 @@ class SceneWarnings {
     }
   }
 
-  /// Of what a scene places: distributed entities never overlap. Two that stand still may.
+  /// Overlaps of entities that the scene places: distributed ones never overlap, and two that stand
+  /// may.
   void check_overlaps() {
     if (scene_.entities.size() > most_compared) return;
     physics::Placement placement;
@@ -227,7 +228,7 @@ class SceneWarnings {
     }
   }
 
-  /// What may fall, has no floor, and stands over nothing that holds it.
+  /// Bodies that may fall without end: no floor, and nothing below that holds them.
   void check_gravity() {
     const bool falls = scene_.physics.gravity.value_or(0) > 0 && !scene_.physics.floor &&
                        scene_.physics.planes.empty();
@@ -250,7 +251,7 @@ class SceneWarnings {
     }
   }
 
-  /// What hangs in the air because the scene has no gravity and does not say so.
+  /// Bodies that hang in the air because the scene has no gravity and does not say so.
   void check_floating() {
     if (scene_.physics.gravity || scene_.physics.magnetism || scene_.physics.flat) return;
     if (entities_.size() > most_compared) return;

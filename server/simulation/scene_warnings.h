@@ -1,5 +1,5 @@
 #pragma once
-// What a person would ask about when they see a scene at its start.
+// Warnings about the start of a scene.
 
 #include <vector>
 
@@ -9,8 +9,8 @@
 
 namespace ziggurat::simulation {
 
-/// Warnings on bodies that overlap, that begin in the floor or outside of the arena, that fall forever,
-/// whose size has nothing to do with the arena's, or whose joints are far from it. One of each kind, with how many there are.
+/// Warns of bodies that overlap, begin in the floor or outside of the arena, fall forever, or have
+/// a size or joints far from the arena's. One warning of each kind, with the number of cases.
 /// @param simulation  of the scene, at tick 0
 std::vector<scene::Problem> scene_warnings(const scene::Scene& scene, const Simulation& simulation);
 

@@ -11,7 +11,7 @@
 namespace ziggurat::simulation {
 namespace {
 
-/// Of all commands that are kept to repeat a run [bytes].
+/// Size of all commands that are kept to repeat a run [bytes].
 constexpr std::size_t longest_history = std::size_t{256} << 20;
 
 /// Whether two worlds of one scene and seed have the same entities in the same places.
@@ -81,7 +81,7 @@ void Simulation::Parts::archive(math::Archive& archive) {
 void Simulation::Parts::note_commands() {
   if (has_archive || history.size > longest_history) return;
   write_commands(layout, commands, commanding);
-  // What lasts for one step must be written down again, though it is the same.
+  // Commands that last for one step must be written down again, though they are the same.
   const bool lasts = commands.radio_messages.entries.empty() && commands.pushes.empty();
   if (lasts && commanding == commanded) return;
   history.commands.push_back({state.tick, commanding});

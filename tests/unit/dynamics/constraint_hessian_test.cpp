@@ -1,4 +1,4 @@
-// What contacts add to an island's matrix, against the product of dense matrices.
+// Hessians of contacts in an island's matrix, against the product of dense matrices.
 
 #include "dynamics/constraint_hessian.h"
 
@@ -35,7 +35,7 @@ Eigen::MatrixXd jacobian_of(Problem& problem, const Constraint& block) {
   return jacobian;
 }
 
-/// Of a contact with rolling friction between the last links of two trees.
+/// Checks a contact with rolling friction between the last links of two trees.
 void expect_product(Tree first, Tree second) {
   std::vector<Tree> trees{std::move(first), std::move(second)};
   Workspace work;

@@ -22,8 +22,8 @@ Vector3 angular_momentum(const Tree& tree) {
   return r * omega.cwiseProduct(tree.links[0].inertia);
 }
 
-// Euler's equation: the inertia's axes turn with the body, so at the mass matrix of the beginning its momentum
-// becomes L - h w x L. However short the substep is: what rolls in a circle stands by that torque.
+// Euler's equation: the inertia's axes rotate with the body, so at the mass matrix of the beginning
+// its momentum becomes L - h w x L. The torque holds a body that rolls in a circle, at any substep.
 TEST(Flight, GyroscopicTorquesActInSubstepsOfAnyLength) {
   Workspace work;
   Tree body = testing::box({0.1, 0.2, 0.3}, 2, {Vector3::Zero(), Quaternion(0.5, 0.1, 0.7, 0.2).normalized()});
@@ -100,8 +100,8 @@ TEST(Flight, TurnsExactlyAtAnySpeed) {
   EXPECT_DOUBLE_EQ(ball.v[2], 526);
 }
 
-/// A spinning disc on a rod whose other end is held: at a level axis the steady precession is
-/// m g l / (I spin) exactly.
+/// A spinning disc on a rod whose other end is fixed: at a level axis the steady precession is
+/// exactly m g l / (I spin).
 double precession_error(double hz, double spin) {
   Workspace work;
   Link disc;

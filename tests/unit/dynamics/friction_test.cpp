@@ -55,8 +55,8 @@ struct Ball {
   }
 };
 
-// The height of a rebound is the square of the restitution times the height of the fall, whenever in a substep the
-// ball strikes: both falls are exact.
+// The height of a rebound is the square of the restitution times the height of the fall, at any
+// time of the impact in a substep: both falls are exact.
 TEST(Friction, ABallBouncesAsHighAsItsRestitutionSays) {
   for (const double restitution : {0.5, 1.}) {
     for (const double hz : long_runs::some_of({50., 100., 1000.})) {
@@ -212,7 +212,7 @@ TEST(Servo, HoldsAPositionUnderLoad) {
   EXPECT_NEAR(servos[0].impulse, 2 * g * 0.01, 1e-7);
 }
 
-// What an island gives does not depend on the order in which its contacts are listed.
+// Impulses of an island do not depend on the order of its contacts.
 TEST(Island, TheOrderOfContactsChangesNoBit) {
   const auto run = [](bool reversed) {
     System system;

@@ -72,7 +72,8 @@ TEST(Rest, ABallOnAGentleSlopeRolls) {
   }
 }
 
-// What is pushed or driven onto a sleeper, without gravity, wakes it before it is inside of it.
+// A body that a wrench or a servo drives onto a sleeper, without gravity, wakes it before they
+// overlap.
 TEST(Rest, ASleeperWakesByWhatIsAboutToBePushedOntoIt) {
   for (const bool by_servo : {false, true}) {
     Touching world = floor_with(1, 0.1);
@@ -132,7 +133,7 @@ void add_foot(double x, double friction, int link, std::vector<ContactPoint>& co
   }
 }
 
-/// What a body with rotors about z does: each turns at the speed commanded after it fell asleep.
+/// Checks a body with rotors about z: each turns at the speed commanded after it fell asleep.
 void expect_to_wake_by(const std::vector<double>& speeds) {
   System system;
   std::vector<Link> links{testing::box_link({0.1, 0.1, 0.1}, 1)};

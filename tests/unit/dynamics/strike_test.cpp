@@ -1,6 +1,5 @@
-// Small islands that strike with rolling friction: the two ends of a cylinder's line resist turning
-// by their normal impulses and by rolling friction, so that contacts contradict each other a
-// little.
+// Impacts of small islands with rolling friction. Normal impulses and rolling friction both resist
+// the rotation of a cylinder's line, so its contacts conflict a little.
 
 #include <gtest/gtest.h>
 

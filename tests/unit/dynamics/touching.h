@@ -83,7 +83,7 @@ struct Touching {
     }
   }
 
-  /// How far tree i may come towards j (-1: the world) within a substep.
+  /// Largest approach of tree i to tree j (-1: the world) within a substep.
   double reach(int i, int j, double length) const {
     const auto linear = [&](int k) -> Vector3 {
       return k < 0 ? Vector3::Zero() : system.trees[k].velocity(last_link(k));

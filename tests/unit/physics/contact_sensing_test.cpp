@@ -1,4 +1,4 @@
-// What plug-ins hear of contacts, and what watched links feel.
+// Contact events of plug-ins, and sensing of watched links.
 
 #include "physics/contact_sensing.h"
 

@@ -125,7 +125,7 @@ btScalar least(const Manifold& contacts) {
   return distance;
 }
 
-// Those of the planes that clip stand beyond it by up to 2 % of the radius.
+// Corners of the clipping planes stand beyond the rim by up to 2 % of the radius.
 TEST(CylinderOn, TouchesNowhereBeyondTheSmallerRim) {
   const btTransform below = btTransform::getIdentity(), above(btQuaternion::getIdentity(), btVector3(0, 0, 0.1));
   const Cylinder large{0.15, 0.05}, small{0.1, 0.05};
@@ -166,8 +166,8 @@ TEST_P(AllPairs, AgreeWithBruteForce) {
     ASSERT_GT(contacts.count, 0);
     ASSERT_GT(swapped.count, 0);
     EXPECT_NEAR(contacts.normal.length(), 1, 1e-9);
-    // Boxes separated corner to corner or corner to edge are compared along the best axis only: the
-    // distance is too small, which is safe, and one of its ends is not on a surface.
+    // Boxes that are separate corner to corner or corner to edge are compared along the best axis
+    // only. The distance is too small, which is safe, and one of its ends is not on a surface.
     const btScalar between = slab_gap(a, b, contacts.normal);
     const bool corners = pair.boxes && gap.distance > 0 && between < gap.distance - tolerance;
     const btScalar below = corners ? gap.distance / 2 : tolerance;
@@ -231,8 +231,8 @@ TEST_P(AllPairs, FindTheSamePointsWhereOneIsUseful) {
 INSTANTIATE_TEST_SUITE_P(Contact, AllPairs, ::testing::ValuesIn(pairs),
                          [](const auto& pair) { return pair.param.name; });
 
-// Where its face is not parallel to the edge that carries it, its own edges cross that, one lower than the other: with the point of
-// the lower one alone it went deeper on both sides in turns.
+// Edges of a face that is not parallel to the supporting edge cross that edge at different heights.
+// With the point of the lower one alone it went deeper on both sides in turns.
 TEST(BoxBox, APlankOnAnEdgeTouchesItWithBothOfItsOwn) {
   const Box plank{{0.15, 0.04, 0.01}};
   const btVector3 edge(0, 0.04, 0.01);  // its middle, on the lower plank

@@ -13,7 +13,7 @@ namespace {
 
 using namespace testing;
 
-/// Of boxes that stand in a row and come one after another.
+/// Depth of the tree for boxes in a row that come one after another.
 int depth_of_row(std::size_t count) {
   const scene::Physics physics = newton();
   Colliders colliders;

@@ -1,4 +1,4 @@
-// How many points of contact a world may have.
+// Limits of the number of contacts of a world.
 
 #include <gtest/gtest.h>
 

@@ -60,8 +60,8 @@ double expected_lean(double lean, double omega, double seconds) {
   return lean;
 }
 
-// What the motor gives to hold the hub's speed is no gain of the rod's: it once stood where it began, the more
-// the shorter the substep.
+// The motor's impulse that holds the hub's speed is no gain of the rod's: it once stood where it
+// began, the more the shorter the substep.
 TEST(NewtonDriven, ARodOnATurningHubSwingsOut) {
   const double omega = 8, lean = 0.3;
   for (const double hz : long_runs::substep_rates()) {
@@ -78,8 +78,8 @@ TEST(NewtonDriven, ARodOnATurningHubSwingsOut) {
   }
 }
 
-// Two rods on hinges that are not parallel, on a hub that its motor holds: what the forces of the beginning of a
-// substep add to their turning is taken from them.
+// Two rods on hinges that are not parallel, on a hub that its motor holds: the energy error of each
+// substep is corrected.
 TEST(NewtonDriven, RodsOnAHubThatIsHeldKeepTheirEnergy) {
   for (const double hz : long_runs::substep_rates()) {
     World world(newton(), 1 / hz);
@@ -145,7 +145,8 @@ struct Gimbal {
   }
 };
 
-// Where its axis nutates by half a radian per substep, a gyroscope whose disc a motor spins fell over.
+// A gyroscope whose disc a motor spins fell over where its axis nutates by half a radian per
+// substep.
 TEST(NewtonDriven, AGyroscopeWithAMotorPrecessesAndNutates) {
   const Gimbal gimbal;
   for (const double spin : {100., 600.}) {

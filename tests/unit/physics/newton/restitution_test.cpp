@@ -25,7 +25,7 @@ math::Quaternion random_turn(std::mt19937& random) {
   return math::Quaternion(w, x, y, z).normalized();
 }
 
-/// How far links turn in a substep over what their speeds before and after it say, at most.
+/// Largest rotation of links in a substep, over that of their velocities before and after it.
 class Turned {
  public:
   explicit Turned(const World& world) : before_(state_of(world)) {}
@@ -46,7 +46,7 @@ class Turned {
   world::State before_;
 };
 
-/// How a cube moves: of its centre, in W.
+/// Motion of a cube: of its centre, in W.
 struct Flight {
   Vector3 place, velocity, turning;
   math::Quaternion orientation;
@@ -72,7 +72,7 @@ Vector3 lowest_corner(const Flight& cube, double side, double time) {
   return lowest;
 }
 
-/// Lets it fly freely until a corner strikes the floor, and rebound by Newton's law: on a smooth
+/// Moves a cube freely until a corner hits the floor, and rebounds it by Newton's law: on a smooth
 /// floor, or on one where the corner sticks.
 void rebound(Flight& cube, double side, double mass, double restitution, bool sticks) {
   double early = 0, late = 1;
@@ -137,8 +137,8 @@ TEST(NewtonRebound, OfACornerThatTurnsHasTheLeverOfTheTouch) {
   }
 }
 
-// Two corners that strike the floor at different times in a substep asked for turns of up to 34
-// times that. It moves by v h, and to where it should be by up to |v1 - v0| h, at most twice the
+// Two corners with impacts at different times in a substep asked for rotations of up to 34 times
+// the bound. It moves by v h, and to its target gaps by up to |v1 - v0| h, at most twice the
 // greater of the speeds.
 TEST(NewtonRebound, TurnsABoxAsItsSpeedsSay) {
   std::mt19937 random(3);
@@ -159,8 +159,7 @@ TEST(NewtonRebound, TurnsABoxAsItsSpeedsSay) {
   }
 }
 
-/// How high a ball, the last entity of two, rises behind each of its rebounds on something, from
-/// the energy that it has [m].
+/// Heights of a ball, the last entity of two, after each of its rebounds, from its energy [m].
 /// @param top  of what it falls on [m]
 std::vector<double> rises(World& world, double top, double hz) {
   std::vector<double> out;
@@ -181,8 +180,8 @@ scene::Entity ball_above(double top) {
   return ball;
 }
 
-// Where its speed alone does not lead to the floor within the substep, but what it gains in it does, the floor was not there:
-// 4 % of the energy was lost at 50 Hz.
+// Impacts that only gravity within the substep brings about were missed: 4 % of the energy was lost
+// at 50 Hz.
 TEST(NewtonRebound, IsSeenAtEachMomentOfASubstep) {
   for (const double gravity : {earth, 24.8}) {
     for (const double hz : long_runs::substep_rates({.most = 1000})) {
@@ -210,8 +209,8 @@ TEST(NewtonRebound, IsSeenAtEachMomentOfASubstep) {
   }
 }
 
-// It left from where it was at the substep's beginning, because what it fell on, which the floor
-// carries, could not move as the masses say: 0.189, 0.123 and 0.090 m at 50 Hz instead of 0.147,
+// The ball left from its position at the substep's beginning, because the supported body below it
+// could not move as the masses say. It rose to 0.189, 0.123 and 0.090 m at 50 Hz instead of 0.147,
 // 0.072 and 0.035, without end.
 TEST(NewtonRebound, OnWhatTheFloorCarriesIsAsOnTheFloor) {
   for (const double hz : long_runs::substep_rates()) {
@@ -244,8 +243,8 @@ TEST(NewtonRebound, OnWhatAMotorHoldsIsAsOnTheFloor) {
   }
 }
 
-// Points that meet within a micrometre meet together: one side struck first, and it left with 7
-// rad/s, because the block had pressed its end of the plate down by less than that.
+// Points that meet within a micrometre have their impact together. One side was first, and it left
+// with 7 rad/s, because the block had pressed its end of the plate down by less than that.
 TEST(NewtonRebound, FlatOnWhatCarriesAnotherDoesNotTurn) {
   for (const double hz : long_runs::substep_rates()) {
     for (const double phase : {0.1, 0.4, 0.7, 0.9}) {
@@ -290,7 +289,7 @@ TEST(NewtonRebound, WhatIsPressedSlides) {
   }
 }
 
-// What its floor holds of the push is no energy that it lacks: slow ones stopped at the wall.
+// The floor's share of a push is no energy that the body lacks: slow ones stopped at the wall.
 TEST(NewtonRebound, WhatIsPressedReboundsFromAWall) {
   for (const double hz : long_runs::substep_rates()) {
     for (const double speed : {0.1, 0.5, 2.0}) {

@@ -1,4 +1,4 @@
-// What a motor, a push or a blow sets in motion within a substep meets what is in its way.
+// Motors, pushes and impacts that accelerate a body within a substep: it stops at its obstacles.
 
 #include <gtest/gtest.h>
 
@@ -157,8 +157,8 @@ TEST(NewtonThrown, WhatIsStruckStopsAtAWall) {
   }
 }
 
-// A foot rebounds from the floor, the body above it still falls, and the limit of the slide between them jerks the foot down: it was up to
-// 70 mm below the floor at the substep's end.
+// A foot rebounds from the floor, the body above it still falls, and the limit of the slide between
+// them jerks the foot down. It was up to 70 mm below the floor at the substep's end.
 TEST(NewtonThrown, WhatALimitJerksDownStopsAtTheFloor) {
   for (const double hz : long_runs::substep_rates()) {
     for (const double height : {0.3, 0.4, 0.5}) {
@@ -177,7 +177,8 @@ TEST(NewtonThrown, WhatALimitJerksDownStopsAtTheFloor) {
   }
 }
 
-// A kicker that is faster at once than it takes to the ball: the ball left with v + e gap / h, 26 % less.
+// A kicker reaches its speed at once, before it meets the ball: the ball left with v + e gap / h,
+// 26 % less.
 TEST(NewtonThrown, ABallReboundsFromAKickerThatIsSetInMotion) {
   for (const double hz : long_runs::substep_rates()) {
     World world(newton(false, 0), 1 / hz);
