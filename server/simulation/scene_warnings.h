@@ -9,8 +9,8 @@
 
 namespace ziggurat::simulation {
 
-/// Warns of bodies that overlap, begin in the floor or outside of the arena, fall forever, or have
-/// a size or joints far from the arena's. One warning of each kind, with the number of cases.
+/// Warns of bodies that overlap, begin in the floor or outside of the arena, or fall forever; also
+/// of sizes and joints far from the arena's. One warning of each kind, with the number of cases.
 /// @param simulation  of the scene, at tick 0
 std::vector<scene::Problem> scene_warnings(const scene::Scene& scene, const Simulation& simulation);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What Bullet's manifolds say of the last substep, for plug-ins.
+// Contacts of Bullet's manifolds in the last substep, for plug-ins.
 
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 

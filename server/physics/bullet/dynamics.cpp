@@ -9,8 +9,8 @@
 namespace ziggurat::physics {
 namespace {
 
-/// How far a body's surface may move in a unit of time [m/s], from its last displacement for
-/// links of multi-bodies.
+/// Bound of the speed of a body's surface [m/s], from its last displacement for links of
+/// multi-bodies.
 btScalar surface_speed(const btCollisionObject& object, const contact::Collider& collider,
                        btScalar length) {
   btVector3 centre;

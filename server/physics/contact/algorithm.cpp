@@ -9,8 +9,8 @@
 namespace ziggurat::physics::contact {
 namespace {
 
-/// Where a contact first stuck: a point on either body, in that body's frame. Bullet's friction
-/// only stops velocities; pulling a contact back to its anchor stops creep, too.
+/// Anchor of a contact where it first stuck: a point on either body, in that body's frame. Bullet's
+/// friction only stops velocities; pulling a contact back to its anchor stops creep, too.
 struct Anchor {
   btVector3 on_a, on_b;
 };
@@ -69,7 +69,7 @@ class Algorithm final : public btActivatingCollisionAlgorithm {
   };
 
  private:
-  /// What is carried over from the last step's point.
+  /// State that is carried over from the last step's point.
   struct Old {
     btVector3 local_b;
     btScalar impulse;
@@ -135,7 +135,7 @@ void Algorithm::write(const Manifold& contacts, const Collider& a, const Collide
   take_back(slips);
 }
 
-/// How far a contact has slipped from its anchor, in the tangent plane [m]; sets the anchor.
+/// Slip of a contact from its anchor, in the tangent plane [m]; sets the anchor.
 btVector3 Algorithm::slip(const btManifoldPoint& point, const Old* old, Anchor& anchor) const {
   anchor = {point.m_localPointA, point.m_localPointB};
   if (!old) return btVector3(0, 0, 0);
@@ -150,9 +150,9 @@ btVector3 Algorithm::slip(const btManifoldPoint& point, const Old* old, Anchor& 
   return slip;
 }
 
-/// Tells Bullet the slips to take back. Anchors set at different times contradict each other by
-/// a hair, and four contradicting points would push each other forever: the target is
-/// the rigid motion in the tangent plane that fits them best.
+/// Tells Bullet the slips to take back. Anchors set at different times conflict a little, and four
+/// conflicting points would push each other forever. The target is the rigid motion in the tangent
+/// plane that fits them best.
 void Algorithm::take_back(const std::array<btVector3, 4>& slips) {
   const int count = manifold_->getNumContacts();
   if (count == 0) return;

@@ -4,7 +4,7 @@
 // types.
 //
 // Bullet's own manifolds are not used. They report nothing at positive distance and build a
-// manifold one point per step, so bodies of a centimetre sink, tilt and explode at 10 ms substeps.
+// manifold one point per step. So bodies of a centimetre sink, tilt and explode at 10 ms substeps.
 // Here a whole manifold is made each step, with points that are still apart.
 
 #include <BulletCollision/CollisionShapes/btConvexShape.h>

@@ -55,8 +55,8 @@ struct Ball {
   }
 };
 
-// The height of a rebound is the square of the restitution times the height of the fall, at any
-// time of the impact in a substep: both falls are exact.
+// A rebound rises to the square of the restitution times the height of the fall, at any time of the
+// impact in a substep: both falls are exact.
 TEST(Friction, ABallBouncesAsHighAsItsRestitutionSays) {
   for (const double restitution : {0.5, 1.}) {
     for (const double hz : long_runs::some_of({50., 100., 1000.})) {
