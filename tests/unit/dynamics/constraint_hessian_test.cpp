@@ -89,11 +89,11 @@ void expect_product(Tree first, Tree second) {
   }
 }
 
-TEST(Slope, IsTheProductForFreeBodies) {
+TEST(ConstraintHessian, IsTheProductForFreeBodies) {
   expect_product(box({0.1, 0.2, 0.3}, 2, math::Pose{}), box({0.1, 0.1, 0.1}, 1, math::Pose{}));
 }
 
-TEST(Slope, IsTheProductForAnArmOfSixJointsOnTheGround) {
+TEST(ConstraintHessian, IsTheProductForAnArmOfSixJointsOnTheGround) {
   expect_product(arm(), box({0.1, 0.1, 0.1}, 1, math::Pose{}));
   expect_product(box({0.1, 0.1, 0.1}, 1, math::Pose{}), arm());
 }

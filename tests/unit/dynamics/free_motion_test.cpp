@@ -24,7 +24,7 @@ Vector3 angular_momentum(const Tree& tree) {
 
 // Euler's equation: the inertia's axes rotate with the body, so at the mass matrix of the beginning
 // its momentum becomes L - h w x L. The torque holds a body that rolls in a circle, at any substep.
-TEST(Flight, GyroscopicTorquesActInSubstepsOfAnyLength) {
+TEST(FreeMotion, GyroscopicTorquesActInSubstepsOfAnyLength) {
   Workspace work;
   Tree body = testing::box({0.1, 0.2, 0.3}, 2, {Vector3::Zero(), Quaternion(0.5, 0.1, 0.7, 0.2).normalized()});
   body.v = {0.7, -0.4, 0.9, 0, 0, 0};
@@ -40,7 +40,7 @@ TEST(Flight, GyroscopicTorquesActInSubstepsOfAnyLength) {
   }
 }
 
-TEST(Flight, FallsAlongAParabolaWhateverTheStep) {
+TEST(FreeMotion, FallsAlongAParabolaWhateverTheStep) {
   Workspace work;
   for (const double hz : long_runs::some_of({50.0, 100.0, 1000.0})) {
     Tree body = testing::box({0.1, 0.2, 0.3}, 2, {});
@@ -54,7 +54,7 @@ TEST(Flight, FallsAlongAParabolaWhateverTheStep) {
 
 // L. D. Landau, E. M. Lifshitz, Mechanics, section 37: the components of the angular velocity in
 // the body are Jacobi's elliptic functions, of period 4 K(k) / rate.
-TEST(Flight, AnAsymmetricBodyKeepsEnergyAndMomentumForAMinuteAndFlipsOnTime) {
+TEST(FreeMotion, AnAsymmetricBodyKeepsEnergyAndMomentumForAMinuteAndFlipsOnTime) {
   Workspace work;
   Tree body = testing::box({0.1, 0.2, 0.3}, 1, {});
   const Vector3 inertia = body.links[0].inertia;  // falls: about x most
@@ -90,7 +90,7 @@ TEST(Flight, AnAsymmetricBodyKeepsEnergyAndMomentumForAMinuteAndFlipsOnTime) {
   EXPECT_NEAR((last - first) / (flips - 1) / half_period, 1, 0.002);
 }
 
-TEST(Flight, TurnsExactlyAtAnySpeed) {
+TEST(FreeMotion, TurnsExactlyAtAnySpeed) {
   Workspace work;
   Tree ball = testing::box({0.1, 0.1, 0.1}, 1, {});
   ball.v[2] = 526;
@@ -125,7 +125,7 @@ double precession_error(double hz, double spin) {
   return std::abs(angle / (precession * seconds) - 1);
 }
 
-TEST(Flight, AGyroscopePrecesses) {
+TEST(FreeMotion, AGyroscopePrecesses) {
   EXPECT_LT(precession_error(100, 300), 0.001);
   EXPECT_LT(precession_error(100, 100), 0.001);
   EXPECT_LT(precession_error(1000, 300), 0.0001);
@@ -143,14 +143,14 @@ double energy_error(Tree tree, double seconds, double hz, double scale) {
   return worst;
 }
 
-TEST(Flight, PendulumsKeepTheirEnergy) {
+TEST(FreeMotion, PendulumsKeepTheirEnergy) {
   // Relative to the energy between hanging and level.
   EXPECT_LT(energy_error(testing::chain(2, 0.5, 1), 10, 100, 2 * g * 0.5), 1e-4);
   EXPECT_LT(energy_error(testing::chain(10, 0.1, 0.1), 2, 100, g * 0.5), 1e-4);
 }
 
 // A light chain with a load swings down like a pendulum of its length: v = sqrt(2 g l).
-TEST(Flight, ALightChainSwingsAHeavyLoad) {
+TEST(FreeMotion, ALightChainSwingsAHeavyLoad) {
   Workspace work;
   constexpr int count = long_runs::links_of_a_chain;
   for (const double hz : long_runs::first_of({100, 1000})) {
@@ -166,7 +166,7 @@ TEST(Flight, ALightChainSwingsAHeavyLoad) {
 }
 
 // It ended after 4 000 steps, 44 % of the substep, and fell in slow motion.
-TEST(Flight, AChainOfAMillionthOfItsLoadTakesAllOfItsSteps) {
+TEST(FreeMotion, AChainOfAMillionthOfItsLoadTakesAllOfItsSteps) {
   Workspace work;
   constexpr int count = long_runs::links_of_a_chain;
   Tree coarse = testing::chain(count, 1.0 / count, 1e-3, 1000), fine = coarse;
@@ -179,7 +179,7 @@ TEST(Flight, AChainOfAMillionthOfItsLoadTakesAllOfItsSteps) {
   EXPECT_LT((coarse.position[count] - fine.position[count]).norm(), 1e-5);
 }
 
-TEST(Flight, IsLateWhereAChainIsTooStiff) {
+TEST(FreeMotion, IsLateWhereAChainIsTooStiff) {
   Workspace work;
   Tree tree = testing::chain(5, 0.2, 1e-7, 1e5);
   testing::weigh(tree);

@@ -9,7 +9,7 @@ namespace {
 
 void sweep_only(System& system) { system.solver().options.most_factorisation_work = 0; }
 
-TEST(Sweeps, ConvergeForATowerThatStands) {
+TEST(GaussSeidel, ConvergeForATowerThatStands) {
   testing::Touching world;
   world.planes.push_back({Vector3::Zero(), Vector3::UnitZ()});
   const int count = 5;
@@ -32,7 +32,7 @@ TEST(Sweeps, ConvergeForATowerThatStands) {
   EXPECT_LT((world.tree(count - 1).position[0] - Vector3(0, 0, side * (count - 0.5))).norm(), 1e-3);
 }
 
-TEST(Sweeps, KeepAPileNearTheContactLaw) {
+TEST(GaussSeidel, KeepAPileNearTheContactLaw) {
   testing::Touching world = testing::pile(20);
   sweep_only(world.system);
   double late = 0;
@@ -51,7 +51,7 @@ TEST(Sweeps, KeepAPileNearTheContactLaw) {
 }
 
 // Its cubes tremble without end, by less than its solutions miss the law.
-TEST(Sweeps, LetAHeapSleepThatOnlyTrembles) {
+TEST(GaussSeidel, LetAHeapSleepThatOnlyTrembles) {
   testing::Touching world = testing::pile(50);
   sweep_only(world.system);
   int substeps = 0;
@@ -62,7 +62,7 @@ TEST(Sweeps, LetAHeapSleepThatOnlyTrembles) {
 }
 
 // 5 mm/s^2: slower than the bounds of heaps for 0.2 s.
-TEST(Sweeps, DoNotLetWhatBeginsToSlideSleep) {
+TEST(GaussSeidel, DoNotLetWhatBeginsToSlideSleep) {
   testing::Touching world;
   const double friction = 0.7, acceleration = 5e-3, substep = 0.01;
   world.planes.push_back({Vector3::Zero(), Vector3::UnitZ()});

@@ -27,7 +27,7 @@ void run(Touching& world, double seconds, double hz) {
   for (int i = 0; i < seconds * hz; ++i) world.step(1 / hz);
 }
 
-TEST(Rest, ABoxOnTheFloorSleepsAndWakesByAForce) {
+TEST(Sleeping, ABoxOnTheFloorSleepsAndWakesByAForce) {
   Touching world = floor_with(1, 0.1);
   run(world, 1, 100);
   ASSERT_TRUE(world.system.is_asleep(0));
@@ -39,7 +39,7 @@ TEST(Rest, ABoxOnTheFloorSleepsAndWakesByAForce) {
   EXPECT_NEAR(world.tree(0).v[5], g * 0.01, 1e-9);
 }
 
-TEST(Rest, ABoxInTheAirDoesNotSleep) {
+TEST(Sleeping, ABoxInTheAirDoesNotSleep) {
   for (const double hz : long_runs::some_of({100., 4000.})) {
     Touching world;
     world.gravity = Vector3(0, 0, -5e-3);
@@ -50,7 +50,7 @@ TEST(Rest, ABoxInTheAirDoesNotSleep) {
 }
 
 // 5/7 g sin(0.05 degrees) = 6.1 mm/s^2.
-TEST(Rest, ABallOnAGentleSlopeRolls) {
+TEST(Sleeping, ABallOnAGentleSlopeRolls) {
   const double radius = 0.05, slope = 0.05 * M_PI / 180;
   for (const double hz : long_runs::some_of({50., 100., 1000., 4000.})) {
     System system;
@@ -74,7 +74,7 @@ TEST(Rest, ABallOnAGentleSlopeRolls) {
 
 // A body that a wrench or a servo drives onto a sleeper, without gravity, wakes it before they
 // overlap.
-TEST(Rest, ASleeperWakesByWhatIsAboutToBePushedOntoIt) {
+TEST(Sleeping, ASleeperWakesByWhatIsAboutToBePushedOntoIt) {
   for (const bool by_servo : {false, true}) {
     Touching world = floor_with(1, 0.1);
     world.planes[0].friction = 0.5;
@@ -101,7 +101,7 @@ TEST(Rest, ASleeperWakesByWhatIsAboutToBePushedOntoIt) {
   }
 }
 
-TEST(Rest, ATowerWakesWhereItIsStruck) {
+TEST(Sleeping, ATowerWakesWhereItIsStruck) {
   Touching world = floor_with(3, 0.05);
   const int ball = world.add_box(Vector3::Constant(0.02), 0.1, at(1, 0, 0.14), 0.5);
   world.gravity = Vector3(0, 0, -g);
@@ -157,16 +157,16 @@ void expect_to_wake_by(const std::vector<double>& speeds) {
   }
 }
 
-TEST(Rest, AServoWakesByItsCommand) { expect_to_wake_by({0.5}); }
+TEST(Sleeping, AServoWakesByItsCommand) { expect_to_wake_by({0.5}); }
 
 // Commands of several are no sum: 1.25 * 0.8 - 1 is 0.
-TEST(Rest, ServosWakeByTheirCommandsWhateverTheyAre) {
+TEST(Sleeping, ServosWakeByTheirCommandsWhateverTheyAre) {
   expect_to_wake_by({0.8, -1});
   expect_to_wake_by({-0.4, 0.5});
 }
 
 // Two boxes on a slide, held by friction of 3 N each, and pushed apart by 10 N.
-TEST(Rest, ForcesOnTwoLinksThatCancelWake) {
+TEST(Sleeping, ForcesOnTwoLinksThatCancelWake) {
   System system;
   const Link box = testing::box_link({0.1, 0.1, 0.1}, 1);
   const Link slider = testing::hung(box, 0, JointType::prismatic, Vector3::UnitX(), {0.3, 0, 0},
@@ -185,7 +185,7 @@ TEST(Rest, ForcesOnTwoLinksThatCancelWake) {
 }
 
 // Sleepers are left alone: the bits of what sleeps do not change.
-TEST(Rest, SleepersKeepTheirBits) {
+TEST(Sleeping, SleepersKeepTheirBits) {
   Touching world = floor_with(5, 0.05);
   run(world, 2, 100);
   ASSERT_TRUE(world.system.is_asleep(4));
@@ -195,7 +195,7 @@ TEST(Rest, SleepersKeepTheirBits) {
 }
 
 // An island's bits depend on that island alone.
-TEST(Rest, AnotherIslandChangesNoBit) {
+TEST(Sleeping, AnotherIslandChangesNoBit) {
   const auto fall = [](bool other) {
     Touching world = floor_with(3, 0.05);
     world.tree(2).v = {0.3, 0.2, 1, 0.1, 0.2, 0};

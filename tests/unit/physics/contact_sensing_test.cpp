@@ -85,7 +85,7 @@ TEST(Contacts, OfWhatIsNotReachedYetAreNone) {
   EXPECT_EQ(bench.step(), "<>");
 }
 
-TEST(Touch, ABoxAtRestCarriesItsWeight) {
+TEST(ContactSensing, ABoxAtRestCarriesItsWeight) {
   for (const bool rigid : {true, false}) {  // as Bullet's rigid body, and as its multi-body
     scene::Physics physics = with_floor(g);
     World world(physics, h);
@@ -109,7 +109,7 @@ TEST(Touch, ABoxAtRestCarriesItsWeight) {
   }
 }
 
-TEST(Touch, OfASleepingBoxIsStillItsWeight) {
+TEST(ContactSensing, OfASleepingBoxIsStillItsWeight) {
   World world(with_floor(g), h);
   world.add(box(at(0, 0, 0)));
   world.watch_contacts(0, 0);
@@ -120,7 +120,7 @@ TEST(Touch, OfASleepingBoxIsStillItsWeight) {
   EXPECT_NEAR(world.take_touch(0, 0).impulse.z() / h, g, 0.05 * g);
 }
 
-TEST(Touch, ASqueezedLinkFeelsBothSides) {
+TEST(ContactSensing, ASqueezedLinkFeelsBothSides) {
   World world(with_floor(g), h);
   world.add(box(at(0, 0, 0), 1));
   world.add(box(at(0, 0, 0.1), 3));
@@ -133,7 +133,7 @@ TEST(Touch, ASqueezedLinkFeelsBothSides) {
   EXPECT_NEAR(touch.magnitude / (10 * h), 7 * g, 0.05 * 7 * g);
 }
 
-TEST(Touch, FrictionHoldsABoxOnASlope) {
+TEST(ContactSensing, FrictionHoldsABoxOnASlope) {
   World world(with_gravity(g), h);
   const math::Quaternion tilt = about({0, 1, 0}, 0.1);
   world.add(
@@ -171,7 +171,7 @@ TEST(ContactList, HasEveryContactWithItsForce) {
   }
 }
 
-TEST(Touch, OfARemovedEntityIsNone) {
+TEST(ContactSensing, OfARemovedEntityIsNone) {
   World world(with_floor(g), h);
   world.add(box(at(0, 0, 0)));
   world.watch_contacts(0, 0);

@@ -27,7 +27,7 @@ std::vector<Ball> balls(int count, double width, double smallest, double largest
   return made;
 }
 
-TEST(Nearby, FindsAllThatTouchWhateverTheirSizes) {
+TEST(SphereGrid, FindsAllThatTouchWhateverTheirSizes) {
   auto all = balls(1000, 5, 0.01, 0.1);
   for (const Ball& large : balls(20, 5, 1, 8)) all.push_back(large);
   SphereGrid nearby;
@@ -43,7 +43,7 @@ TEST(Nearby, FindsAllThatTouchWhateverTheirSizes) {
   }
 }
 
-TEST(Nearby, LooksAtFewOfMany) {
+TEST(SphereGrid, LooksAtFewOfMany) {
   const auto all = balls(20'000, 100, 0.1, 0.2);
   SphereGrid nearby;
   for (std::size_t i = 0; i < all.size(); ++i) nearby.add(i, all[i].centre, all[i].radius);
@@ -53,7 +53,7 @@ TEST(Nearby, LooksAtFewOfMany) {
   EXPECT_LT(visits, 2 * all.size());
 }
 
-TEST(Nearby, WhatHasNoSizeIsEverywhere) {
+TEST(SphereGrid, WhatHasNoSizeIsEverywhere) {
   SphereGrid nearby;
   nearby.add(3, {0, 0, 0}, 0);
   nearby.add(4, {0, 0, 0}, std::numeric_limits<btScalar>::infinity());
