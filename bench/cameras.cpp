@@ -20,7 +20,7 @@
 #include "devices/kind.h"
 #include "scene/reader.h"
 #include "simulation/layout.h"
-#include "simulation/place.h"
+#include "simulation/placement.h"
 
 namespace ziggurat::devices {
 std::unique_ptr<Kind> make_cameras();  // camera.cpp
@@ -120,7 +120,7 @@ void count_rays(const world::Layout& shown, devices::Tick tick, devices::Kind& c
 
 double measure(int far_tags) {
   const scene::Scene scene = read(far_tags);
-  const std::vector<scene::Entity> entities = simulation::place(scene, 1);
+  const std::vector<scene::Entity> entities = simulation::place_entities(scene, 1);
   const world::Layout layout = simulation::make_layout(scene, entities, 0.01);
   physics::World physics(scene.physics, 0.01);
   physics::Rays rays(scene.physics);

@@ -1,5 +1,5 @@
-// What a director costs that reads the poses of 1 000 robots at each tick: ticks with and without it, by turns, in one
-// world and one process; the director is a process of its own, on the C++ client. Wall time.
+// Cost of a director that reads the poses of 1 000 robots at each tick: ticks with and without it,
+// by turns, in one world. The director is a process of its own, on the C++ client. Wall time.
 //
 // usage: bench_directing [TICKS] [ROBOTS]
 

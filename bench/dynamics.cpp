@@ -1,4 +1,4 @@
-// What a substep of the equations of motion and the contact solver costs, without collision
+// Cost of a substep of the equations of motion and the contact solver, without collision
 // detection: two-wheeled robots that drive, boxes at rest, towers.
 //
 // usage: bench_dynamics          prints microseconds of CPU time per substep
@@ -52,9 +52,9 @@ Tree robot(double x, double y) {
 }
 
 /// Contacts of a robot with the floor: two of each wheel's edge and one of each of two casters.
-void touch_floor(const Tree& tree, int index, std::vector<Contact>& out) {
+void touch_floor(const Tree& tree, int index, std::vector<ContactPoint>& out) {
   const auto add = [&](int link, const Vector3& point, double mu) {
-    Contact contact;
+    ContactPoint contact;
     contact.a = {index, link};
     contact.point = Vector3(point.x(), point.y(), 0);
     contact.gap = point.z();
@@ -74,7 +74,7 @@ void touch_floor(const Tree& tree, int index, std::vector<Contact>& out) {
   }
 }
 
-void remember(std::vector<Contact>& now, const std::vector<Contact>& before) {
+void remember(std::vector<ContactPoint>& now, const std::vector<ContactPoint>& before) {
   for (std::size_t i = 0; i < now.size() && now.size() == before.size(); ++i) {
     now[i].impulse = before[i].impulse;
   }
@@ -88,12 +88,12 @@ void bench_robots(int count) {
     for (int wheel = 0; wheel < 2; ++wheel) {
       Servo servo;
       servo.tree = i, servo.dof = 6 + wheel;
-      servo.speed = 3 + wheel + 0.1 * (i % 7);
+      servo.target_velocity = 3 + wheel + 0.1 * (i % 7);
       servo.lower = -1e-3, servo.upper = 1e-3;
       servos.push_back(servo);
     }
   }
-  std::vector<Contact> contacts, before;
+  std::vector<ContactPoint> contacts, before;
   double total = 0;
   const int steps = 20000 / count + 200;
   Report worst;
@@ -117,7 +117,7 @@ void bench_robots(int count) {
 /// Towers that stand; contacts of sleepers are not told, as collision detection would not find them.
 void bench_boxes(int count, int height, bool sleeps) {
   System system;
-  system.rest.sleeps = sleeps;
+  system.sleeping.enabled = sleeps;
   const double side = 0.05, mass = 0.1;
   for (int i = 0; i < count; ++i) {
     for (int k = 0; k < height; ++k) {
@@ -127,7 +127,7 @@ void bench_boxes(int count, int height, bool sleeps) {
       system.trees.push_back(tree);
     }
   }
-  std::vector<Contact> contacts, before;
+  std::vector<ContactPoint> contacts, before;
   double total = 0;
   const int steps = 20000 / (count * height) + 100;
   for (int i = 0; i < steps; ++i) {
@@ -135,12 +135,12 @@ void bench_boxes(int count, int height, bool sleeps) {
     contacts.clear();
     for (int t = 0; t < count * height; ++t) {
       const Tree& tree = system.trees[t];
-      if (system.asleep(t)) continue;
+      if (system.is_asleep(t)) continue;
       for (int corner = 0; corner < 4; ++corner) {
         const Vector3 local((corner & 1 ? 1 : -1) * side / 2, (corner & 2 ? 1 : -1) * side / 2,
                             -side / 2);
         const Vector3 point = tree.position[0] + tree.rotation[0] * local;
-        Contact contact;
+        ContactPoint contact;
         contact.a.tree = t;
         contact.b.tree = t % height ? t - 1 : -1;
         const double floor = t % height ? system.trees[t - 1].position[0].z() + side / 2 : 0;
@@ -188,15 +188,15 @@ void bench_pile(int count, int steps, double hz, bool verbose) {
     const double time = cpu_seconds() - start;
     total += time;
     worst_time = std::max(worst_time, time);
-    misses.push_back(report.miss);
+    misses.push_back(report.residual);
     points = std::max(points, world.contacts.size());
-    iterations += report.most_iterations, descents += report.most_descents, interior += report.most_interior;
+    iterations += report.most_iterations, descents += report.most_augmented_lagrangian_steps, interior += report.most_interior_point_steps;
     sweeps += report.most_sweeps;
-    for (const Contact& contact : world.contacts) deepest = std::max(deepest, -contact.gap);
+    for (const ContactPoint& contact : world.contacts) deepest = std::max(deepest, -contact.gap);
     if (verbose) {
       std::printf("%4d: %5zu points, %2d iterations, %3d descents, %2d interior, %3d sweeps, miss %.1e, %.2f ms\n", i,
-                  world.contacts.size(), report.most_iterations, report.most_descents, report.most_interior,
-                  report.most_sweeps, report.miss, 1e3 * time);
+                  world.contacts.size(), report.most_iterations, report.most_augmented_lagrangian_steps, report.most_interior_point_steps,
+                  report.most_sweeps, report.residual, 1e3 * time);
     }
   }
   double energy = 0, highest = 0;

@@ -1,5 +1,5 @@
-// How long it takes to open a recording and to read the poses at a moment, the exact state included:
-// bench_seek FILE.mcap [TIMES]
+// Time to open a recording and to read the poses at a moment, the exact state included: bench_seek
+// FILE.mcap [TIMES]
 
 #include <algorithm>
 #include <chrono>

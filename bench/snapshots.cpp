@@ -1,5 +1,5 @@
-// What it takes to keep a world and to go back to it, with the solver that a scene chooses.
-// Thread CPU time, medians of 21.
+// Cost of a snapshot and of a restore, with the solver that a scene chooses. Thread CPU time,
+// medians of 21.
 //
 // usage: bench_snapshots TICK SCENE...
 

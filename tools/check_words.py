@@ -7,6 +7,9 @@ Texts and identifiers here are plain technical English: short active sentences w
 standard words. WORDS lists what came up again and again in their place, with what to write instead.
 Each use is printed as file:line: text; the exit code is 1 if there is any. Recorded messages, the
 licence and results of benchmarks are left out.
+
+Comments of the C++ sources in COMMENTED begin with the field's noun, or with a verb, and no sentence of
+theirs has more than 25 words; what stands in parentheses does not count.
 """
 
 import re
@@ -35,6 +38,13 @@ WORDS = {
 }
 PATTERN = re.compile("|".join(rf"(?P<w{i}>(?<![A-Za-z0-9-])(?:{word})(?![A-Za-z0-9-]))"
                               for i, word in enumerate(WORDS)))
+
+COMMENTED = ["server/dynamics", "server/physics", "server/simulation", "tests/unit/dynamics", "tests/unit/physics",
+             "tests/unit/simulation"]
+LONGEST_SENTENCE = 25  # words
+COMMENT = re.compile(r"(?P<code>.*?)//[/!]?<?(?P<text> .*)?$")
+VAGUE = re.compile(r"\W*(What|Of|Those|That|How|Where|Whose)\b")
+END = re.compile(r"(?<=[.;:?])\s+|\s@\w+\s+|\s- ")  # of a sentence
 
 TOPS = ["README.md", "quickstart", "CMakeLists.txt", "bench", "clients", "cmake", "conformance",
         "docker", "docs", "protocol", "scenes", "server", "tests", "tools"]
@@ -70,9 +80,40 @@ def check(root):
     return found
 
 
+def comments(lines):
+    """Yields (line number, text) of each comment; lines of comments that follow each other are one."""
+    number, text, code = 0, [], ""
+    for at, line in enumerate([*lines, ""], 1):
+        match = COMMENT.fullmatch(line)
+        continues = match and text and not match["code"].strip() and not code
+        if not continues and text:
+            yield number, " ".join(text)
+            text = []
+        if match and match["code"].count('"') % 2 == 0:
+            number, code = (number if continues else at), match["code"].strip()
+            text.append((match["text"] or "").strip())
+
+
+def check_comments(root):
+    """All comments below root that begin vaguely or have a long sentence, as file:line: text."""
+    found = []
+    for path in files(root):
+        name = path.relative_to(root).as_posix()
+        if path.suffix not in {".h", ".cpp"} or not any(name.startswith(folder + "/") for folder in COMMENTED):
+            continue
+        for number, text in comments(path.read_text(encoding="utf-8").splitlines()):
+            if match := VAGUE.match(text):
+                found.append(f"{name}:{number}: '{match[1]} …'; begin the comment with the field's noun, or with a verb")
+            longest = max(END.split(re.sub(r"\([^()]*\)", "", " " + text)), key=lambda sentence: len(sentence.split()))
+            if len(longest.split()) > LONGEST_SENTENCE:
+                found.append(f"{name}:{number}: a sentence of {len(longest.split())} words; write at most "
+                             f"{LONGEST_SENTENCE}: '{longest.strip()[:60]} …'")
+    return found
+
+
 def main():
     root = named_root(__doc__)
-    found = check(root)
+    found = check(root) + check_comments(root)
     print("\n".join(found) or f"{sum(1 for _ in files(root))} texts: no word of the list")
     return 1 if found else 0
 

@@ -76,7 +76,7 @@ double our_gap(double h) {
   world.add_box(Vector3::Constant(slider_side), 1,
                 {Vector3(0, 0, slider_side / 2), math::Quaternion::Identity()}, slope_friction);
   world.tree(0).v[3] = slider_speed;
-  move(world.tree(0));
+  velocity_kinematics(world.tree(0));
   double highest = 0;
   for (int i = 0; i < 0.8 / h; ++i) {
     world.step(h);
@@ -112,7 +112,7 @@ double our_tumbling(double h) {
   system.trees.push_back(dynamics::testing::box(tumbler_sides, 1, {}));
   dynamics::Tree& tree = system.trees[0];
   for (int k = 0; k < 3; ++k) tree.v[k] = tumbler_spin[k];
-  move(tree);
+  velocity_kinematics(tree);
   const double start = dynamics::kinetic_energy(tree);
   for (int i = 0; i < 10 / h; ++i) system.step(h, {});
   return dynamics::kinetic_energy(tree) / start - 1;
@@ -202,7 +202,7 @@ double their_stack(double h, const Stack& stack, bool stiff) {
   return (model.place(stack.count) - start).norm();
 }
 
-// ---- What a substep costs.
+// ---- Cost of a substep.
 
 scene::Entity robot(double x, double y) {
   using scenes::at;

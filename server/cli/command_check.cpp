@@ -14,7 +14,7 @@
 #include "run/loading.h"
 #include "scene/tag_pattern.h"
 #include "scene/values.h"
-#include "simulation/doubts.h"
+#include "simulation/scene_warnings.h"
 #include "simulation/simulation.h"
 #include "text/numbers.h"
 
@@ -148,7 +148,7 @@ Finding examine(const std::string& path, const run::Options& options) {
     const simulation::Simulation simulation(read.scene, {run::choose_seed(options, read.scene)});
     finding.entities = simulation.layout().entities.size();
     finding.robots = simulation.layout().robots.size();
-    add(simulation::doubts(read.scene, simulation));
+    add(simulation::scene_warnings(read.scene, simulation));
     for (const auto& notice : simulation.notices()) {
       add({{Severity::notice, path, read.scene.physics.where, notice}});
     }

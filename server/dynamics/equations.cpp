@@ -26,13 +26,13 @@ Inertia link_inertia(const Tree& tree, int i) {
   return out;
 }
 
-/// What the wrenches on all links do along each dof; leaves in each link's place those of all that
-/// it carries.
+/// Projects the wrenches on all links on each dof. Each link's wrench becomes the sum over its
+/// subtree.
 void project_wrenches(const Tree& tree, Workspace& work, std::span<double> out) {
   for (int i = static_cast<int>(tree.links.size()) - 1; i >= 0; --i) {
     const int first = tree.first_dof[i];
     for (int k = first; k < first + tree.dof_count[i]; ++k) {
-      out[k] = dot(tree.axes[k], work.wrench[i]);
+      out[k] = dot(tree.motion_subspace[k], work.wrench[i]);
     }
     if (i > 0) {
       Wrench& parent = work.wrench[tree.links[i].parent];
@@ -41,7 +41,7 @@ void project_wrenches(const Tree& tree, Workspace& work, std::span<double> out) 
   }
 }
 
-/// The mass matrix of a free root that carries `inertia`.
+/// Sets the mass matrix of a floating base with a composite inertia.
 void set_root_mass(const Inertia& inertia, double* mass, int n) {
   const Vector3& h = inertia.first_moment;
   const double coupling[3][3] = {{0, -h.z(), h.y()}, {h.z(), 0, -h.x()}, {-h.y(), h.x(), 0}};
@@ -56,43 +56,43 @@ void set_root_mass(const Inertia& inertia, double* mass, int n) {
 
 }  // namespace
 
-void compute_mass(const Tree& tree, Workspace& work) {
+void compute_mass_matrix(const Tree& tree, Workspace& work) {
   const int size = static_cast<int>(tree.links.size()), n = tree.dofs;
-  work.own_inertia.resize(size);
-  work.inertia.resize(size);
+  work.link_inertia.resize(size);
+  work.composite_inertia.resize(size);
   work.wrench.resize(size);
   work.acceleration.resize(size);
   work.scratch.resize(n);
   work.mass.resize(n * n);
   for (int i = 0; i < size; ++i) {
-    work.own_inertia[i] =
+    work.link_inertia[i] =
         tree.links[i].joint == JointType::fixed ? Inertia{} : link_inertia(tree, i);
-    work.inertia[i] = work.own_inertia[i];
+    work.composite_inertia[i] = work.link_inertia[i];
   }
   if (size > 1) work.mass.assign(work.mass.size(), 0);  // dofs on different branches do not couple
-  const int root = tree.free_root ? 6 : 0;              // dofs along the world's axes
+  const int root = tree.has_floating_base ? 6 : 0;              // dofs along the world's axes
   for (int i = size - 1; i >= 0; --i) {
     const int first = tree.first_dof[i];
     for (int k = std::max(first, root); k < first + tree.dof_count[i]; ++k) {
-      const Wrench momentum = work.inertia[i] * tree.axes[k];
+      const Wrench momentum = work.composite_inertia[i] * tree.motion_subspace[k];
       for (int j = k; j >= root; j = tree.parent_dof[j]) {
-        work.mass[k * n + j] = work.mass[j * n + k] = dot(tree.axes[j], momentum);
+        work.mass[k * n + j] = work.mass[j * n + k] = dot(tree.motion_subspace[j], momentum);
       }
       for (int j = 0; j < root; ++j) {
         const double part = j < 3 ? momentum.moment[j] : momentum.force[j - 3];
         work.mass[k * n + j] = work.mass[j * n + k] = part;
       }
     }
-    if (i > 0) work.inertia[tree.links[i].parent] += work.inertia[i];
+    if (i > 0) work.composite_inertia[tree.links[i].parent] += work.composite_inertia[i];
   }
-  if (tree.free_root) set_root_mass(work.inertia[0], work.mass.data(), n);
+  if (tree.has_floating_base) set_root_mass(work.composite_inertia[0], work.mass.data(), n);
 }
 
 void bias_accelerations(const Tree& tree, Workspace& work) {
   work.acceleration.resize(tree.links.size());
   for (int i = 0; i < static_cast<int>(tree.links.size()); ++i) {
     const Link& link = tree.links[i];
-    const Motion& motion = tree.motion[i];
+    const Motion& motion = tree.spatial_velocity[i];
     Motion& acceleration = work.acceleration[i];
     if (i == 0) {
       // The root's coordinates are of its centre of mass, which moves away from O.
@@ -102,9 +102,9 @@ void bias_accelerations(const Tree& tree, Workspace& work) {
       Motion relative;
       const int first = tree.first_dof[i];
       for (int k = first; k < first + tree.dof_count[i]; ++k) {
-        relative = relative + tree.axes[k] * tree.v[k];
+        relative = relative + tree.motion_subspace[k] * tree.v[k];
       }
-      acceleration = acceleration + cross(tree.motion[link.parent], relative);
+      acceleration = acceleration + cross(tree.spatial_velocity[link.parent], relative);
     }
   }
 }
@@ -116,8 +116,8 @@ void bias_forces(const Tree& tree, Workspace& work, std::span<double> out) {
       work.wrench[i] = Wrench{};
       continue;
     }
-    const Inertia& inertia = work.own_inertia[i];
-    const Motion& motion = tree.motion[i];
+    const Inertia& inertia = work.link_inertia[i];
+    const Motion& motion = tree.spatial_velocity[i];
     work.wrench[i] = inertia * work.acceleration[i] + cross(motion, inertia * motion);
   }
   project_wrenches(tree, work, out);
@@ -137,13 +137,13 @@ void external_forces(const Tree& tree, Workspace& work, std::span<double> out, b
   project_wrenches(tree, work, out);
 }
 
-void factor_mass(const Tree& tree, Workspace& work, double length) {
+void factor_mass_matrix(const Tree& tree, Workspace& work, double time_step) {
   const int n = tree.dofs;
   work.factor.resize(n * n);
   const int* parent = tree.parent_dof.data();
   double* m = work.factor.data();
   std::copy(work.mass.begin(), work.mass.end(), m);
-  for (int k = 0; k < n; ++k) m[k * n + k] += length * tree.damping[k];
+  for (int k = 0; k < n; ++k) m[k * n + k] += time_step * tree.damping[k];
   for (int k = n - 1; k >= 0; --k) {
     const double inverse = 1 / m[k * n + k];
     for (int i = parent[k]; i >= 0; i = parent[i]) {
@@ -155,7 +155,7 @@ void factor_mass(const Tree& tree, Workspace& work, double length) {
   }
 }
 
-void solve_mass(const Tree& tree, const Workspace& work, double* x) {
+void solve_mass_matrix(const Tree& tree, const Workspace& work, double* x) {
   const int n = tree.dofs;
   const int* parent = tree.parent_dof.data();
   const double* m = work.factor.data();
@@ -182,29 +182,29 @@ double mobility(const Tree& tree, Workspace& work, int dof) {
   return sum;
 }
 
-void solve_held(const Tree& tree, Workspace& work, const Drive& drive, std::span<double> x) {
+void solve_prescribed(const Tree& tree, Workspace& work, const PrescribedJoints& drive, std::span<double> x) {
   const int n = tree.dofs;
-  for (std::size_t k = 0; k < drive.held.size(); ++k) {
-    if (!drive.held[k]) continue;
+  for (std::size_t k = 0; k < drive.prescribed.size(); ++k) {
+    if (!drive.prescribed[k]) continue;
     for (int i = 0; i < n; ++i) {
-      if (!drive.held[i]) x[i] -= work.mass[i * n + k] * x[k];
+      if (!drive.prescribed[i]) x[i] -= work.mass[i * n + k] * x[k];
       work.mass[i * n + k] = work.mass[k * n + i] = 0;
     }
     work.mass[k * n + k] = 1;
   }
-  factor_mass(tree, work, 0);
-  solve_mass(tree, work, x.data());
+  factor_mass_matrix(tree, work, 0);
+  solve_mass_matrix(tree, work, x.data());
 }
 
-void accelerations(Tree& tree, Workspace& work, const Drive& drive, std::span<double> out) {
-  place(tree);
-  move(tree);
-  compute_mass(tree, work);
+void forward_dynamics(Tree& tree, Workspace& work, const PrescribedJoints& drive, std::span<double> out) {
+  forward_kinematics(tree);
+  velocity_kinematics(tree);
+  compute_mass_matrix(tree, work);
   external_forces(tree, work, out, false, true);
   bias_forces(tree, work, work.scratch);
   for (int k = 0; k < tree.dofs; ++k) out[k] -= work.scratch[k] + tree.damping[k] * tree.v[k];
-  for (std::size_t k = 0; k < drive.held.size(); ++k) out[k] = drive.held[k] ? 0 : out[k] + drive.push[k];
-  solve_held(tree, work, drive, out);
+  for (std::size_t k = 0; k < drive.prescribed.size(); ++k) out[k] = drive.prescribed[k] ? 0 : out[k] + drive.force[k];
+  solve_prescribed(tree, work, drive, out);
 }
 
 }  // namespace ziggurat::dynamics

@@ -5,12 +5,12 @@
 #include <limits>
 #include <utility>
 
-#include "dynamics/slope.h"
+#include "dynamics/constraint_hessian.h"
 
 namespace ziggurat::dynamics {
 namespace {
 
-using Speeds = std::vector<std::array<double, Block::most_rows>>;
+using Speeds = std::vector<std::array<double, Constraint::most_rows>>;
 
 /// right += the columns of a side times the impulses of R rows.
 template <int R>
@@ -21,427 +21,428 @@ void add_impulse_of(const double* columns, std::span<const int> dofs, const doub
     for (int r = 0; r < R; ++r) sum += columns[k * R + r] * impulse[r];
     right[k] = sum;
   };
-  const bool leading = leads(dofs);
+  const bool leading = begins_with_floating_base(dofs);
   for (int k = 0; k < 6 && leading; ++k) add(k);
   for (std::size_t e = leading ? 6 : 0; e < dofs.size(); ++e) add(dofs[e]);
 }
 
-/// out += J^T impulse of a block, row by row.
-void add_rows_of(const Problem& problem, const Block& block, const double* impulse,
+/// out += J^T impulse of a constraint, row by row.
+void add_rows_of(const Problem& problem, const Constraint& constraint, const double* impulse,
                  std::vector<double>& out) {
-  const auto add_side = [&](int place, int first, std::span<const int> dofs) {
-    if (place < 0) return;
-    by_rows(block.rows, [&](auto rows) {
+  const auto add_side = [&](int index, int first, std::span<const int> dofs) {
+    if (index < 0) return;
+    dispatch_rows(constraint.rows, [&](auto rows) {
       add_impulse_of<rows()>(problem.jacobian.data() + first, dofs, impulse,
-                             out.data() + problem.offset[place]);
+                             out.data() + problem.offset[index]);
     });
   };
-  add_side(block.a, block.ja, block.dofs_a);
-  add_side(block.b, block.jb, block.dofs_b);
+  add_side(constraint.a, constraint.jacobian_a, constraint.dofs_a);
+  add_side(constraint.b, constraint.jacobian_b, constraint.dofs_b);
 }
 
-/// A block's impulses by its linearised law.
+/// Sets a constraint's impulses by its linearised law.
 template <int R>
-void take_impulse(const Linear& linear, const double* u, Block& block) {
+void set_impulse(const LinearisedLaw& linear, const double* u, Constraint& constraint) {
   for (int r = 0; r < R; ++r) {
     double sum = linear.constant[r];
-    for (int c = 0; c < R; ++c) sum -= linear.slope[r * R + c] * u[c];
-    block.impulse[r] = sum;
+    for (int c = 0; c < R; ++c) sum -= linear.hessian[r * R + c] * u[c];
+    constraint.impulse[r] = sum;
   }
 }
 
-/// What the linearised law changes of a block's impulses from speeds u to speeds w.
+/// Changes a constraint's impulses by its linearised law, from velocities u to w.
 template <int R>
-void change_impulse(const Linear& linear, const double* u, const double* w, Block& block) {
+void change_impulse(const LinearisedLaw& linear, const double* u, const double* w, Constraint& constraint) {
   double change[R];
   for (int c = 0; c < R; ++c) change[c] = w[c] - u[c];
   for (int r = 0; r < R; ++r) {
-    double sum = block.impulse[r];
-    for (int c = 0; c < R; ++c) sum -= linear.slope[r * R + c] * change[c];
-    block.impulse[r] = sum;
+    double sum = constraint.impulse[r];
+    for (int c = 0; c < R; ++c) sum -= linear.hessian[r * R + c] * change[c];
+    constraint.impulse[r] = sum;
   }
 }
 
-/// The sum of a block's speeds and impulses, which is no number if one of them is none.
+/// Sum of a constraint's speeds and impulses, NaN if one of them is.
 /// @param scale  grows to the largest speed, or change of speed by an impulse
 template <int R>
-double add_to_scale(const Block& block, const double* u, double& scale) {
+double add_to_scale(const Constraint& constraint, const double* u, double& scale) {
   double sum = 0;
   for (int r = 0; r < R; ++r) {
-    const double speed = std::abs(u[r]), impulse = std::abs(block.impulse[r]);
+    const double speed = std::abs(u[r]), impulse = std::abs(constraint.impulse[r]);
     sum += speed + impulse;
-    scale = std::max(scale, std::max(speed, impulse * block.mobility[r]));
+    scale = std::max(scale, std::max(speed, impulse * constraint.mobility[r]));
   }
   return sum;
 }
 
-/// @param scale      out: the largest of the contacts' speeds, or change of speed by an impulse; of servos and limits
-///                   where nothing touches: a fast wheel does not say how exact contacts must be
+/// Finds the scale of speeds in an island.
+/// @param scale      out: the largest speed of contacts, or change of speed by an impulse; of
+///                   servos and limits if there is no contact
 /// @param of_joints  out: of servos and limits
-/// @return           false if a speed or an impulse is no number
+/// @return           false if a speed or an impulse is not finite
 bool find_scale(const Problem& problem, const Speeds& speeds, double& scale, double& of_joints) {
   double sum = 0;
   scale = of_joints = 0;
-  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
-    const Block& block = problem.blocks[i];
-    by_rows(block.rows, [&](auto rows) {
-      sum += add_to_scale<rows()>(block, speeds[i].data(),
-                                  block.kind == Block::Source::contact ? scale : of_joints);
+  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
+    const Constraint& constraint = problem.constraints[i];
+    dispatch_rows(constraint.rows, [&](auto rows) {
+      sum += add_to_scale<rows()>(constraint, speeds[i].data(),
+                                  constraint.kind == Constraint::Kind::contact ? scale : of_joints);
     });
   }
   if (scale == 0) scale = of_joints;
-  return std::isfinite(sum);  // the maxima skip what is no number
+  return std::isfinite(sum);  // the maxima skip NaN
 }
 
-/// @param enough  a miss of more need not be exact
-double miss_beyond(const Problem& problem, const Speeds& speeds, double enough) {
+/// Largest residual of the constraints.
+/// @param enough  larger residuals need not be exact
+double residual_beyond(const Problem& problem, const Speeds& speeds, double enough) {
   double worst = 0;
-  for (std::size_t i = 0; i < problem.blocks.size() && worst <= enough; ++i) {
-    worst = std::max(worst, miss(problem.blocks[i], speeds[i].data()));
+  for (std::size_t i = 0; i < problem.constraints.size() && worst <= enough; ++i) {
+    worst = std::max(worst, residual(problem.constraints[i], speeds[i].data()));
   }
   return worst;
 }
 
-/// Of all blocks, see law.h [J].
-double wrong_energy(const Problem& problem, const Speeds& speeds) {
+/// Merit function of all constraints, see contact_law.h [J].
+double merit(const Problem& problem, const Speeds& speeds) {
   double sum = 0;
-  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
-    sum += dynamics::wrong_energy(problem.blocks[i], speeds[i].data());
+  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
+    sum += dynamics::merit(problem.constraints[i], speeds[i].data());
   }
   return sum;
 }
 
-/// Whether masses are so alike that what is little for the speeds of one tree is so for those of another.
-bool are_alike(std::span<const double> masses) {
+/// Whether masses are so similar that one tolerance of speeds suits all trees.
+bool have_similar_masses(std::span<const double> masses) {
   constexpr double most = 100;  // the heaviest over the lightest
   const auto [least, greatest] = std::ranges::minmax(masses);
   return greatest <= most * least;
 }
 
-/// Of a problem that is not solved yet.
-Beginning beginning_of(const Problem& problem) {
-  Beginning out;
-  for (const Block& block : problem.blocks) {
-    if (block.kind != Block::Source::contact) continue;
-    double u[Block::most_rows];
-    problem.speeds(block, u);
-    for (int r = 0; r < std::min(block.rows, 3); ++r) out.fastest = std::max(out.fastest, std::abs(u[r]));
+/// Initial velocities of an unsolved problem.
+InitialVelocities initial_velocities(const Problem& problem) {
+  InitialVelocities out;
+  for (const Constraint& constraint : problem.constraints) {
+    if (constraint.kind != Constraint::Kind::contact) continue;
+    double u[Constraint::most_rows];
+    problem.constraint_velocity(constraint, u);
+    for (int r = 0; r < std::min(constraint.rows, 3); ++r) out.fastest_contact = std::max(out.fastest_contact, std::abs(u[r]));
   }
-  for (const Tree* tree : problem.trees) out.fall = std::max(out.fall, problem.length * tree->gravity.norm());
+  for (const Tree* tree : problem.trees) out.gravity_change = std::max(out.gravity_change, problem.time_step * tree->gravity.norm());
   return out;
 }
 
 }  // namespace
 
-void start_matrix(const Problem& problem, BlockMatrix& matrix) {
+void assemble_mass(const Problem& problem, BlockMatrix& matrix) {
   matrix.clear();
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];
     double* block = matrix.block(static_cast<int>(i), static_cast<int>(i));
     std::copy_n(problem.mass_of(i), tree.dofs * tree.dofs, block);
     for (int k = 0; k < tree.dofs; ++k) {
-      block[k * tree.dofs + k] += problem.length * tree.damping[k];
+      block[k * tree.dofs + k] += problem.time_step * tree.damping[k];
     }
   }
 }
 
-/// The speeds of all blocks at the present velocities.
-void Solver::take_speeds(const Problem& problem) {
-  speeds_.resize(problem.blocks.size());
-  for (std::size_t i = 0; i < speeds_.size(); ++i) {
-    problem.speeds(problem.blocks[i], speeds_[i].data());
+/// Computes the velocities u of all constraints at the present velocities.
+void VelocitySolver::compute_constraint_velocities(const Problem& problem) {
+  constraint_velocities_.resize(problem.constraints.size());
+  for (std::size_t i = 0; i < constraint_velocities_.size(); ++i) {
+    problem.constraint_velocity(problem.constraints[i], constraint_velocities_[i].data());
   }
 }
 
-/// One step of Newton's method. Speeds must be taken, and are taken at the velocities that it
-/// finds.
-/// @return  false if the matrix has no factors; then nothing has changed
-bool Solver::step(Problem& problem) {
+/// One step of Newton's method. Constraint velocities must be valid, and are updated.
+/// @return  false if the matrix is singular; then nothing has changed
+bool VelocitySolver::newton_step(Problem& problem) {
   kept_velocity_ = problem.velocity;
-  start_matrix(problem, matrix_);
+  assemble_mass(problem, matrix_);
   problem.velocity = problem.momentum;
-  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
-    linearise(problem.blocks[i], speeds_[i].data(), linear_[i]);
-    add_slope(problem, problem.blocks[i], linear_[i], sloped_, matrix_);
-    if (linear_[i].zero) continue;
-    add_rows_of(problem, problem.blocks[i], linear_[i].constant.data(), problem.velocity);
+  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
+    linearise(problem.constraints[i], constraint_velocities_[i].data(), laws_[i]);
+    add_constraint_hessian(problem, problem.constraints[i], laws_[i], hessian_jacobian_, matrix_);
+    if (laws_[i].is_zero) continue;
+    add_rows_of(problem, problem.constraints[i], laws_[i].constant.data(), problem.velocity);
   }
   if (!matrix_.factor()) {
     problem.velocity = kept_velocity_;
     return false;
   }
   matrix_.solve(problem.velocity.data());
-  take_speeds(problem);
-  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
-    Block& block = problem.blocks[i];
-    const Linear& linear = linear_[i];
-    if (linear.zero) {
-      block.impulse.fill(0);
+  compute_constraint_velocities(problem);
+  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
+    Constraint& constraint = problem.constraints[i];
+    const LinearisedLaw& linear = laws_[i];
+    if (linear.is_zero) {
+      constraint.impulse.fill(0);
       continue;
     }
-    by_rows(block.rows, [&](auto rows) { take_impulse<rows()>(linear, speeds_[i].data(), block); });
+    dispatch_rows(constraint.rows, [&](auto rows) { set_impulse<rows()>(linear, constraint_velocities_[i].data(), constraint); });
   }
   return true;
 }
 
-/// One more step with the factors of the last one, for what it left: near the solution the matrix
-/// hardly changes. Speeds must be taken, and are taken at the velocities that it finds.
-void Solver::correct(Problem& problem) {
-  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
-    Block& block = problem.blocks[i];
-    linearise(block, speeds_[i].data(), now_);
-    if (now_.zero) {
-      block.impulse.fill(0);
+/// One step of the simplified Newton method, with the last factors: near the solution the matrix
+/// hardly changes. Constraint velocities must be valid, and are updated.
+void VelocitySolver::simplified_newton_step(Problem& problem) {
+  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
+    Constraint& constraint = problem.constraints[i];
+    linearise(constraint, constraint_velocities_[i].data(), law_);
+    if (law_.is_zero) {
+      constraint.impulse.fill(0);
       continue;
     }
-    by_rows(block.rows, [&](auto rows) { take_impulse<rows()>(now_, speeds_[i].data(), block); });
+    dispatch_rows(constraint.rows, [&](auto rows) { set_impulse<rows()>(law_, constraint_velocities_[i].data(), constraint); });
   }
-  imbalance(problem, residual_);
-  kept_speeds_ = speeds_;
+  momentum_residual(problem, residual_);
+  kept_constraint_velocities_ = constraint_velocities_;
   matrix_.solve(residual_.data());
   for (std::size_t k = 0; k < residual_.size(); ++k) problem.velocity[k] += residual_[k];
-  take_speeds(problem);
-  for (std::size_t i = 0; i < problem.blocks.size(); ++i) {
-    if (linear_[i].zero) continue;
-    by_rows(problem.blocks[i].rows, [&](auto rows) {
-      change_impulse<rows()>(linear_[i], kept_speeds_[i].data(), speeds_[i].data(),
-                             problem.blocks[i]);
+  compute_constraint_velocities(problem);
+  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
+    if (laws_[i].is_zero) continue;
+    dispatch_rows(problem.constraints[i].rows, [&](auto rows) {
+      change_impulse<rows()>(laws_[i], kept_constraint_velocities_[i].data(), constraint_velocities_[i].data(),
+                             problem.constraints[i]);
     });
   }
 }
 
-/// At the speeds that were taken.
+/// Residual at the present constraint velocities.
 /// @param scale  out: see find_scale()
-/// @return       infinite if a speed or an impulse is no number
-double Solver::miss_now(const Problem& problem, double& scale) const {
+/// @return       infinite if a speed or an impulse is not finite
+double VelocitySolver::current_residual(const Problem& problem, double& scale) const {
   double of_joints = 0;
-  return find_scale(problem, speeds_, scale, of_joints) ? miss_beyond(problem, speeds_, HUGE_VAL) : HUGE_VAL;
+  return find_scale(problem, constraint_velocities_, scale, of_joints) ? residual_beyond(problem, constraint_velocities_, HUGE_VAL) : HUGE_VAL;
 }
 
-void Snapshot::take(const Problem& problem) {
+void Iterate::save(const Problem& problem) {
   velocity = problem.velocity;
   impulses.clear();
-  for (const Block& block : problem.blocks) impulses.push_back(block.impulse);
+  for (const Constraint& constraint : problem.constraints) impulses.push_back(constraint.impulse);
 }
 
-void Snapshot::give_back(Problem& problem) const {
+void Iterate::restore(Problem& problem) const {
   problem.velocity = velocity;
-  for (std::size_t i = 0; i < impulses.size(); ++i) problem.blocks[i].impulse = impulses[i];
+  for (std::size_t i = 0; i < impulses.size(); ++i) problem.constraints[i].impulse = impulses[i];
 }
 
-void Snapshot::draw_back(Problem& problem, double share) const {
+void Iterate::backtrack(Problem& problem, double share) const {
   for (std::size_t k = 0; k < velocity.size(); ++k) {
     problem.velocity[k] += share * (velocity[k] - problem.velocity[k]);
   }
   for (std::size_t i = 0; i < impulses.size(); ++i) {
-    for (int r = 0; r < problem.blocks[i].rows; ++r) {
-      double& impulse = problem.blocks[i].impulse[r];
+    for (int r = 0; r < problem.constraints[i].rows; ++r) {
+      double& impulse = problem.constraints[i].impulse[r];
       impulse += share * (impulses[i][r] - impulse);
     }
   }
 }
 
-/// Halves a step of Newton's method, from `earlier_`, until less is wrong than before.
-/// @param wrong  see wrong_energy(): before; out: after
-void Solver::shorten(Problem& problem, double& wrong) {
+/// Line search: halves a step of Newton's method from `earlier_` until the merit function falls.
+/// @param wrong  merit before; out: after
+void VelocitySolver::line_search(Problem& problem, double& wrong) {
   constexpr int most = 6;
   const double before = wrong;
   for (int i = 0; i <= most; ++i) {
-    wrong = wrong_energy(problem, speeds_);
+    wrong = merit(problem, constraint_velocities_);
     if (wrong < before || i == most) return;
-    earlier_.draw_back(problem, 0.5);
-    take_speeds(problem);
+    earlier_.backtrack(problem, 0.5);
+    compute_constraint_velocities(problem);
   }
 }
 
-/// Steps with the factors of the last one.
-/// @return  whether they converged; otherwise the problem holds the best state met
-bool Solver::correct_while_nearer(Problem& problem, Outcome& outcome) {
+/// Steps of the simplified Newton method.
+/// @return  whether they converged; otherwise the problem holds the best iterate
+bool VelocitySolver::simplified_newton(Problem& problem, SolverResult& outcome) {
   constexpr int most = 3;
-  constexpr double much = 0.1;  // less: new factors are worth their time
+  constexpr double much = 0.1;  // less progress: new factors are worth their time
   double scale = 0;
   for (int i = 0; i < most; ++i) {
-    const double before = outcome.miss;
-    earlier_.take(problem);
-    correct(problem);
-    outcome.miss = miss_now(problem, scale);
-    if (outcome.miss <= options.tolerance(scale)) return true;
-    if (outcome.miss > before) {  // where contacts are redundant it may lead far away
-      earlier_.give_back(problem);
-      take_speeds(problem);
-      outcome.miss = before;
+    const double before = outcome.residual;
+    earlier_.save(problem);
+    simplified_newton_step(problem);
+    outcome.residual = current_residual(problem, scale);
+    if (outcome.residual <= options.tolerance(scale)) return true;
+    if (outcome.residual > before) {  // with redundant contacts it may diverge
+      earlier_.restore(problem);
+      compute_constraint_velocities(problem);
+      outcome.residual = before;
     }
-    if (outcome.miss > much * before) return false;
+    if (outcome.residual > much * before) return false;
   }
   return false;
 }
 
-/// Newton's method from the present state, whose speeds are taken. From the third step on it goes only as far as less is
-/// wrong: it went round, as between the two ends of a wheel's line that stick and slide by turns while its motor gives
-/// all that it has.
-/// @param most_far  iterations that lead no nearer and miss the law by much
+/// Newton's method from the present state, whose constraint velocities are computed. From the third
+/// step on it has a line search on the merit function. Without it the method cycles where a
+/// saturated motor's wheel alternates between sticking and sliding.
+/// @param most_far  stalled iterations with a large residual
 /// @return          whether it converged; then the problem holds the solution
-bool Solver::iterate(Problem& problem, Outcome& outcome, int most_far) {
+bool VelocitySolver::newton(Problem& problem, SolverResult& outcome, int most_far) {
   double scale = 0, wrong = HUGE_VAL;
   int far = 0;
   for (int i = 0; i < options.most_iterations; ++i) {
     const bool shortens = i > 1;
     const double wrong_before = wrong;
-    if (shortens) earlier_.take(problem);
-    if (!step(problem)) return false;
+    if (shortens) earlier_.save(problem);
+    if (!newton_step(problem)) return false;
     ++outcome.iterations;
-    if (shortens) shorten(problem, wrong);
-    outcome.miss = miss_now(problem, scale);
-    if (outcome.miss <= options.tolerance(scale)) return true;
-    if (!shortens) wrong = wrong_energy(problem, speeds_);
+    if (shortens) line_search(problem, wrong);
+    outcome.residual = current_residual(problem, scale);
+    if (outcome.residual <= options.tolerance(scale)) return true;
+    if (!shortens) wrong = merit(problem, constraint_velocities_);
     const bool nears = wrong < 0.5 * wrong_before;
-    if (outcome.miss > options.far * scale && !nears && ++far >= most_far) return false;
-    if (outcome.miss <= options.rounding * scale && !nears) return true;
-    if (outcome.miss > options.near * scale) continue;
-    if (correct_while_nearer(problem, outcome)) return true;
-    wrong = wrong_energy(problem, speeds_);
+    if (outcome.residual > options.stalled_residual * scale && !nears && ++far >= most_far) return false;
+    if (outcome.residual <= options.rounding * scale && !nears) return true;
+    if (outcome.residual > options.simplified_newton_residual * scale) continue;
+    if (simplified_newton(problem, outcome)) return true;
+    wrong = merit(problem, constraint_velocities_);
   }
   return false;
 }
 
-/// Shapes the matrix, if it is not too large for that, and keeps the state.
+/// Analyses the matrix, if it is not too large for that, and saves the state.
 /// @return  multiplications that a factorisation takes
-double Solver::start(Problem& problem) {
-  start_.take(problem);
-  beginning_ = beginning_of(problem);
-  if (problem.trees.size() > options.most_trees) return HUGE_VAL;
+double VelocitySolver::analyse(Problem& problem) {
+  start_.save(problem);
+  initial_ = initial_velocities(problem);
+  if (problem.trees.size() > options.most_factored_trees) return HUGE_VAL;
   sizes_.clear();
   for (const Tree* tree : problem.trees) sizes_.push_back(tree->dofs);
   matrix_.shape(sizes_, problem.couplings);
-  linear_.resize(problem.blocks.size());
+  laws_.resize(problem.constraints.size());
   return matrix_.work();
 }
 
-/// Whether the velocities and impulses of the last substep still solve the problem.
-bool Solver::still_solved(const Problem& problem, Outcome& outcome) {
+/// Whether the last substep's velocities and impulses still solve the problem.
+bool VelocitySolver::is_warm_start_solved(const Problem& problem, SolverResult& outcome) {
   double scale = 0, of_joints = 0;
-  take_speeds(problem);
-  const bool finite = find_scale(problem, speeds_, scale, of_joints);
+  compute_constraint_velocities(problem);
+  const bool finite = find_scale(problem, constraint_velocities_, scale, of_joints);
   const double enough = options.tolerance(scale);
-  outcome.miss = finite ? miss_beyond(problem, speeds_, enough) : HUGE_VAL;
-  if (outcome.miss > enough) return false;
-  const double balanced = options.absolute_tolerance + options.still_tolerance * std::max(scale, of_joints);
-  if (imbalance(problem, residual_) > balanced) return false;
-  return are_alike(problem.total_mass) || is_balanced(problem, residual_, options.still_tolerance, options.absolute_tolerance, given_);
+  outcome.residual = finite ? residual_beyond(problem, constraint_velocities_, enough) : HUGE_VAL;
+  if (outcome.residual > enough) return false;
+  const double balanced = options.absolute_tolerance + options.warm_start_tolerance * std::max(scale, of_joints);
+  if (momentum_residual(problem, residual_) > balanced) return false;
+  return have_similar_masses(problem.total_mass) || is_momentum_balanced(problem, residual_, options.warm_start_tolerance, options.absolute_tolerance, impulse_sum_);
 }
 
-Outcome Solver::solve(Problem& problem) {
-  Outcome outcome;
-  if (still_solved(problem, outcome)) return outcome;
-  const double work = start(problem);
-  if (work > options.most_work) {
-    problem.harden();
-    sweep_until_converged(problem, outcome, options.most_sweeps);
+SolverResult VelocitySolver::solve(Problem& problem) {
+  SolverResult outcome;
+  if (is_warm_start_solved(problem, outcome)) return outcome;
+  const double work = analyse(problem);
+  if (work > options.most_factorisation_work) {
+    problem.make_rigid();
+    gauss_seidel(problem, outcome, options.most_sweeps);
     return outcome;
   }
   if (options.suits_newton(problem.trees.size(), work)) {
-    if (iterate(problem, outcome, options.most_far)) return outcome;
-    start_.give_back(problem);
-    ease(problem, outcome);
-    outcome.converged = patient_proximal(problem, outcome);
+    if (newton(problem, outcome, options.most_stalled_iterations)) return outcome;
+    start_.restore(problem);
+    continuation(problem, outcome);
+    outcome.converged = damped_augmented_lagrangian(problem, outcome);
     if (!outcome.converged) {
-      start_.give_back(problem);
-      soften_after_sweeps(problem, outcome);
+      start_.restore(problem);
+      augmented_lagrangian_after_sweeps(problem, outcome);
     }
     if (outcome.converged) {
-      sharpen(problem, outcome);
+      polish(problem, outcome);
       return outcome;
     }
-    start_.give_back(problem);
-    problem.harden();
+    start_.restore(problem);
+    problem.make_rigid();
   } else {
-    problem.harden();
-    if (proximal(problem, outcome)) return outcome;
+    problem.make_rigid();
+    if (augmented_lagrangian(problem, outcome)) return outcome;
   }
-  start_.give_back(problem);
-  const bool found = interior_points(problem, outcome);
-  outcome.converged = proximal(problem, outcome);
+  start_.restore(problem);
+  const bool found = interior_point(problem, outcome);
+  outcome.converged = augmented_lagrangian(problem, outcome);
   if (outcome.converged && found) return outcome;
-  const Outcome before = outcome;  // where redundant contacts hold each other up, their impulses hide a miss
-  start_.take(problem);
-  soften_after_sweeps(problem, outcome);
-  if (outcome.miss > before.miss) {
-    start_.give_back(problem);
-    outcome.miss = before.miss;
+  const SolverResult before = outcome;  // large impulses of redundant contacts hide a residual
+  start_.save(problem);
+  augmented_lagrangian_after_sweeps(problem, outcome);
+  if (outcome.residual > before.residual) {
+    start_.restore(problem);
+    outcome.residual = before.residual;
     outcome.converged = before.converged;
   }
   return outcome;
 }
 
-void Solver::solve_without_rebound(Problem& problem, Snapshot& out) {
-  rebounding_.take(problem);
-  seeks_.clear();
-  for (Block& block : problem.blocks) {
-    seeks_.push_back(block.seek[0]);
-    if (block.bounces) block.seek[0] = -std::max(0.0, block.gap) / problem.length;
+void VelocitySolver::solve_without_rebound(Problem& problem, Iterate& out) {
+  with_impacts_.save(problem);
+  target_velocities_.clear();
+  for (Constraint& constraint : problem.constraints) {
+    target_velocities_.push_back(constraint.target_velocity[0]);
+    if (constraint.has_impact) constraint.target_velocity[0] = -std::max(0.0, constraint.gap) / problem.time_step;
   }
   solve(problem);
-  out.take(problem);
-  rebounding_.give_back(problem);
-  for (std::size_t i = 0; i < seeks_.size(); ++i) problem.blocks[i].seek[0] = seeks_[i];
+  out.save(problem);
+  with_impacts_.restore(problem);
+  for (std::size_t i = 0; i < target_velocities_.size(); ++i) problem.constraints[i].target_velocity[0] = target_velocities_[i];
 }
 
-bool Solver::sweep_until_converged(Problem& problem, Outcome& outcome, int most) {
-  constexpr int between = 10;  // sweeps from one look at the miss to the next
-  sweeps_.start(problem);
+bool VelocitySolver::gauss_seidel(Problem& problem, SolverResult& outcome, int most) {
+  constexpr int between = 10;  // sweeps between two evaluations of the residual
+  gauss_seidel_.start(problem);
   for (int sweep = 1; sweep <= most; ++sweep) {
     ++outcome.sweeps;
-    sweeps_.sweep();
+    gauss_seidel_.sweep();
     if (sweep % between != 0 && sweep < most) {
-      sweeps_.accelerate();
+      gauss_seidel_.accelerate();
       continue;
     }
-    sweeps_.finish(problem);
+    gauss_seidel_.finish(problem);
     double scale = 0;
-    take_speeds(problem);
-    outcome.miss = miss_now(problem, scale);
-    outcome.converged = outcome.miss <= options.tolerance_of_softened(beginning_, scale);
+    compute_constraint_velocities(problem);
+    outcome.residual = current_residual(problem, scale);
+    outcome.converged = outcome.residual <= options.tolerance_of_regularised(initial_, scale);
     if (outcome.converged) return true;
-    sweeps_.accelerate();
+    gauss_seidel_.accelerate();
   }
   return false;
 }
 
-/// Newton's method from a solution of the softened problem: it misses by more than soft surfaces give way, and would share loads
-/// at random.
-void Solver::sharpen(Problem& problem, Outcome& outcome) {
-  const double before = outcome.miss;
-  start_.take(problem);
-  take_speeds(problem);
-  if (iterate(problem, outcome, options.most_far)) return;
-  start_.give_back(problem);
-  outcome.miss = before;
+/// Polishes a solution of the regularised problem by Newton's method. Its residual exceeds the
+/// contacts' compliance, and would share loads at random.
+void VelocitySolver::polish(Problem& problem, SolverResult& outcome) {
+  const double before = outcome.residual;
+  start_.save(problem);
+  compute_constraint_velocities(problem);
+  if (newton(problem, outcome, options.most_stalled_iterations)) return;
+  start_.restore(problem);
+  outcome.residual = before;
 }
 
-/// Some sweeps, then the softened problem from where they end. Sweeps find which contacts hold,
-/// stick and slide; where some of them contradict each other a little, as rolling friction and the
-/// two ends of a line do, only the softened problem ends.
-bool Solver::soften_after_sweeps(Problem& problem, Outcome& outcome) {
-  sweeps_.start(problem);
-  for (int sweep = 1; sweep <= options.first_sweeps; ++sweep) {
-    sweeps_.sweep();
-    if (sweep < options.first_sweeps) sweeps_.accelerate();
+/// Sweeps, then the augmented Lagrangian from their result. Sweeps find which contacts hold, stick
+/// and slide. Where these conflict, as rolling friction and the two ends of a line do, only the
+/// augmented Lagrangian converges.
+bool VelocitySolver::augmented_lagrangian_after_sweeps(Problem& problem, SolverResult& outcome) {
+  gauss_seidel_.start(problem);
+  for (int sweep = 1; sweep <= options.sweeps_before_augmented_lagrangian; ++sweep) {
+    gauss_seidel_.sweep();
+    if (sweep < options.sweeps_before_augmented_lagrangian) gauss_seidel_.accelerate();
   }
-  sweeps_.finish(problem);
-  outcome.sweeps += options.first_sweeps;
-  return outcome.converged = patient_proximal(problem, outcome);
+  gauss_seidel_.finish(problem);
+  outcome.sweeps += options.sweeps_before_augmented_lagrangian;
+  return outcome.converged = damped_augmented_lagrangian(problem, outcome);
 }
 
-void Solver::solve_displacement(Problem& problem) {
-  Outcome outcome;
-  const double work = start(problem);
+void VelocitySolver::solve_displacement(Problem& problem) {
+  SolverResult outcome;
+  const double work = analyse(problem);
   if (options.suits_newton(problem.trees.size(), work)) {
-    take_speeds(problem);
-    if (iterate(problem, outcome, options.most_iterations)) return;
-    start_.give_back(problem);
+    compute_constraint_velocities(problem);
+    if (newton(problem, outcome, options.most_iterations)) return;
+    start_.restore(problem);
   }
-  sweep_until_converged(problem, outcome, options.displacement_sweeps);
-  if (outcome.miss > options.displacement_miss && work <= options.most_work) patient_proximal(problem, outcome);
+  gauss_seidel(problem, outcome, options.displacement_sweeps);
+  if (outcome.residual > options.displacement_residual && work <= options.most_factorisation_work) damped_augmented_lagrangian(problem, outcome);
 }
 
 }  // namespace ziggurat::dynamics

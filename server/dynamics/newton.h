@@ -1,163 +1,164 @@
 #pragma once
-// Solves the velocity problem of an island, by the first of these that converges:
-// - Newton's method on the contact law (semi-smooth, as in Alart and Curnier 1991; S. Hueeber and
-//   B. Wohlmuth, Comput. Methods Appl. Mech. Eng. 194, 2005), for small islands;
-// - Newton's method on the softened problem about the last impulses (the method of multipliers, R. T.
-//   Rockafellar, Math. Oper. Res. 1, 1976): of larger islands for what rests, of small ones with a
-//   line search, from where everything is soft, or after sweeps;
-// - the interior point method, for larger islands that strike;
-// - sweeps over the contacts alone, where a factorisation costs too much.
+// Solvers of the velocity problem of an island; the first of these that converges:
+// - Newton's method on the contact law (semi-smooth: Alart and Curnier 1991; S. Hueeber and B.
+//   Wohlmuth, Comput. Methods Appl. Mech. Eng. 194, 2005), for small islands;
+// - the augmented Lagrangian about the last impulses (R. T. Rockafellar, Math. Oper. Res. 1, 1976):
+//   for larger islands at rest; for small ones with a line search, after a continuation or after
+//   sweeps;
+// - the interior point method, for larger islands with impacts;
+// - Gauss-Seidel sweeps alone, where a factorisation costs too much.
 // All but the last factor one matrix along the contact graph.
 
 #include <algorithm>
 
 #include "dynamics/block_matrix.h"
-#include "dynamics/law.h"
-#include "dynamics/sweeps.h"
+#include "dynamics/contact_law.h"
+#include "dynamics/gauss_seidel.h"
 
 namespace ziggurat::dynamics {
 
-/// How an island was solved.
-struct Outcome {
+/// Result of a solver.
+struct SolverResult {
   int iterations = 0;  ///< of Newton's method
-  int descents = 0;    ///< steps of the softened problem
-  int interior = 0;    ///< steps of the interior point method
+  int augmented_lagrangian_steps = 0;    ///< steps of the augmented Lagrangian
+  int interior_point_steps = 0;    ///< steps of the interior point method
   int sweeps = 0;      ///< over all contacts
-  double miss = 0;     ///< worst violation of the contact law that is left [m/s] or [rad/s]
+  double residual = 0;     ///< worst residual of the contact law [m/s] or [rad/s]
   bool converged = true;
 };
 
-/// How fast an island is before it is solved.
-struct Beginning {
-  double fastest = 0;  ///< of its contacts [m/s]
-  double fall = 0;     ///< what gravity gives in a substep [m/s]
+/// Velocities of an island before it is solved.
+struct InitialVelocities {
+  double fastest_contact = 0;  ///< of its contacts [m/s]
+  double gravity_change = 0;     ///< by gravity in a substep [m/s]
   /// Whether a contact is faster than forces of one substep make it.
-  bool strikes() const { return fastest > fall; }
+  bool has_impact() const { return fastest_contact > gravity_change; }
 };
 
 struct SolverOptions {
-  double newton_work = 3e4;  ///< multiplications of a factorisation; more: not on the law itself
-  std::size_t few_trees = 8;  ///< make no heap, however large they are:
-  double more_for_few = 50;   ///< times as many multiplications for them
-  int most_iterations = 16;  ///< of Newton's method on the law itself
-  double near = 1e-3;        ///< a miss of this times the largest speed needs no new factors
-  int most_far = 6;          ///< iterations that lead no nearer, with a miss above `far`
-  double far = 1e-3;         ///< times the largest speed
-  int most_descents = 8;     ///< full steps of the softened problem
-  double softness = 1e-3;    ///< its impulses give way by this times the mobility
-  int most_interior = 40;    ///< steps of the interior point method
-  double most_work = 1.2e7;  ///< multiplications of a factorisation; more: sweeps
-  std::size_t most_trees = 300;       ///< of an island whose matrix is looked at
+  double newton_work = 3e4;  ///< multiplications of a factorisation; more: no Newton's method
+  std::size_t few_trees = 8;  ///< number of trees that are no heap:
+  double few_trees_factor = 50;   ///< such islands may take so many times more
+  int most_iterations = 16;  ///< of Newton's method
+  double simplified_newton_residual = 1e-3;        ///< relative residual from which factors are used again
+  int most_stalled_iterations = 6;          ///< iterations without progress, with a residual above `stalled_residual`
+  double stalled_residual = 1e-3;         ///< times the largest speed
+  int most_augmented_lagrangian_steps = 8;     ///< full steps of the augmented Lagrangian
+  double regularisation = 1e-3;    ///< compliance of its impulses, over the mobility
+  int most_interior_point_steps = 40;    ///< steps of the interior point method
+  double most_factorisation_work = 1.2e7;  ///< multiplications of a factorisation; more: sweeps
+  std::size_t most_factored_trees = 300;       ///< of an island whose matrix is analysed
   int most_sweeps = 60;               ///< of islands that are not factored
-  int first_sweeps = 20;              ///< before patient steps
-  int most_patient = 60;              ///< steps of the softened problem with a line search
-  int displacement_sweeps = 20;       ///< of a displacement that Newton's method does not find
-  double displacement_miss = 1e-5;    ///< [m], [rad] of it; more: the softened problem
-  double rounding = 1e-7;             ///< of it, where Newton's method leads no nearer
+  int sweeps_before_augmented_lagrangian = 20;              ///< before patient steps
+  int most_damped_steps = 60;              ///< steps of the augmented Lagrangian with a line search
+  int displacement_sweeps = 20;       ///< of a displacement on which Newton's method fails
+  double displacement_residual = 1e-5;    ///< [m], [rad] of it; more: the augmented Lagrangian
+  double rounding = 1e-7;             ///< relative residual that counts as rounding
   double relative_tolerance = 1e-9;   ///< of the largest speed or speed change in the island
-  double still_tolerance = 1e-8;      ///< of it, for the momentum that the last substep's solution misses
-  double soft_tolerance = 2e-5;       ///< of it, where Newton's method did not converge
-  double most_scale = 4;             ///< of that speed, over the speeds at the beginning: redundant contacts may hold each other up with any impulse
+  double warm_start_tolerance = 1e-8;      ///< of it, for the momentum residual of the last substep's solution
+  double regularised_tolerance = 2e-5;       ///< of it, where Newton's method did not converge
+  double most_scale = 4;             ///< of that speed, over the initial speeds: redundant contacts may balance any impulses
   double absolute_tolerance = 1e-10;  ///< [m/s] or [rad/s]
 
   bool suits_newton(std::size_t trees, double work) const {
-    return work <= newton_work * (trees <= few_trees ? more_for_few : 1);
+    return work <= newton_work * (trees <= few_trees ? few_trees_factor : 1);
   }
-  double tolerance_of_softened(const Beginning& beginning, double scale) const {
-    const double least = std::max(beginning.fastest, beginning.fall);
-    return absolute_tolerance + soft_tolerance * (least > 0 ? std::min(scale, most_scale * least) : scale);
+  double tolerance_of_regularised(const InitialVelocities& beginning, double scale) const {
+    const double least = std::max(beginning.fastest_contact, beginning.gravity_change);
+    return absolute_tolerance + regularised_tolerance * (least > 0 ? std::min(scale, most_scale * least) : scale);
   }
   double tolerance(double scale) const { return absolute_tolerance + relative_tolerance * scale; }
 };
 
-/// A block in the interior point method: impulse and speed in units in which a contact's cone is
-/// x_0 >= |(x_1, x_2)|, and what belongs to its present step.
-struct InteriorBlock {
-  Vector3 impulse{0, 0, 0}, speed{0, 0, 0}, anchor{0, 0, 0};
-  Vector3 unit{0, 0, 0};              ///< impulses of the block over those here
-  Vector3 give{0, 0, 0};              ///< speed over impulse
-  double lower = 0, upper = 0;        ///< of blocks that are not cones
-  double at_lower = 0, at_upper = 0;  ///< their speeds beyond the one sought; 0: without bound
-  Matrix3 scaling = Matrix3::Zero(), unscaling = Matrix3::Zero(), slope = Matrix3::Zero();
-  Vector3 point{0, 0, 0}, lift{0, 0, 0}, residual{0, 0, 0}, aim{0, 0, 0}, constant{0, 0, 0};
-  Vector3 change{0, 0, 0}, speed_change{0, 0, 0};
-  double lower_change = 0, upper_change = 0;
+/// A constraint in the interior point method, with its present step. Impulse and speed are in units
+/// in which a contact's cone is x_0 >= |(x_1, x_2)|.
+struct InteriorPointConstraint {
+  Vector3 impulse{0, 0, 0}, speed{0, 0, 0}, reference_impulse{0, 0, 0};
+  Vector3 scale{0, 0, 0};              ///< impulses of the constraint over those here
+  Vector3 compliance{0, 0, 0};              ///< speed over impulse
+  double lower = 0, upper = 0;        ///< of constraints that are not cones
+  double lower_dual = 0, upper_dual = 0;  ///< duals of the bounds; 0: no bound
+  Matrix3 scaling = Matrix3::Zero(), inverse_scaling = Matrix3::Zero(), hessian = Matrix3::Zero();
+  Vector3 scaled_point{0, 0, 0}, slip_gradient{0, 0, 0}, residual{0, 0, 0}, scaled_target{0, 0, 0}, right_side{0, 0, 0};
+  Vector3 impulse_step{0, 0, 0}, speed_step{0, 0, 0};
+  double lower_dual_step = 0, upper_dual_step = 0;
 };
 
-/// out += J^T impulse of a block.
-void add_impulse(const Problem& problem, const Block& block, const double* impulse,
+/// out += J^T impulse of a constraint.
+void add_impulse(const Problem& problem, const Constraint& constraint, const double* impulse,
                  std::vector<double>& out);
-/// out := p + J^T g - M v, with the joints' damping in M.
-/// @return  the largest change of a coordinate's speed that is missing, about [m/s] or [rad/s]
-double imbalance(const Problem& problem, std::vector<double>& out);
-/// Whether of each coordinate little is missing beside its own impulses.
-/// @param missing  see imbalance();  @param share  of its impulses;  @param least  what never counts [m/s] or [rad/s]
+/// Momentum residual: out := p + J^T g - M v, with the joints' damping in M.
+/// @return  the largest residual velocity of a coordinate, about [m/s] or [rad/s]
+double momentum_residual(const Problem& problem, std::vector<double>& out);
+/// Whether each coordinate's momentum residual is small beside its own impulses.
+/// @param missing  see momentum_residual();  @param share  of its impulses;  @param least  absolute
+///                 tolerance [m/s] or [rad/s]
 /// @param given    memory
-bool is_balanced(const Problem& problem, std::span<const double> missing, double share, double least, std::vector<double>& given);
+bool is_momentum_balanced(const Problem& problem, std::span<const double> residual, double share, double least, std::vector<double>& impulse_sum);
 
-/// The mass matrices of a problem, with the joints' damping.
+/// Fills a matrix with the mass matrices of a problem, with the joints' damping.
 /// @param matrix  of its shape
-void start_matrix(const Problem& problem, BlockMatrix& matrix);
+void assemble_mass(const Problem& problem, BlockMatrix& matrix);
 
-/// Velocities and impulses of a problem.
-struct Snapshot {
+/// Iterate of a solver: velocities and impulses of a problem.
+struct Iterate {
   std::vector<double> velocity;                                ///< of each dof
-  std::vector<std::array<double, Block::most_rows>> impulses;  ///< of each block
-  void take(const Problem& problem);
-  void give_back(Problem& problem) const;
-  /// Takes velocities and impulses back by a share of the way.
-  void draw_back(Problem& problem, double share) const;
+  std::vector<std::array<double, Constraint::most_rows>> impulses;  ///< of each constraint
+  void save(const Problem& problem);
+  void restore(Problem& problem) const;
+  /// Interpolates a problem's velocities and impulses towards this iterate by a share.
+  void backtrack(Problem& problem, double share) const;
 };
 
-class Solver {
+class VelocitySolver {
  public:
   SolverOptions options;
 
-  /// Solves for problem.velocity and the blocks' impulses, from what they are.
-  Outcome solve(Problem& problem);
-  /// The solution if nothing rebounded, of a problem that is solved; leaves that as it is.
-  void solve_without_rebound(Problem& problem, Snapshot& out);
-  /// Solves a displacement, which need not be exact where hundreds of bodies overlap.
+  /// Solves for problem.velocity and the constraints' impulses, starting from their present values.
+  SolverResult solve(Problem& problem);
+  /// Solves a solved problem again without restitution; leaves it as it is.
+  void solve_without_rebound(Problem& problem, Iterate& out);
+  /// Solves a displacement problem, less exactly where hundreds of bodies overlap.
   void solve_displacement(Problem& problem);
 
  private:
-  bool iterate(Problem& problem, Outcome& outcome, int most_far);
-  bool step(Problem& problem);
-  void shorten(Problem& problem, double& wrong);
-  void correct(Problem& problem);
-  bool correct_while_nearer(Problem& problem, Outcome& outcome);
-  double start(Problem& problem);
-  bool still_solved(const Problem& problem, Outcome& outcome);
-  void take_speeds(const Problem& problem);
-  double miss_now(const Problem& problem, double& scale) const;
-  bool proximal(Problem& problem, Outcome& outcome);
-  void ease(Problem& problem, Outcome& outcome);
-  bool patient_proximal(Problem& problem, Outcome& outcome);
-  bool proximal_step(Problem& problem, double softness, bool anchors, double shortest, double& unbalanced);
-  bool interior_points(Problem& problem, Outcome& outcome);
-  void enter(const Problem& problem, double margin);
-  double linearise_interior(Problem& problem);
-  double interior_direction(Problem& problem, double target, bool corrects);
-  double product_after(const Problem& problem, double way) const;
-  void advance_interior(Problem& problem, double way);
-  bool sweep_until_converged(Problem& problem, Outcome& outcome, int most);
-  bool soften_after_sweeps(Problem& problem, Outcome& outcome);
-  void sharpen(Problem& problem, Outcome& outcome);
+  bool newton(Problem& problem, SolverResult& outcome, int most_far);
+  bool newton_step(Problem& problem);
+  void line_search(Problem& problem, double& wrong);
+  void simplified_newton_step(Problem& problem);
+  bool simplified_newton(Problem& problem, SolverResult& outcome);
+  double analyse(Problem& problem);
+  bool is_warm_start_solved(const Problem& problem, SolverResult& outcome);
+  void compute_constraint_velocities(const Problem& problem);
+  double current_residual(const Problem& problem, double& scale) const;
+  bool augmented_lagrangian(Problem& problem, SolverResult& outcome);
+  void continuation(Problem& problem, SolverResult& outcome);
+  bool damped_augmented_lagrangian(Problem& problem, SolverResult& outcome);
+  bool augmented_lagrangian_step(Problem& problem, double regularisation, bool about_multipliers, double shortest, double& unbalanced);
+  bool interior_point(Problem& problem, SolverResult& outcome);
+  void enter_cones(const Problem& problem, double margin);
+  double linearise_interior_point(Problem& problem);
+  double interior_point_direction(Problem& problem, double target, bool corrects);
+  double complementarity_after(const Problem& problem, double step_length) const;
+  void interior_point_step(Problem& problem, double step_length);
+  bool gauss_seidel(Problem& problem, SolverResult& outcome, int most);
+  bool augmented_lagrangian_after_sweeps(Problem& problem, SolverResult& outcome);
+  void polish(Problem& problem, SolverResult& outcome);
 
   BlockMatrix matrix_;
-  std::vector<std::array<double, Block::most_rows>> speeds_;  // of each block, by take_speeds()
-  std::vector<std::array<double, Block::most_rows>> kept_speeds_;
-  std::vector<Linear> linear_;
-  Linear now_;
+  std::vector<std::array<double, Constraint::most_rows>> constraint_velocities_;  // of each constraint, by compute_constraint_velocities()
+  std::vector<std::array<double, Constraint::most_rows>> kept_constraint_velocities_;
+  std::vector<LinearisedLaw> laws_;
+  LinearisedLaw law_;
   std::vector<int> sizes_;
-  std::vector<double> sloped_;
-  std::vector<double> kept_velocity_, anchored_;
-  Beginning beginning_;
-  Snapshot start_, snapshot_, rebounding_, earlier_;
-  std::vector<double> seeks_;
-  std::vector<double> direction_, residual_, given_;
-  std::vector<InteriorBlock> interior_;
-  Sweeps sweeps_;
+  std::vector<double> hessian_jacobian_;
+  std::vector<double> kept_velocity_, multiplier_velocity_;
+  InitialVelocities initial_;
+  Iterate start_, best_, with_impacts_, earlier_;
+  std::vector<double> target_velocities_;
+  std::vector<double> direction_, residual_, impulse_sum_;
+  std::vector<InteriorPointConstraint> interior_;
+  GaussSeidel gauss_seidel_;
 };
 
 }  // namespace ziggurat::dynamics

@@ -1,7 +1,6 @@
 #pragma once
-// Spatial vectors (R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 2), all in world
-// axes and taken about one common point O, so that quantities of different links add up without
-// being transformed.
+// Spatial vectors (R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 2). All are in
+// world axes about one common point O, so quantities of different links add up without transforms.
 
 #include "math/pose.h"
 

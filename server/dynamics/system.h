@@ -1,42 +1,42 @@
 #pragma once
-// All trees, stepped together: islands of trees that touch are solved one by one, each from its own
+// All trees, stepped together. Islands of trees in contact are solved one by one, each from its own
 // trees, contacts, servos and limits alone.
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "dynamics/drive.h"
-#include "dynamics/excess.h"
+#include "dynamics/prescribed_joints.h"
+#include "dynamics/energy_error.h"
 #include "dynamics/newton.h"
-#include "dynamics/rebound.h"
-#include "dynamics/tension.h"
-#include "dynamics/unheld.h"
+#include "dynamics/restitution_energy.h"
+#include "dynamics/geometric_stiffness.h"
+#include "dynamics/unconstrained_trees.h"
 
 namespace ziggurat::dynamics {
 
-/// What became of a substep.
+/// Statistics of a substep.
 struct Report {
   int islands = 0;          ///< solved for contacts, servos or limits
   int not_converged = 0;    ///< of them
   int most_iterations = 0;  ///< of Newton's method in an island
-  int most_descents = 0;    ///< of the softened problem
-  int most_interior = 0;    ///< of the interior point method
+  int most_augmented_lagrangian_steps = 0;    ///< of the softened problem
+  int most_interior_point_steps = 0;    ///< of the interior point method
   int most_sweeps = 0;      ///< over the contacts of an island
-  double miss = 0;          ///< worst violation of the contact law [m/s] or [rad/s]
+  double residual = 0;          ///< worst residual of the contact law [m/s] or [rad/s]
   int awake = 0;            ///< trees that moved
 };
 
-/// A tree that swings far until it meets something.
-struct Swing {
+/// A tree on a fixed base that rotates far until its next impact.
+struct RotationUntilImpact {
   int tree = 0;
   double angle = 0;  ///< [rad]
 };
 
-/// Islands that a step left as they were, because something in them swings or nutates too fast for it.
-struct LeftIslands {
+/// Islands that a step left unchanged, because a link swings or nutates too fast for it.
+struct IslandsToSubdivide {
   struct Island {
-    int parts = 0;                    ///< into which the step should be divided for it
+    int parts = 0;                    ///< number of parts of the step
     std::size_t first = 0, last = 0;  ///< in `trees`
   };
   std::vector<Island> islands;
@@ -45,81 +45,83 @@ struct LeftIslands {
   void add(std::span<const int> of_island, int parts);
 };
 
-/// Trees, and the speeds that they will have at a substep's end, as far as is known what they meet.
-struct Foresight {
+/// Trees, and their predicted velocities at a substep's end.
+struct PredictedVelocities {
   std::vector<int> trees;
-  std::vector<double> speeds;  ///< of each dof of each tree, in their order
+  std::vector<double> velocities;  ///< of each dof of each tree, in their order
 };
 
-/// Gives these trees the other speeds, and back.
-void swap_speeds(std::vector<Tree>& trees, Foresight& foresight);
+/// Exchanges the trees' velocities with the predicted ones.
+void swap_velocities(std::vector<Tree>& trees, PredictedVelocities& foresight);
 
-/// What makes an island sleep. It must touch the world, and all its coordinates must stay this slow
-/// for this time: a body on a slope that starts to move is faster by then.
-struct RestOptions {
-  bool sleeps = true;
-  double speed = 5e-5;    ///< of what moves [m/s]
-  double turning = 5e-4;  ///< of what turns, and of joints [rad/s] or [m/s]
+/// Conditions of sleep. An island sleeps if it touches the world and all its coordinates stay below
+/// these velocities for this time. A body that starts to slide on a slope is faster by then.
+struct SleepOptions {
+  bool enabled = true;
+  double linear_velocity = 5e-5;    ///< of what moves [m/s]
+  double angular_velocity = 5e-4;  ///< of rotation, and of joints [rad/s] or [m/s]
   double time = 0.3;      ///< [s]
-  double force = 1e-3;    ///< change that wakes, over the weight and the force at the time of sleep
-  // A heap that was swept: what is slower than its solution misses the law by is not known to move.
-  double swept_speed = 1e-3;    ///< of all its mass, root mean square: it may be no more [m/s]
+  double force_change = 1e-3;    ///< change that wakes, over weight and force when it fell asleep
+  // Conditions for a heap that was only swept, in whose residual slow motion is lost.
+  double swept_velocity = 1e-3;    ///< root mean square of all its mass [m/s]
   double swept_fastest = 5e-3;  ///< of a tree [m/s]
   double swept_time = 0.5;      ///< [s]
 };
 
-/// Between which trees a contact is; -1: the world. Contacts take far more of the cache.
-struct Ends {
+/// The two trees of a contact; -1: the world. A ContactPoint takes far more of the cache.
+struct ContactTrees {
   int a = -1, b = -1;
 };
-void note_ends(std::span<const Contact> contacts, std::vector<Ends>& out);
+void list_contact_trees(std::span<const ContactPoint> contacts, std::vector<ContactTrees>& out);
 
 class System {
  public:
   std::vector<Tree> trees;
-  RestOptions rest;
-  /// A contact gives way by the speed that its normal impulse gives both bodies, times this; 0: not at all. So loads
-  /// are shared where there are more contacts than needed.
-  double softness = usual_softness;
-  static constexpr double usual_softness = 5e-5;
-  double allowed_overlap = 1e-6;  ///< it may remain, because rounding must not move bodies [m]
-  /// Into how many parts step() may ask to divide itself for an island, see tension.h and nutation.h. 1: it may not.
+  SleepOptions sleeping;
+  /// Compliance of contacts: closing velocity over the velocity change of both bodies by the normal
+  /// impulse; 0: rigid. It shares loads among redundant contacts.
+  double compliance_factor = default_compliance_factor;
+  static constexpr double default_compliance_factor = 5e-5;
+  double allowed_overlap = 1e-6;  ///< penetration that remains, because rounding must not move bodies [m]
+  /// Largest number of parts that step() may ask for, see geometric_stiffness.h and
+  /// gyroscopic_stiffness.h. 1: none.
   int most_parts = 1;
   bool is_part = false;  ///< step() takes one of these parts
-  LeftIslands left;      ///< by the last step()
-  /// Those whose islands take parts, too: a contact acts along lines of the step's beginning. To be set before step().
-  std::vector<Swing> swings;
+  IslandsToSubdivide islands_to_subdivide;      ///< by the last step()
+  /// Trees whose rotation until impact is large: their islands are divided, because a contact acts
+  /// along lines of the step's beginning. To be set before step().
+  std::vector<RotationUntilImpact> rotations_until_impact;
 
-  /// Whether a tree sleeps. Then a substep leaves it as it is; its contacts need not be told, and
-  /// are ignored, until something wakes its island: a contact with a tree that is awake and comes
-  /// to touch it, a change of what pushes it or of its servos, or wake().
-  bool asleep(int tree) const {
-    return static_cast<std::size_t>(tree) < next_.size() && next_[tree] >= 0;
+  /// Whether a tree sleeps. Then a substep leaves it as it is, and ignores its contacts, until its
+  /// island wakes: by an approaching contact, a change of its wrenches or servos, or wake().
+  bool is_asleep(int tree) const {
+    return static_cast<std::size_t>(tree) < sleep_ring_.size() && sleep_ring_[tree] >= 0;
   }
-  /// Wakes a tree and what sleeps with it: to be called when it was moved, its speed or gravity was
-  /// set, or what it touches was moved or removed.
+  /// Wakes a tree and its island: to be called when its pose, velocity or gravity was set, or a
+  /// body that it touches was moved or removed.
   void wake(int tree);
-  /// Must be called when trees were removed or changed places.
+  /// Wakes all trees; must be called when trees were removed or renumbered.
   void wake_all();
 
-  /// Adds to a link's external wrench for the coming substep. What sleeps notices no other.
-  void push(int tree, int link, const Wrench& wrench);
+  /// Adds to a link's external wrench for the coming substep. A sleeper ignores wrenches set
+  /// otherwise.
+  void apply_wrench(int tree, int link, const Wrench& wrench);
 
-  /// Takes what acts in the coming substep, see step(), and wakes what that would not leave at rest.
-  /// To be called before advance(), again with more contacts where those of sleepers are told only
-  /// if something wakes.
-  /// @return  whether something did
-  bool wake_disturbed(double length, std::span<Contact> contacts, std::span<Servo> servos, std::span<const int> chosen = {});
+  /// Takes the constraints of the coming substep, see step(), and wakes the sleepers that they
+  /// disturb. To be called before advance(), and again when contacts of sleepers were added.
+  /// @return  whether a tree woke
+  bool wake_disturbed(double time_step, std::span<ContactPoint> contacts, std::span<Servo> servos, std::span<const int> chosen = {});
 
-  /// Which trees the coming substep sets in motion within it: by motors, pushes or blows, so that their speeds at its beginning do not
-  /// say what they meet. To be called after wake_disturbed(), whose contacts, servos and trees it takes.
-  /// @param far   what need not be known: how far such a tree comes in the substep [m]
-  /// @param fast  all trees that may come half as far already: what strikes them, or their limits, may throw them and others elsewhere
+  /// Predicts velocities of trees that motors, wrenches or impacts accelerate within the coming
+  /// substep: their present velocities do not tell their contacts. To be called after
+  /// wake_disturbed(), whose contacts, servos and trees it takes.
+  /// @param far   distance within the substep below which a change is ignored [m]
+  /// @param fast  all trees that may come half as far already: impacts and limits may deflect them
   /// @return      whether there are some
-  bool foresee(std::span<Limit> limits, double far, std::span<const int> fast, Foresight& out);
+  bool predict_velocities(std::span<Limit> limits, double far, std::span<const int> fast, PredictedVelocities& out);
 
   /// Advances all trees that are awake by one substep. Their external wrenches must be set.
-  /// @param length    [s]
+  /// @param time_step [s]
   /// The order of contacts in the list does not matter: in an island they are sorted by trees,
   /// links and places.
   /// @param contacts  those between two trees that stand on the world do nothing; impulses are
@@ -127,93 +129,93 @@ class System {
   /// @param limits    of joints whose trees are awake
   /// @param chosen    trees that take part, ascending; the others stay as they are, and nothing may
   ///                  act between them and these. Empty: all do
-  Report step(double length, std::span<Contact> contacts, std::span<Servo> servos = {},
+  Report step(double time_step, std::span<ContactPoint> contacts, std::span<Servo> servos = {},
               std::span<Limit> limits = {}, std::span<const int> chosen = {});
 
-  /// The same with what wake_disturbed() has taken.
+  /// Advances by one substep with the constraints of wake_disturbed().
   Report advance(std::span<Limit> limits);
 
-  /// Moves apart what overlaps, without speed: for overlaps that are found after a substep.
+  /// Resolves penetration without changing velocities: for overlaps that are found after a substep.
   /// @param contacts  of trees that are awake; their impulses do not matter
   /// @param chosen    as in step(): no others have contacts
-  void push_apart(std::span<Contact> contacts, std::span<const int> chosen = {});
+  void separate(std::span<ContactPoint> contacts, std::span<const int> chosen = {});
 
-  Solver& solver() { return solver_; }
+  VelocitySolver& solver() { return solver_; }
 
-  /// The state of all trees, and which sleep. Between two substeps, when nothing pushes.
+  /// State of all trees and their sleep. Between two substeps, without wrenches.
   void archive(math::Archive& archive);
 
  private:
   enum Kind { contact_item, servo_item, limit_item };
-  struct Item {
+  struct IslandItem {
     int island;
     Kind kind;
     int index;
   };
   template <class Visit>
-  void each_that_takes_part(Visit visit) const;
-  bool changed(int tree) const;
-  void forget_pushes();
-  bool comes_to_touch(const Contact& contact) const;
-  void note_commands();
-  void settle(int first_tree, int last_tree, bool carried, double swept_miss = 0);
-  void find_awake();
-  void gather();
-  void fetch_after(std::size_t island) const;
-  void gather_island(int first_tree, int last_tree, int first_item, int last_item);
+  void for_each_active(Visit visit) const;
+  bool has_changed_load(int tree) const;
+  void clear_wrenches();
+  bool comes_to_touch(const ContactPoint& contact) const;
+  void hash_servo_commands();
+  void update_sleep(int first_tree, int last_tree, bool carried, double swept_miss = 0);
+  void list_awake();
+  void build_islands();
+  void prefetch_after(std::size_t island) const;
+  void assemble_problem(int first_tree, int last_tree, int first_item, int last_item);
   void solve_island(int first_tree, int last_tree, int first_item, int last_item);
-  bool is_beyond(int first_item, int last_item, int of = -1) const;
-  bool fly_island(int first_tree, int last_tree, int first_item, int last_item);
-  bool fly_free(int first_tree, int last_tree, int first_item, int last_item);
+  bool violates_limit(int first_item, int last_item, int of = -1) const;
+  bool integrate_free_island(int first_tree, int last_tree, int first_item, int last_item);
+  bool integrate_free_trees(int first_tree, int last_tree, int first_item, int last_item);
 
-  /// What is known of a tree's sleep.
-  struct Sleeper {
-    double quiet = 0;           // how long it has been at rest [s]
-    std::uint64_t command = 0;  // of its servos, see note_commands()
+  /// Sleep state of a tree.
+  struct SleepState {
+    double time_at_rest = 0;           // time below the bounds of sleep [s]
+    std::uint64_t command = 0;  // of its servos, see hash_servo_commands()
     std::uint64_t command_asleep = 0;
     double force_bound = 0;  // of changes on a link [N], [N m] per radius of 1 m
     int first_servo = -1;    // that it had last, see next_servo_
     void archive(math::Archive& archive);
   };
-  std::vector<Sleeper> sleepers_;
+  std::vector<SleepState> sleep_states_;
   std::vector<int>
-      next_;  // of each tree: the next in the ring of those that sleep with it; -1: awake
-  // Of each tree: whether more than being touched may wake it. It is commanded, was pushed when it
-  // fell asleep, or is pushed now. And, within a step, whether that left it as it was.
-  enum Watch : unsigned char { commanded = 1, held = 2, pushed = 4, waits = 8 };
-  std::vector<unsigned char> watch_;
+      sleep_ring_;  // of each tree: the next in the ring of those that sleep with it; -1: awake
+  // Flags of each tree: its servos have commands, it had wrenches when it fell asleep, or has them
+  // now. Within a step also: it was left for parts of the step.
+  enum WakeFlag : unsigned char { commanded = 1, loaded_asleep = 2, loaded = 4, subdivided = 8 };
+  std::vector<unsigned char> wake_flags_;
   std::vector<int> awake_, disturbed_;
-  std::vector<unsigned char> fast_;  ///< of each tree: what strikes it may throw it elsewhere
-  std::vector<Ends> ends_;  // of contacts_
-  double length_ = 0;
-  std::span<Contact> contacts_;
+  std::vector<unsigned char> is_fast_;  ///< of each tree: an impact may deflect it
+  std::vector<ContactTrees> contact_trees_;  // of contacts_
+  double time_step_ = 0;
+  std::span<ContactPoint> contacts_;
   std::span<Servo> servos_;
   std::vector<int> next_servo_;  // of each servo: the next of its tree; -1: none
   std::span<Limit> limits_;
-  std::span<const int> chosen_;
+  std::span<const int> active_;
   Report report_;
 
-  std::vector<int> parent_, island_, place_;
+  std::vector<int> parent_, island_, index_in_island_;
   std::vector<int> first_tree_, tree_order_, first_item_;
-  std::vector<Item> items_, item_order_;
-  std::vector<unsigned char> driven_, free_;  // of each tree of an island
-  FreeVelocities free_velocities_;
-  std::vector<int> only_;  // memory of a function
-  std::vector<double> kept_, step_;
-  Excesses excesses_;
-  Rebound rebound_;
-  Tension tension_;
-  Drives drives_;
+  std::vector<IslandItem> items_, item_order_;
+  std::vector<unsigned char> has_servos_, is_free_;  // of each tree of an island
+  UnconstrainedVelocities free_velocities_;
+  std::vector<int> only_contacts_;  // memory of a function
+  std::vector<double> saved_state_, displacement_;
+  IslandEnergyErrors energy_errors_;
+  RestitutionEnergy restitution_energy_;
+  GeometricStiffness geometric_stiffness_;
+  IslandPrescribedJoints prescribed_joints_;
   Workspace work_;
   Problem problem_;
-  Solver solver_;
+  VelocitySolver solver_;
 };
 
 /// Calls visit(tree) in ascending order.
 template <class Visit>
-void System::each_that_takes_part(Visit visit) const {
-  if (!chosen_.empty()) {
-    for (const int tree : chosen_) visit(tree);
+void System::for_each_active(Visit visit) const {
+  if (!active_.empty()) {
+    for (const int tree : active_) visit(tree);
   } else {
     for (int tree = 0; tree < static_cast<int>(trees.size()); ++tree) visit(tree);
   }

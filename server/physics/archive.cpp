@@ -47,7 +47,7 @@ void archive_side(math::Archive& archive, ContactSide& side, std::span<const Bod
 
 void Plugins::archive(math::Archive& archive, std::span<const Body> bodies) {
   for (auto& plugin : plugins_) plugin->archive(archive, bodies);
-  archive.list("touching", now_, [&](Contact& contact) {
+  archive.list("touching", now_, [&](LinkContact& contact) {
     archive_side(archive, contact.a, bodies);
     archive_side(archive, contact.b, bodies);
     archive("normal", contact.normal);

@@ -1,6 +1,6 @@
 #pragma once
-// Where an entity's links stand when it is assembled: joints decide, not the links' own
-// positions (except the reference link's).
+// Poses of an entity's links when it is assembled: joints decide, not the links' own positions
+// (except the reference link's).
 
 #include <vector>
 

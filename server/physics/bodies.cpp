@@ -48,14 +48,14 @@ void Body::update_poses() {
   if (mechanism) mechanism->update_poses();
 }
 
-void Body::motions(std::vector<Motion>& out) const {
+void Body::motions(std::vector<Twist>& out) const {
   out.resize(parts.size());
   mechanism ? mechanism->motions(out) : articulation->motions(out);
 }
 
-Motion Body::motion(const LinkBody& link, std::span<const Motion> parts_motion) const {
+Twist Body::motion(const LinkBody& link, std::span<const Twist> parts_motion) const {
   const btMatrix3x3 basis = transform(link.part).getBasis();
-  Motion motion = parts_motion[link.part];
+  Twist motion = parts_motion[link.part];
   motion.velocity += motion.angular_velocity.cross(basis * to_bullet(link.in_part.position));
   motion.angular_velocity += basis.getColumn(2) * link.spin;
   return motion;

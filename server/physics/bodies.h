@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "math/pose.h"
-#include "physics/motion.h"
+#include "physics/twist.h"
 #include "physics/newton/articulation.h"
 #include "physics/values.h"
 #include "scene/scene.h"
@@ -22,7 +22,7 @@ class Archive;
 
 namespace ziggurat::physics {
 
-/// What moves as one. Its frame is at the centre of mass, along principal axes.
+/// A rigid part. Its frame is at the centre of mass, along principal axes.
 struct Part {
   bool moves = false;
   double mass = 0;
@@ -37,7 +37,7 @@ struct LinkBody {
   double mass = 0;
   math::Vector3 inertia{0, 0, 0};  ///< principal [kg m^2]
   math::Pose center;               ///< X_LS: the link's own centre of mass and principal axes
-  /// Of the box about the shape and S's origin, S's axes [m].
+  /// Half extents of the box about the shape and S's origin, S's axes [m].
   math::Vector3 half_extents = math::Vector3::Zero();
   scene::Damping damping;
   math::Pose placed;  ///< X_WL as placed
@@ -48,25 +48,25 @@ struct LinkBody {
   double spin = 0;                 ///< of a turret, about the part's z [rad/s]
   std::optional<LinkTouch> touch;  ///< of a link whose contacts are watched
 
-  /// A sphere that turns freely about its centre is no body of its own: its mass moves with the
-  /// link that carries it, its orientation is magnetism's affair (docs/magnetism.md).
+  /// A sphere that turns freely about its centre is no body of its own. Its mass moves with the
+  /// link that carries it; magnetism sets its orientation (docs/magnetism.md).
   static constexpr int carries_itself = -1;
   int carrier = carries_itself;  ///< index into Body::links
 
   math::Pose frame_in_part() const;  ///< X_PL at the start
 };
 
-/// A body on the ground whose velocity in the plane and turn rate the core holds to what is
-/// wanted, within a force and a torque.
+/// A body on the ground whose planar velocity and turn rate the core drives to targets, within a
+/// force and a torque.
 struct GroundMotion {
   scene::Traction limits;
   double velocity = 0;          ///< wanted, along the body's x axis [m/s]
   double angular_velocity = 0;  ///< wanted, about the world's z [rad/s]
 
-  // Of the coming substep:
+  // State of the coming substep:
   btVector3 along{1, 0, 0}, across{0, 1, 0};  ///< unit, level
   double speed = 0;                           ///< wanted along `along` [m/s]; 0 across
-  double length = 0;                          ///< of the substep [s]
+  double time_step = 0;                          ///< of the substep [s]
 };
 
 /// A frame on top of a robot that turns about the robot's z axis.
@@ -79,8 +79,8 @@ struct Turret {
 
 struct Magnet {
   scene::Magnet scene;
-  /// Of the ball about its centre that no magnet of another entity can enter, because colliders
-  /// are in between; 0: none [m].
+  /// Radius of the ball about its centre that no magnet of another entity can enter, because
+  /// colliders are in between; 0: none [m].
   double core = 0;
   double current = 0;  ///< times the active field
 };
@@ -128,10 +128,10 @@ struct Body {
   void update_poses();
 
   /// Motion of every part.
-  void motions(std::vector<Motion>& out) const;
+  void motions(std::vector<Twist>& out) const;
   /// Motion of a link.
   /// @param parts  of every part
-  Motion motion(const LinkBody& link, std::span<const Motion> parts) const;
+  Twist motion(const LinkBody& link, std::span<const Twist> parts) const;
 };
 
 /// X_WP of the reference link's part as placed.

@@ -4,8 +4,8 @@
 
 namespace ziggurat::physics {
 
-/// The fastest approach from which a motor of this strength can still stop at the target:
-/// with deceleration a in steps of h, the sum of the velocities left to go is the distance.
+/// Fastest approach from which a motor of this strength can still stop at the target. With
+/// deceleration a in steps of h, the distance is the sum of the remaining velocities.
 /// @param distance  to the target [m or rad];  @param deceleration  [m/s^2 or rad/s^2], more than 0
 /// @param length  of a substep [s]
 /// @return  [m/s or rad/s]

@@ -25,7 +25,7 @@ LinkBody link_body(const scene::Link& link, bool moves, const Pose& placed) {
   return body;
 }
 
-/// What holds a body to the ground, unless it is loose.
+/// Ground motion of a body on wheels or on a plane, unless it is loose.
 std::optional<scene::Traction> traction_of(const scene::Entity& entity,
                                            const scene::Physics& physics) {
   if (!entity.movable || entity.traction) return entity.traction;

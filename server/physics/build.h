@@ -1,5 +1,5 @@
 #pragma once
-// What an entity is made of, before a core moves it: its links, and the parts that move as one.
+// Links of an entity, and its rigid parts, before a core moves it.
 
 #include "physics/bodies.h"
 #include "scene/scene.h"

@@ -92,7 +92,7 @@ void Core::substep(std::span<Body> bodies, double length, int splits, Plugin* st
   }
 }
 
-void Core::contacts(std::vector<Contact>& out) const {
+void Core::contacts(std::vector<LinkContact>& out) const {
   with(core_, [&](const auto& core) { core.contacts(out); });
 }
 

@@ -60,8 +60,8 @@ class Core {
   /// @param stiff   what has stiff pairs; null: none. Bullet's core takes no notice of them.
   void substep(std::span<Body> bodies, double length, int splits, Plugin* stiff);
 
-  /// What touched in the last substep, in ascending order.
-  void contacts(std::vector<Contact>& out) const;
+  /// Lists contacts of the last substep, in ascending order.
+  void contacts(std::vector<LinkContact>& out) const;
 
   Convergence convergence() const;
 

@@ -26,7 +26,7 @@ void ViscousDamping::body_added(Body& body) {
 void ViscousDamping::body_removed(const Body& body) { std::erase(damped_, body.entity); }
 
 void ViscousDamping::before_substep(std::span<Body> bodies, double substep) {
-  // What a step of the law would turn round stops.
+  // Damping stops a velocity that a step of the law would reverse.
   const auto rate = [substep](double factor, double speed) {
     return std::min(factor * (1 + speed), 1 / substep);
   };

@@ -15,9 +15,9 @@ class Gravity final : public Plugin {
   double g_;
 };
 
-/// Force -m v (k + k |v|) and torque -I w (k + k |w|) on every link that asks for it: the law of
-/// Bullet's multi-bodies, for rigid bodies and for links damped unlike their neighbours; at most what stops
-/// the link within the substep.
+/// Viscous damping: force -m v (k + k |v|) and torque -I w (k + k |w|) on links that ask for it. It
+/// is limited to what stops the link within the substep. It is the law of Bullet's multi-bodies,
+/// for rigid bodies and for links damped unlike their neighbours.
 class ViscousDamping final : public Plugin {
  public:
   void body_added(Body& body) override;
@@ -26,7 +26,7 @@ class ViscousDamping final : public Plugin {
 
  private:
   std::vector<std::size_t> damped_;  ///< entities with a damped link
-  std::vector<Motion> motions_;
+  std::vector<Twist> motions_;
 };
 
 }  // namespace ziggurat::physics

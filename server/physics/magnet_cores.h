@@ -1,5 +1,6 @@
 #pragma once
-// How close the magnets of two entities can come: colliders are in between.
+// Cores of magnets: balls that magnets of other entities can't enter, because colliders are in
+// between.
 
 #include "physics/bodies.h"
 

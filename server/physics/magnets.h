@@ -67,7 +67,7 @@ class Magnets final : public Plugin {
   std::vector<StiffPair> stiff_;  // of them those for which the substep must be divided
   magnetism::PairSet chosen_;
   std::vector<std::size_t> chosen_carriers_;
-  std::vector<Motion> motions_;
+  std::vector<Twist> motions_;
 };
 
 /// The bond between two bodies like one of these that needs the shortest substeps.

@@ -19,7 +19,7 @@ std::vector<PlacedCollider> placed_colliders(const scene::Entity& entity, const 
 }
 
 bool overlaps(const PlacedCollider& a, const PlacedCollider& b, double depth) {
-  const contact::Contacts contacts = contact::find(a.shape, a.pose, b.shape, b.pose, 0);
+  const contact::Manifold contacts = contact::find(a.shape, a.pose, b.shape, b.pose, 0);
   for (int i = 0; i < contacts.count; ++i) {
     if (contacts.points[i].distance < -depth) return true;
   }

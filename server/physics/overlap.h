@@ -14,12 +14,12 @@ struct PlacedCollider {
   btTransform pose;  ///< of the shape's centre, in the world
 };
 
-/// Those of an entity at a pose of its origin, joints as assembled.
+/// Colliders of an entity at a pose of its origin, joints as assembled.
 std::vector<PlacedCollider> placed_colliders(const scene::Entity& entity, const math::Pose& pose);
 
-/// How deep bodies that are placed may be in each other: rounding is a thousand times smaller [m].
+/// Penetration that placed bodies may have: rounding is a thousand times smaller [m].
 constexpr double placed_depth = 1e-8;
-/// How deep bodies that rest on each other may be in each other [m].
+/// Penetration that resting bodies may have [m].
 constexpr double resting_depth = 1e-4;
 
 /// Touching is not overlapping. @param depth  up to which they touch [m]

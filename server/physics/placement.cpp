@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "physics/nearby.h"
+#include "physics/sphere_grid.h"
 #include "physics/overlap.h"
 
 namespace ziggurat::physics {
@@ -14,7 +14,7 @@ struct Placement::Parts {
   };
   std::vector<std::string> ids;
   std::vector<Placed> placed;
-  Nearby nearby;  // of `placed`
+  SphereGrid nearby;  // of `placed`
   std::size_t effort = 0;
 };
 

@@ -22,7 +22,7 @@ class Placement {
   /// Id of the first placed entity that `entity` would overlap at its pose; empty if none.
   std::string overlapped_by(const scene::Entity& entity) const;
 
-  /// What overlapped_by() has taken in all: about 0.1 us each, but the same on every machine.
+  /// Effort of all calls of overlapped_by(): about 0.1 us a unit, and the same on every machine.
   std::size_t effort() const;
 
  private:

@@ -6,7 +6,7 @@
 
 namespace ziggurat::physics {
 
-Contact in_order(Contact contact) {
+LinkContact in_order(LinkContact contact) {
   if (contact.b < contact.a) {
     std::swap(contact.a, contact.b);
     contact.normal = -contact.normal;
@@ -15,8 +15,8 @@ Contact in_order(Contact contact) {
   return contact;
 }
 
-void sort(std::vector<Contact>& contacts) {
-  std::ranges::sort(contacts, {}, [](const Contact& each) { return std::tie(each.a, each.b); });
+void sort(std::vector<LinkContact>& contacts) {
+  std::ranges::sort(contacts, {}, [](const LinkContact& each) { return std::tie(each.a, each.b); });
 }
 
 }  // namespace ziggurat::physics

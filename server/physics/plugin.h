@@ -26,7 +26,7 @@ struct ContactSide {
 
 /// Two links, or a link and the floor, in a substep in which they touch: they press each other, or
 /// their surfaces meet.
-struct Contact {
+struct LinkContact {
   ContactSide a, b;                               ///< a < b, so the floor is always b
   math::Vector3 normal = math::Vector3::Zero();   ///< unit, from b to a, in W
   math::Vector3 point = math::Vector3::Zero();    ///< the middle of the contact points, in W [m]
@@ -35,9 +35,9 @@ struct Contact {
 };
 
 /// The same contact with its sides in ascending order.
-Contact in_order(Contact contact);
+LinkContact in_order(LinkContact contact);
 /// Sorts contacts by their sides.
-void sort(std::vector<Contact>& contacts);
+void sort(std::vector<LinkContact>& contacts);
 
 /// Two entities, of which at least one moves, between which forces change so fast that the substep
 /// must be divided for them.
@@ -59,8 +59,9 @@ class Plugin {
   /// @param substep  its length [s]
   virtual void before_substep(std::span<Body> /*bodies*/, double /*substep*/) {}
 
-  /// Of the coming substep, after before_substep(). A core may divide the substep for them; it then
-  /// calls choose_stiff() once for each set of entities, and push_stiff() in each part.
+  /// Stiff pairs of the coming substep, after before_substep(). A core may divide the substep for
+  /// them. It then calls choose_stiff() once for each set of entities, and push_stiff() in each
+  /// part.
   virtual std::span<const StiffPair> stiff_pairs() const { return {}; }
   /// Chooses the forces that these entities exert on each other, and that what stands exerts.
   /// @param entities  of each whether it belongs to the set
@@ -71,17 +72,18 @@ class Plugin {
 
   /// Contacts cost time: they are reported only if a plug-in asks for them.
   virtual bool wants_contacts(std::span<const Body> /*bodies*/) const { return false; }
-  /// Each pair that touches is reported once in a substep, in ascending order of a and b: as begun
-  /// if it did not touch in the substep before, otherwise as persisting. Then what has ended, as
-  /// it last was; one of its bodies may have been removed.
-  virtual void contact_begins(std::span<Body> /*bodies*/, const Contact&) {}
-  virtual void contact_persists(std::span<Body> /*bodies*/, const Contact&) {}
-  virtual void contact_ends(std::span<Body> /*bodies*/, const Contact&) {}
+  /// Contact events: each touching pair is reported once in a substep, in ascending order of a and
+  /// b. It has begun if it did not touch in the substep before, otherwise it persists. Then ended
+  /// pairs follow, as they last were; one of their bodies may have been removed.
+  virtual void contact_begins(std::span<Body> /*bodies*/, const LinkContact&) {}
+  virtual void contact_persists(std::span<Body> /*bodies*/, const LinkContact&) {}
+  virtual void contact_ends(std::span<Body> /*bodies*/, const LinkContact&) {}
 
   /// Called with the poses at the substep's end, after its contacts.
   virtual void after_substep(std::span<Body> /*bodies*/, double /*substep*/) {}
 
-  /// What the next substep reads beyond the bodies. @param bodies  as they are then
+  /// Archives the state that the next substep reads beyond the bodies. @param bodies  as they are
+  /// then
   virtual void archive(math::Archive& /*archive*/, std::span<const Body> /*bodies*/) {}
 };
 

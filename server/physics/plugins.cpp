@@ -7,7 +7,7 @@
 
 #include "physics/forces.h"
 #include "physics/magnets.h"
-#include "physics/touch.h"
+#include "physics/contact_sensing.h"
 #include "physics/wheels.h"
 
 namespace ziggurat::physics {
@@ -33,10 +33,10 @@ constexpr std::array choices{
       return p.magnetism ? make<Magnets>(*p.magnetism, divides) : nullptr;
     },
     +[](const scene::Physics&) { return make<Wheels>(); },
-    +[](const scene::Physics&) { return make<Touch>(); },
+    +[](const scene::Physics&) { return make<ContactSensing>(); },
 };
 
-auto sides(const Contact& contact) { return std::tie(contact.a, contact.b); }
+auto sides(const LinkContact& contact) { return std::tie(contact.a, contact.b); }
 
 }  // namespace
 
@@ -86,13 +86,13 @@ void Plugins::tell_contacts(std::span<Body> bodies) {
   for (auto& plugin : plugins_) {
     if (!plugin->wants_contacts(bodies)) continue;
     auto before = before_.begin();
-    for (const Contact& contact : now_) {
+    for (const LinkContact& contact : now_) {
       while (before != before_.end() && sides(*before) < sides(contact)) ++before;
       const bool known = before != before_.end() && sides(*before) == sides(contact);
       known ? plugin->contact_persists(bodies, contact) : plugin->contact_begins(bodies, contact);
     }
     auto now = now_.begin();
-    for (const Contact& contact : before_) {
+    for (const LinkContact& contact : before_) {
       while (now != now_.end() && sides(*now) < sides(contact)) ++now;
       if (now == now_.end() || sides(contact) != sides(*now)) plugin->contact_ends(bodies, contact);
     }

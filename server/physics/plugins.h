@@ -12,7 +12,7 @@ namespace ziggurat::physics {
 
 class Plugins {
  public:
-  /// Those that the scene chooses, and those that every world has.
+  /// Makes the plug-ins that the scene chooses, and those of every world.
   Plugins(const scene::Physics& physics, Core& core);
 
   /// One more, which acts behind the others.
@@ -32,7 +32,7 @@ class Plugins {
   void tell_contacts(std::span<Body> bodies);
 
   std::vector<std::unique_ptr<Plugin>> plugins_;  // in the order in which they act
-  std::vector<Contact> before_, now_;             // ascending
+  std::vector<LinkContact> before_, now_;             // ascending
 };
 
 }  // namespace ziggurat::physics

@@ -17,8 +17,8 @@ namespace {
 using math::Vector3;
 
 constexpr double skin = 1e-4;  // [m]
-// Bounding volumes are larger than bodies by the first when they are made [m], and made anew once
-// less than the second is left: what trembles at rest leaves the tree alone.
+// Margins of bounding volumes [m]: with the first they are made, and made anew once less than the
+// second is left. So vibration at rest leaves the tree alone.
 constexpr double volume_margin = 1e-3;
 constexpr double rounding_margin = 1e-4;
 

@@ -1,6 +1,6 @@
 #pragma once
-// What stands between two points: ray casts against all colliders and the floor, for proximity
-// sensors and lines of sight. Works on published poses, so its answers belong to a tick.
+// Ray casts against all colliders and the floor, for proximity sensors and lines of sight. They
+// work on published poses, so their answers belong to a tick.
 
 #include <cstddef>
 #include <memory>
@@ -50,12 +50,12 @@ class Rays {
   /// Takes the poses of a tick. Must be called before casts.
   void update(const world::State& state);
 
-  /// The closest entity that the segment meets before its end. A body in which the segment starts
-  /// does not stop it, unless it starts within 0.1 mm below the surface on its way in: what
-  /// touches is met at 0. The floor is met from above only.
+  /// Casts a segment: the closest entity that it meets before its end. A body around its start does
+  /// not stop it, unless the start is within 0.1 mm below the surface on the way in: a touching
+  /// body is met at 0. The floor is met from above only.
   std::optional<RayHit> cast(const RayQuery& query) const;
 
-  /// What may reach into a box, for many rays in one place.
+  /// Finds colliders that may reach into a box, for many rays in one place.
   /// @param low, high  corners of the box in W [m];  @param ignored  entities without which
   void find(const math::Vector3& low, const math::Vector3& high,
             std::span<const std::size_t> ignored, Candidates& out) const;
@@ -70,7 +70,7 @@ class Rays {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Where a segment enters a shape: the share of the segment's length, at least -skin / length and
+/// Entry of a segment into a shape: the share of the segment's length, at least -skin / length and
 /// less than 1. Nothing if it starts inside or misses.
 /// @param start, end  in the link's frame [m]
 /// @param skin  depth below the surface that still counts as outside on the way in [m]

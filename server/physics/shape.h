@@ -1,5 +1,5 @@
 #pragma once
-// What physics needs of a shape. Each function is written for each shape in shape.cpp; a shape
+// Physical properties of shapes. Each function is written for each shape in shape.cpp; a shape
 // without one does not compile.
 //
 // S, the frame of a shape, is at its centre of mass, along its principal axes.
@@ -19,7 +19,7 @@ math::Pose shape_frame(const scene::Geometry& geometry);
 /// Principal moments of inertia of the solid [kg m^2].
 math::Vector3 inertia(const scene::Geometry& geometry, double mass);
 
-/// Of the box about the shape and S's origin, along S's axes [m].
+/// Half extents of the box about the shape and S's origin, along S's axes [m].
 math::Vector3 half_extents(const scene::Geometry& geometry);
 
 /// Radius of the largest ball about a point that the shape holds [m]; negative outside.

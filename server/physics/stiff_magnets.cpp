@@ -13,14 +13,14 @@ using math::Vector3;
 constexpr double soft = 0.005;
 /// The pairs of a body must not misplace more than this share of a bond's energy in a substep.
 constexpr double share = 1e-4;
-/// Those that misplace less than this part of it count for the sum, but are not divided.
+/// Needs below this part of the bound count for the sum, but are not divided.
 constexpr double least_part = 0.1;
-/// Of products of rate and length of a part: the root of the sum of squares of a body's pairs, each times the share of the bond energy
-/// that is left where they are; and the largest of a pair.
+/// Bounds of products of rate and length of a part. For a body: the root of the sum of squares of
+/// its pairs, each times the share of the bond energy that is left. For a pair: the largest.
 constexpr double part_angle = 0.2, largest_angle = 0.1;
 constexpr int most_parts = 128;
 
-/// What one carrier does at a point, now and a substep ago.
+/// Motion of a carrier at a point, now and a substep ago.
 struct PointMotion {
   Vector3 now, before;
 };
@@ -31,13 +31,13 @@ PointMotion motion_at(const Carrier& carrier, const Vector3& point) {
           carrier.velocity_before + carrier.turning_before.cross(arm)};
 }
 
-/// Of a force at a point [1/kg].
+/// Inverse mass felt by a force at a point [1/kg].
 double felt_inverse_mass(const Carrier& carrier, const Vector3& point) {
   return carrier.inverse_mass + (point - carrier.centre).squaredNorm() * carrier.inverse_inertia;
 }
 
-/// The most that a pair's force and torque can be at a distance, for any directions of its moments,
-/// and the fastest rate at which it can swing or fall together.
+/// Bounds of a pair's force and torque at a distance, for any directions of its moments. With them
+/// the rate at which it swings or falls together is bounded.
 struct Stiffness {
   double force, torque;                  // [N], [N m]
   double inverse_mass, inverse_inertia;  // of both [1/kg], [1/(kg m^2)]
@@ -70,7 +70,7 @@ std::optional<Need> need_of(const PairOfMagnets& pair, const Carrier& a, const C
   const PointMotion at_a = motion_at(a, middle), at_b = motion_at(b, middle);
   double speed = (at_a.now - at_b.now).norm();
   double turning = (a.turning - b.turning).norm();
-  // What holds both, contacts as well, decides by how much they will speed up.
+  // Constraints of both, contacts as well, decide by how much they will speed up.
   const auto known = [now](const Carrier& c) {
     const bool seen = c.seen_before > 0 && c.seen_before + 1 == now;
     return c.inverse_mass == 0 || seen;

@@ -1,6 +1,6 @@
 #pragma once
-// Pairs of magnets whose forces change too fast for one substep: which they are, and into how many
-// parts a substep must be divided for them. docs/magnetism.md derives the limits.
+// Stiff pairs of magnets, whose forces change too fast for one substep, and the number of parts
+// that they need. docs/magnetism.md derives the limits.
 
 #include <cstdint>
 #include <optional>
@@ -15,7 +15,7 @@ namespace ziggurat::physics {
 constexpr double safe_whole = 0.15;  ///< where the core takes the substep as a whole
 constexpr double safe_divided = 64;  ///< where it divides it for stiff pairs
 
-/// What a pair, or all pairs of a carrier, need in a substep.
+/// Need of a pair, or of all pairs of a carrier, in a substep.
 struct Need {
   double misplaced = 0;      ///< energy, if it is taken as a whole, over that of a bond
   double parts_squared = 0;  ///< of the number into which it should be divided, if it must be
@@ -25,7 +25,7 @@ struct Need {
   void archive(math::Archive& archive);
 };
 
-/// What moves with some magnets.
+/// Carrier of magnets: the part that they move with.
 struct Carrier {
   std::size_t entity = 0;
   std::size_t part = 0;
@@ -60,7 +60,7 @@ struct ClosePair {
 /// @param inverse_inertia  the largest of a carrier [1/(kg m^2)]
 double close_reach(double moment, double inverse_mass, double inverse_inertia, double substep);
 
-/// How stiff a pair is. The bounds hold for any directions of the moments.
+/// Stiffness of a pair of magnets. The bounds hold for any directions of the moments.
 struct PairOfMagnets {
   double moments = 0;            ///< product of both [(A m^2)^2]
   double distance = 0;           ///< as it counts [m]

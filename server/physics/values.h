@@ -12,7 +12,7 @@ struct JointIndex {
   std::size_t value = 0;
 };
 
-/// How a link was touched since it was asked last.
+/// Contacts of a link since the last request.
 struct LinkTouch {
   bool touched = false;                           ///< in a substep at least
   math::Vector3 impulse = math::Vector3::Zero();  ///< the sum on the link, in W [N s]
@@ -20,7 +20,7 @@ struct LinkTouch {
                          ///< against each other, `impulse` is less
 };
 
-/// How well solver="newton" did since the world began; of solver="sweeps" nothing is known.
+/// Convergence of solver="newton" since the world began; of solver="sweeps" nothing is known.
 struct Convergence {
   std::size_t islands = 0;        ///< solved, over all substeps
   std::size_t not_converged = 0;  ///< of them

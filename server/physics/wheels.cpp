@@ -10,7 +10,7 @@ constexpr btScalar slowest = btScalar(1e-6);  // of what slides [m/s]
 
 /// Friction of what does not drive is along its motion: so it is the same in all directions, until it stands.
 /// @return  unit, level, or 0 where nothing moves
-btVector3 sliding(const Body& body, const GroundMotion& ground, std::vector<Motion>& motions) {
+btVector3 sliding(const Body& body, const GroundMotion& ground, std::vector<Twist>& motions) {
   if (ground.velocity != 0 || ground.angular_velocity != 0) return {0, 0, 0};
   body.motions(motions);
   const btVector3 level(motions[0].velocity.x(), motions[0].velocity.y(), 0);
@@ -23,7 +23,7 @@ void aim(const Body& body, GroundMotion& ground, const btVector3& direction, dou
   const double half = ground.angular_velocity * substep / 2;
   ground.speed =
       ground.velocity * (std::abs(half) < 1e-4 ? 1 - half * half / 6 : std::sin(half) / half);
-  ground.length = substep;
+  ground.time_step = substep;
   const btVector3 x = body.transform(std::size_t{0}).getBasis().getColumn(0);
   const double heading = std::atan2(x.y(), x.x()) + half;
   ground.along = direction.isZero() ? btVector3(std::cos(heading), std::sin(heading), 0) : direction;

@@ -20,7 +20,7 @@ class Wheels final : public Plugin {
 
  private:
   std::vector<std::size_t> entities_;  // with a GroundMotion
-  std::vector<Motion> motions_;
+  std::vector<Twist> motions_;
 };
 
 }  // namespace ziggurat::physics

@@ -9,7 +9,7 @@
 #include "physics/core.h"
 #include "physics/magnets.h"
 #include "physics/plugins.h"
-#include "physics/pushes.h"
+#include "physics/external_forces.h"
 
 namespace ziggurat::physics {
 
@@ -37,7 +37,7 @@ struct World::Parts {
         length(substep / splits),
         core(physics),
         plugins(physics, core) {
-    auto pushed = std::make_unique<Pushes>();
+    auto pushed = std::make_unique<ExternalForces>();
     pushes = pushed.get();
     plugins.add(std::move(pushed));
   }
@@ -48,13 +48,13 @@ struct World::Parts {
   double length;            // of an internal substep [s]
   std::size_t stepped = 0;  // so many bodies have been through a step; the rest is as placed
   std::size_t link_count = 0, magnet_count = 0;
-  std::vector<Motion> motions;    // memory of read(), kept so that a tick does not allocate it
-  std::vector<Contact> contacts;  // the same of list_contacts()
+  std::vector<Twist> motions;    // memory of read(), kept so that a tick does not allocate it
+  std::vector<LinkContact> contacts;  // the same of list_contacts()
 
   std::vector<Body> bodies;
   Core core;
   Plugins plugins;
-  Pushes* pushes = nullptr;  // one of the plug-ins
+  ExternalForces* pushes = nullptr;  // one of the plug-ins
 };
 
 World::World(const scene::Physics& physics, double substep)
@@ -143,7 +143,7 @@ void World::set_currents(std::span<const double> currents) {
 
 void set_pushes(World& world, std::span<const world::Push> pushes) {
   const std::vector<Body>& bodies = world.parts_->bodies;
-  std::vector<Pushes::Push> list;
+  std::vector<ExternalForces::Force> list;
   for (const world::Push& push : pushes) {
     const auto behind = std::ranges::upper_bound(bodies, push.link, {}, &Body::first_link);
     const std::size_t entity = static_cast<std::size_t>(behind - bodies.begin()) - 1;
@@ -176,7 +176,7 @@ void World::list_contacts(std::vector<world::Contact>& to) const {
   p.core.contacts(p.contacts);
   const auto link_of = [&](const ContactSide& side) { return p.bodies[side.entity].first_link + side.link; };
   to.clear();
-  for (const Contact& contact : p.contacts) {
+  for (const LinkContact& contact : p.contacts) {
     world::Contact& entry = to.emplace_back();
     entry.link = link_of(contact.a);
     if (contact.b.entity != ContactSide::floor) entry.other = link_of(contact.b);
@@ -227,7 +227,7 @@ void World::read(std::size_t entity, world::State& state) const {
     world::LinkState& out = state.links[body.first_link + i];
     out.pose = link.placed;
     if (stepped && link.moves) out.pose = link_pose(body, link);
-    const Motion motion = body.motion(link, p.motions);
+    const Twist motion = body.motion(link, p.motions);
     out.angular_velocity = from_bullet(motion.angular_velocity);
     const math::Vector3 arm = out.pose.orientation * -link.center.position;
     out.velocity = from_bullet(motion.velocity) + out.angular_velocity.cross(arm);
@@ -262,7 +262,7 @@ World::Stiffness World::stiffest_bond() const {
 double World::energy() const {
   double total = 0;
   const double gravity = parts_->settings.gravity.value_or(0);
-  std::vector<Motion> motions;
+  std::vector<Twist> motions;
   for (const Body& body : parts_->bodies) {
     if (body.links.empty()) continue;
     body.motions(motions);

@@ -86,7 +86,7 @@ class World {
   /// Begins to watch what touches a link of an entity added before.
   /// @param link  index into Entity::links
   void watch_contacts(std::size_t entity, std::size_t link);
-  /// How a watched link was touched since the last call, or since it is watched; nothing if its
+  /// Returns a watched link's contacts since the last call, or since it is watched; nothing if its
   /// entity was removed.
   LinkTouch take_touch(std::size_t entity, std::size_t link);
 
@@ -105,9 +105,8 @@ class World {
   /// The same of one entity that is present.
   void read(std::size_t entity, world::State& state) const;
 
-  /// How stiff the scene's magnetic bonds are for its substeps: the product of substep and rate
-  /// that is the largest share of a safe one, and the entity it belongs to; 0 where there is no
-  /// magnetism.
+  /// Stiffness of the scene's magnetic bonds: the product of substep and rate that is the largest
+  /// share of a safe one, and its entity; 0 without magnetism.
   struct Stiffness {
     std::size_t entity = 0;
     double product = 0;

@@ -174,7 +174,7 @@ void Replay::spawn(const std::string& xml) {
     ++changes_;
     if (links_) {  // wherever others were when the world was built
       simulation::repeat(world_.simulation, world_.scene,
-                         {simulation::Act::Kind::spawn, tick_, entities.size(), {},
+                         {simulation::WorldEdit::Kind::spawn, tick_, entities.size(), {},
                           std::make_shared<const scene::Entity>(std::move(addition.entity)), xml});
     } else {
       world_.simulation.spawn(world_.scene, addition.entity, xml);
@@ -234,8 +234,8 @@ void Replay::restore_to(const simulation::Snapshot& snapshot) {
                                              world_.simulation.layout());
   if (links_) {
     world_.simulation.reset(world_.scene, {snapshot.seed, {}});
-    for (const simulation::Act& act : snapshot.history.acts) {
-      if (act.kind == simulation::Act::Kind::move) continue;
+    for (const simulation::WorldEdit& act : snapshot.history.edits) {
+      if (act.kind == simulation::WorldEdit::Kind::move) continue;
       simulation::repeat(world_.simulation, world_.scene, act);
     }
   } else {
@@ -244,9 +244,9 @@ void Replay::restore_to(const simulation::Snapshot& snapshot) {
   world_.seed = snapshot.seed;
   names_ = {};
   spawned_bytes_ = 0;
-  for (const simulation::Act& act : snapshot.history.acts) {
+  for (const simulation::WorldEdit& act : snapshot.history.edits) {
     const auto size = spawned_sizes_.find(act.xml);
-    if (act.kind == simulation::Act::Kind::spawn) spawned_bytes_ += size == spawned_sizes_.end() ? act.xml.size() : size->second;
+    if (act.kind == simulation::WorldEdit::Kind::spawn) spawned_bytes_ += size == spawned_sizes_.end() ? act.xml.size() : size->second;
   }
   ++changes_;
 }

@@ -21,7 +21,7 @@
 #include "run/loading.h"
 #include "run/setup.h"
 #include "run/version.h"
-#include "simulation/doubts.h"
+#include "simulation/scene_warnings.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
@@ -245,7 +245,7 @@ supervision::Supervision::Settings Run::supervision_settings() {
 }
 
 void Run::print_notices() {
-  for (const auto& doubt : simulation::doubts(world_.scene, world_.simulation)) console_.problem(doubt);
+  for (const auto& doubt : simulation::scene_warnings(world_.scene, world_.simulation)) console_.problem(doubt);
   for (const auto& notice : world_.simulation.notices()) console_.notice(path_ + ": " + notice);
   if (config_.curve) {
     for (const auto& doubt : doubts_of(config_.curve->clients, world_.scene, world_.simulation.layout())) console_.notice(doubt);

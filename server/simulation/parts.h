@@ -1,5 +1,5 @@
 #pragma once
-// What a simulation is made of.
+// Parts of a simulation.
 
 #include <cstddef>
 #include <cstdint>
@@ -41,7 +41,7 @@ struct Simulation::Parts {
   void repeat(const scene::Scene& scene, const Snapshot& snapshot, world::Layout& grown,
               const std::function<void()>& tell);
   std::vector<std::byte> with_own_streams(const std::vector<std::byte>& given);
-  void repeat_act(const scene::Scene& scene, const Act& act, world::Layout& grown);
+  void repeat_edit(const scene::Scene& scene, const WorldEdit& edit, world::Layout& grown);
   /// Writes down what the coming step takes, if only repeating gives the state again.
   void note_commands();
   void note_move(std::size_t entity, const math::Pose& pose);

@@ -37,9 +37,9 @@ void show(Simulation& to, std::uint64_t tick, std::span<const world::LinkState> 
   }
 }
 
-void repeat(Simulation& to, const scene::Scene& scene, const Act& act) {
-  to.parts_->repeat_act(scene, act, *to.layout_);
-  to.parts_->history.acts.push_back(act);
+void repeat(Simulation& to, const scene::Scene& scene, const WorldEdit& edit) {
+  to.parts_->repeat_edit(scene, edit, *to.layout_);
+  to.parts_->history.edits.push_back(edit);
 }
 
 }  // namespace ziggurat::simulation

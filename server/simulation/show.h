@@ -19,7 +19,7 @@ void show(Simulation& to, std::uint64_t tick, std::span<const world::LinkState> 
 
 /// Adds or takes out an entity, also where another one is.
 /// @param scene  the one that it was made from
-/// @throws SnapshotError if the act does not fit this world
-void repeat(Simulation& to, const scene::Scene& scene, const Act& act);
+/// @throws SnapshotError if the edit does not fit this world
+void repeat(Simulation& to, const scene::Scene& scene, const WorldEdit& edit);
 
 }  // namespace ziggurat::simulation

@@ -10,7 +10,7 @@
 #include "simulation/finite.h"
 #include "simulation/layout.h"
 #include "simulation/parts.h"
-#include "simulation/place.h"
+#include "simulation/placement.h"
 
 namespace ziggurat::simulation {
 namespace {
@@ -79,7 +79,7 @@ Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, worl
       physics(scene.physics, substep),
       rays(scene.physics),
       layout(made) {
-  entities = place(scene, options.seed, options.tell);
+  entities = place_entities(scene, options.seed, options.tell);
   made = make_layout(scene, entities, substep);
   constexpr std::size_t between_messages = 100;
   for (std::size_t i = 0; i < entities.size(); ++i) {
@@ -186,17 +186,17 @@ void Simulation::spawn(const scene::Scene& scene, const scene::Entity& entity, s
                                entity.id, layout_->entities[*other].id);
     throw scene::SceneError({problem});
   }
-  Act act{Act::Kind::spawn, parts_->state.tick, layout_->entities.size(), {},
+  WorldEdit edit{WorldEdit::Kind::spawn, parts_->state.tick, layout_->entities.size(), {},
           std::make_shared<const scene::Entity>(entity), std::move(xml)};
-  auto& acts = parts_->history.acts;
-  if (acts.size() == acts.capacity()) acts.reserve(2 * acts.size() + 1);  // what is done can be written down
+  auto& edits = parts_->history.edits;
+  if (edits.size() == edits.capacity()) edits.reserve(2 * edits.size() + 1);  // what is done can be written down
   parts_->spawn(scene, entity, *layout_);
-  acts.push_back(std::move(act));
+  edits.push_back(std::move(edit));
 }
 
 void Simulation::remove(std::size_t entity) {
   parts_->remove(entity);
-  parts_->history.acts.push_back({Act::Kind::remove, parts_->state.tick, entity, {}, {}, {}});
+  parts_->history.edits.push_back({WorldEdit::Kind::remove, parts_->state.tick, entity, {}, {}, {}});
 }
 
 const world::Layout& Simulation::layout() const { return *layout_; }

@@ -12,7 +12,7 @@
 
 #include "physics/values.h"
 #include "scene/scene.h"
-#include "simulation/place.h"
+#include "simulation/placement.h"
 #include "simulation/snapshot.h"
 #include "world/commands.h"
 #include "world/contact.h"
@@ -44,8 +44,8 @@ class Simulation {
   world::Commands& commands();  ///< applied at the start of the next tick; values persist
 
   /// Destroys the world and builds it again as a new simulation of the same scene: removed entities
-  /// are back, spawned ones are no longer in the layout. The layout stays where it is;
-  /// states, observations and commands move.
+  /// are back, spawned ones are no longer in the layout. The layout stays where it is; states,
+  /// observations and commands move.
   /// @throws as the constructor, if something can't be placed with this seed; then nothing changes
   void reset(const scene::Scene& scene, const Options& options);
 
@@ -70,20 +70,20 @@ class Simulation {
   /// Whether contacts() lists contacts; that costs time. Not at first, and not after a reset; after a
   /// restore as before it. No result depends on it.
   void list_contacts(bool wanted);
-  /// Of the last substep; empty unless they are listed.
+  /// Contacts of the last substep; empty unless they are listed.
   const std::vector<world::Contact>& contacts() const;
 
   /// Whether rays() lists the rays of all devices from the next tick on, whether they have `show_rays`
   /// or not; that costs time. Not at first, and not after a reset. No result depends on it.
   void list_rays(bool wanted);
-  /// Of the last tick; empty unless they are listed.
+  /// Rays of the last tick; empty unless they are listed.
   const std::vector<world::Ray>& rays() const;
 
   /// Advances by one tick.
   /// @throws std::runtime_error that names the first entity whose state is not finite then
   void step();
 
-  /// Of the last tick's state and observations.
+  /// Hash of the last tick's state and observations.
   std::uint64_t hash() const;
 
   /// The world as it is, commands included. @throws SnapshotError if that can't be had
@@ -99,16 +99,16 @@ class Simulation {
   ///         nothing changes
   void restore(const scene::Scene& scene, const Snapshot& snapshot,
                std::optional<std::uint64_t> seed = {}, const std::function<void()>& tell = {});
-  /// What was done to the world since the start, as far as snapshots need it.
+  /// History of the world since the start, as far as snapshots need it.
   const History& history() const;
   /// The first field in which the state differs from that of a snapshot: empty if none does, or if
   /// the state can't be copied.
   std::string first_difference(const Snapshot& snapshot) const;
 
-  /// What the author of the scene should know before the run: sentences, usually none.
+  /// Notices to the scene's author before the run: sentences, usually none.
   std::vector<std::string> notices() const;
 
-  /// How well the physics converged since the start or the last reset.
+  /// Convergence of the physics since the start or the last reset.
   physics::Convergence convergence() const;
 
   double tick_length() const;      ///< simulated time per tick by the clock on the wall [s]
@@ -116,7 +116,7 @@ class Simulation {
 
   // show.h
   friend void show(Simulation& to, std::uint64_t tick, std::span<const world::LinkState> links);
-  friend void repeat(Simulation& to, const scene::Scene& scene, const Act& act);
+  friend void repeat(Simulation& to, const scene::Scene& scene, const WorldEdit& act);
 
   // joints.h
   friend std::optional<JointFault> fault_of(const Simulation& world, std::size_t entity, const JointMotion& wanted);
@@ -139,7 +139,7 @@ class Simulation {
 std::optional<std::size_t> overlapped_by(const Simulation& in, const scene::Entity& entity, const math::Pose& pose,
                                          std::optional<std::size_t> except = {});
 
-/// What the author should know of how the run goes: a sentence if substeps were divided so often that it is slow.
+/// Notice to the scene's author about a slow run: a sentence if substeps were divided often.
 std::optional<std::string> slow_notice(const Simulation& simulation);
 
 }  // namespace ziggurat::simulation

@@ -11,12 +11,12 @@
 namespace ziggurat::simulation {
 namespace {
 
-/// Of all commands that are kept to repeat a run [bytes].
+/// Size of all commands that are kept to repeat a run [bytes].
 constexpr std::size_t longest_history = std::size_t{256} << 20;
 
 /// Whether two worlds of one scene and seed have the same entities in the same places.
 bool same_entities(const History& one, const History& other) {
-  return std::ranges::equal(one.acts, other.acts, [](const Act& a, const Act& b) {
+  return std::ranges::equal(one.edits, other.edits, [](const WorldEdit& a, const WorldEdit& b) {
     return a.kind == b.kind && a.entity == b.entity && a.spawned == b.spawned;
   });
 }
@@ -48,12 +48,12 @@ std::optional<std::string> fault_of_snapshot_name(std::string_view name) {
 
 std::size_t common_robots(const History& now, const History& then, const world::Layout& layout) {
   std::size_t entities = layout.entities.size();
-  const auto is_same = [](const Act& a, const Act& b) {
+  const auto is_same = [](const WorldEdit& a, const WorldEdit& b) {
     return a.kind == b.kind && a.tick == b.tick && a.entity == b.entity && a.xml == b.xml;
   };
-  const auto [part, other] = std::ranges::mismatch(now.acts, then.acts, is_same);
-  for (auto act = part; act != now.acts.end(); ++act) {
-    if (act->kind == Act::Kind::spawn) entities = std::min(entities, act->entity);
+  const auto [part, other] = std::ranges::mismatch(now.edits, then.edits, is_same);
+  for (auto edit = part; edit != now.edits.end(); ++edit) {
+    if (edit->kind == WorldEdit::Kind::spawn) entities = std::min(entities, edit->entity);
   }
   return static_cast<std::size_t>(std::ranges::count_if(
       layout.robots, [&](const world::RobotLayout& robot) { return robot.entity < entities; }));
@@ -61,7 +61,7 @@ std::size_t common_robots(const History& now, const History& then, const world::
 
 std::size_t Snapshot::size() const {
   std::size_t size = state.size() + commands.size() + history.size;
-  for (const Act& act : history.acts) size += sizeof act + act.xml.size();
+  for (const WorldEdit& edit : history.edits) size += sizeof edit + edit.xml.size();
   return size + history.commands.size() * sizeof(Commanded);
 }
 
@@ -81,7 +81,7 @@ void Simulation::Parts::archive(math::Archive& archive) {
 void Simulation::Parts::note_commands() {
   if (has_archive || history.size > longest_history) return;
   write_commands(layout, commands, commanding);
-  // What lasts for one step must be written down again, though it is the same.
+  // Commands that last for one step must be written down again, though they are the same.
   const bool lasts = commands.radio_messages.entries.empty() && commands.pushes.empty();
   if (lasts && commanding == commanded) return;
   history.commands.push_back({state.tick, commanding});
@@ -91,8 +91,8 @@ void Simulation::Parts::note_commands() {
 
 void Simulation::Parts::note_move(std::size_t entity, const math::Pose& pose) {
   if (has_archive || history.size > longest_history) return;
-  history.acts.push_back({Act::Kind::move, state.tick, entity, pose, {}, {}});
-  history.size += sizeof(Act);
+  history.edits.push_back({WorldEdit::Kind::move, state.tick, entity, pose, {}, {}});
+  history.size += sizeof(WorldEdit);
 }
 
 const History& Simulation::history() const { return parts_->history; }
@@ -122,21 +122,21 @@ Snapshot Simulation::snapshot() const {
   return snapshot;
 }
 
-void Simulation::Parts::repeat_act(const scene::Scene& scene, const Act& act,
+void Simulation::Parts::repeat_edit(const scene::Scene& scene, const WorldEdit& edit,
                                    world::Layout& grown) {
   const std::size_t entities = grown.entities.size();
-  const bool spawns = act.kind == Act::Kind::spawn;
-  if (spawns ? act.entity != entities || !act.spawned
-             : act.entity >= entities || state.is_absent(act.entity)) {
+  const bool spawns = edit.kind == WorldEdit::Kind::spawn;
+  if (spawns ? edit.entity != entities || !edit.spawned
+             : edit.entity >= entities || state.is_absent(edit.entity)) {
     throw SnapshotError("An entity of the snapshot is not in the scene.");
   }
-  switch (act.kind) {
-    case Act::Kind::spawn:
-      return grow(scene, *act.spawned, grown);
-    case Act::Kind::remove:
-      return remove(act.entity);
-    case Act::Kind::move:
-      return move(act.entity, act.pose);
+  switch (edit.kind) {
+    case WorldEdit::Kind::spawn:
+      return grow(scene, *edit.spawned, grown);
+    case WorldEdit::Kind::remove:
+      return remove(edit.entity);
+    case WorldEdit::Kind::move:
+      return move(edit.entity, edit.pose);
   }
 }
 
@@ -168,10 +168,10 @@ std::vector<std::byte> Simulation::Parts::with_own_streams(const std::vector<std
 
 void Simulation::Parts::repeat(const scene::Scene& scene, const Snapshot& snapshot,
                                world::Layout& grown, const std::function<void()>& tell) {
-  auto act = snapshot.history.acts.begin();
-  const auto end = snapshot.history.acts.end();
+  auto edit = snapshot.history.edits.begin();
+  const auto end = snapshot.history.edits.end();
   if (has_archive) {
-    for (; act != end; ++act) repeat_act(scene, *act, grown);
+    for (; edit != end; ++edit) repeat_edit(scene, *edit, grown);
     std::vector<std::byte> mixed;
     if (seed != snapshot.seed) mixed = with_own_streams(snapshot.state);
     auto archive = math::Archive::reader(mixed.empty() ? snapshot.state : mixed);
@@ -180,7 +180,7 @@ void Simulation::Parts::repeat(const scene::Scene& scene, const Snapshot& snapsh
     auto change = snapshot.history.commands.begin();
     for (;; step()) {
       if (tell) tell();
-      for (; act != end && act->tick == state.tick; ++act) repeat_act(scene, *act, grown);
+      for (; edit != end && edit->tick == state.tick; ++edit) repeat_edit(scene, *edit, grown);
       if (state.tick == snapshot.tick) break;
       const bool changes =
           change != snapshot.history.commands.end() && change->tick == state.tick;

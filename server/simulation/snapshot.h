@@ -29,7 +29,7 @@ inline constexpr std::size_t longest_spawned = std::size_t{1} << 20;  ///< the t
 std::optional<std::string> fault_of_snapshot_name(std::string_view name);
 
 /// Something that was done to a world between two ticks.
-struct Act {
+struct WorldEdit {
   enum class Kind : std::uint8_t { spawn, remove, move };
   Kind kind = Kind::spawn;
   std::uint64_t tick = 0;  ///< of the state that it was done to
@@ -45,16 +45,16 @@ struct Commanded {
   std::vector<std::byte> bytes;
 };
 
-/// What made a world out of a new one.
+/// Changes that made a world out of a new one.
 struct History {
-  std::vector<Act> acts;  ///< in order; moves only where the world must be repeated
+  std::vector<WorldEdit> edits;  ///< in order; moves only where the world must be repeated
   /// Only where it must be repeated: those that differ from the last step's, ascending.
   std::vector<Commanded> commands;
   std::size_t size = 0;  ///< of all commands and moves [bytes]
 };
 
-/// How many of the first robots of a world are still the same ones after it is restored: those of the
-/// scene, and those spawned before the pasts part.
+/// Counts the first robots of a world that are still the same ones after it is restored: those of
+/// the scene, and those spawned before the histories part.
 /// @param layout  of the world now
 std::size_t common_robots(const History& now, const History& then, const world::Layout& layout);
 
@@ -75,7 +75,7 @@ struct Snapshot {
   std::size_t size() const;  ///< about what it takes [bytes]
 };
 
-/// What a file of a snapshot belongs to. What is empty is not compared when it is read.
+/// Origin of a snapshot's file. Empty fields are not compared when it is read.
 struct Origin {
   std::string scene_hash;
   std::string build;

@@ -22,12 +22,12 @@ std::uint64_t checksum(std::span<const std::byte> bytes) {
   return hash.digest();
 }
 
-void archive_act(math::Archive& archive, Act& act) {
-  math::archive_choice(archive, "kind", act.kind, Act::Kind::move);
-  archive("tick", act.tick);
-  archive("entity", act.entity);
-  archive("pose", act.pose);
-  archive("xml", act.xml);
+void archive_edit(math::Archive& archive, WorldEdit& edit) {
+  math::archive_choice(archive, "kind", edit.kind, WorldEdit::Kind::move);
+  archive("tick", edit.tick);
+  archive("entity", edit.entity);
+  archive("pose", edit.pose);
+  archive("xml", edit.xml);
 }
 
 void archive_content(math::Archive& archive, Snapshot& snapshot) {
@@ -35,7 +35,7 @@ void archive_content(math::Archive& archive, Snapshot& snapshot) {
   archive.require(snapshot.seed != 0, "is 0");
   archive("tick", snapshot.tick);
   archive("hash", snapshot.hash);
-  archive.list("acts", snapshot.history.acts, [&](Act& act) { archive_act(archive, act); });
+  archive.list("acts", snapshot.history.edits, [&](WorldEdit& edit) { archive_edit(archive, edit); });
   archive.list("history", snapshot.history.commands, [&](Commanded& commanded) {
     archive("tick", commanded.tick);
     archive.list("bytes", commanded.bytes);
@@ -53,28 +53,28 @@ void check_order(const Snapshot& snapshot) {
     throw SnapshotError(fmt::format("The snapshot is of tick {}, and at most {} can be repeated.",
                                     snapshot.tick, most_repeated));
   }
-  const auto spawned = std::ranges::count(snapshot.history.acts, Act::Kind::spawn, &Act::kind);
+  const auto spawned = std::ranges::count(snapshot.history.edits, WorldEdit::Kind::spawn, &WorldEdit::kind);
   if (static_cast<std::size_t>(spawned) > most_spawned) {
     throw SnapshotError(fmt::format("In the snapshot {} entities have been spawned; at most {} may be.", spawned,
                                     most_spawned));
   }
   std::uint64_t tick = 0;
-  for (const Act& act : snapshot.history.acts) {
-    if (act.tick < tick || act.tick > snapshot.tick) {
+  for (const WorldEdit& edit : snapshot.history.edits) {
+    if (edit.tick < tick || edit.tick > snapshot.tick) {
       throw SnapshotError("The snapshot's acts are not in the order of time.");
     }
-    tick = act.tick;
+    tick = edit.tick;
   }
 }
 
 }  // namespace
 
 std::vector<std::byte> to_bytes(const Snapshot& snapshot, const Origin& origin) {
-  for (const Act& act : snapshot.history.acts) {
-    if (act.kind != Act::Kind::spawn || !act.xml.empty()) continue;
+  for (const WorldEdit& edit : snapshot.history.edits) {
+    if (edit.kind != WorldEdit::Kind::spawn || !edit.xml.empty()) continue;
     throw SnapshotError(
         fmt::format("'{}' was spawned without its element, so it can't be written to a file.",
-                    act.spawned->id));
+                    edit.spawned->id));
   }
   std::vector<std::byte> bytes;
   auto archive = math::Archive::writer(bytes);
@@ -124,9 +124,9 @@ Snapshot from_bytes(std::span<const std::byte> bytes, const Origin& origin,
     throw SnapshotError(std::string("The snapshot can't be read: ") + error.what());
   }
   check_order(snapshot);
-  for (Act& act : snapshot.history.acts) {
-    if (act.kind != Act::Kind::spawn) continue;
-    act.spawned = std::make_shared<const scene::Entity>(read(act.xml));
+  for (WorldEdit& edit : snapshot.history.edits) {
+    if (edit.kind != WorldEdit::Kind::spawn) continue;
+    edit.spawned = std::make_shared<const scene::Entity>(read(edit.xml));
   }
   return snapshot;
 }

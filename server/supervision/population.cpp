@@ -259,8 +259,8 @@ void Population::restart(std::size_t robots) {
   spawned_ = 0;
   size_left_ = settings_.max_size;
   const auto known = std::exchange(sizes_, {});
-  for (const simulation::Act& act : simulation.history().acts) {
-    if (act.kind != simulation::Act::Kind::spawn) continue;
+  for (const simulation::WorldEdit& act : simulation.history().edits) {
+    if (act.kind != simulation::WorldEdit::Kind::spawn) continue;
     ++spawned_;
     const auto found = known.find(act.xml);
     const std::size_t size = found != known.end() ? found->second : size_of(act.xml);

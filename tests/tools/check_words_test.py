@@ -39,6 +39,27 @@ class CheckWords(unittest.TestCase):
                 "Lackluster, Grid::Rooms, and this one is the rest.\n")
         self.assertEqual(self.run_on("docs/a.md", text)[0], 0)
 
+    def test_finds_a_comment_that_begins_vaguely(self):
+        for text in ["/// What a pair needs.", "int a;  // Those of a pair.", "  // Where it is."]:
+            with self.subTest(text):
+                code, out = self.run_on("server/physics/a.h", "\n" + text + "\n")
+                self.assertEqual(code, 1, out)
+                self.assertTrue(out.startswith("server/physics/a.h:2: "), out)
+                self.assertEqual(self.run_on("server/network/a.h", text)[0], 0, "elsewhere it is not checked yet")
+
+    def test_finds_a_long_sentence_of_a_comment(self):
+        words = ["word"] * 13
+        longer = f"/// {' '.join(words)}\n/// {' '.join(words)}.\n"
+        code, out = self.run_on("server/dynamics/a.h", longer)
+        self.assertEqual(code, 1, out)
+        self.assertIn("server/dynamics/a.h:1: a sentence of 26 words", out)
+        short = f"/// {' '.join(words)}: {' '.join(words)} ({' '.join(words)}).\n/// @param a  {' '.join(words)}\n"
+        self.assertEqual(self.run_on("server/dynamics/a.h", short)[0], 0)
+
+    def test_leaves_other_comments_alone(self):
+        text = '/// Position of a link.\nint a = 0;  ///< of the link [m]\nauto url = "http://What";\n'
+        self.assertEqual(self.run_on("server/physics/a.h", text)[0], 0)
+
     def test_leaves_recorded_messages_alone(self):
         self.assertEqual(self.run_on("protocol/recorded/a.txt", "nobody\n")[0], 0)
 

@@ -29,7 +29,7 @@ btVector3 impulse(const btManifoldPoint& point) {
 
 }  // namespace
 
-void collect(btDispatcher& dispatcher, std::vector<Contact>& out) {
+void collect(btDispatcher& dispatcher, std::vector<LinkContact>& out) {
   out.clear();
   for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
     const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);

@@ -1,5 +1,5 @@
 #pragma once
-// What Bullet's manifolds say of the last substep, for plug-ins.
+// Contacts of Bullet's manifolds in the last substep, for plug-ins.
 
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 
@@ -10,6 +10,6 @@
 namespace ziggurat::physics {
 
 /// @param out  emptied before; in ascending order of its sides
-void collect(btDispatcher& dispatcher, std::vector<Contact>& out);
+void collect(btDispatcher& dispatcher, std::vector<LinkContact>& out);
 
 }  // namespace ziggurat::physics

@@ -252,6 +252,6 @@ void SweepsCore::substep(std::span<Body> bodies, double length, int splits) {
   p.dynamics.substep(length);
 }
 
-void SweepsCore::contacts(std::vector<Contact>& out) const { collect(parts_->dispatcher, out); }
+void SweepsCore::contacts(std::vector<LinkContact>& out) const { collect(parts_->dispatcher, out); }
 
 }  // namespace ziggurat::physics

@@ -34,7 +34,7 @@ class SweepsCore {
   double velocity(JointIndex joint) const;
 
   void substep(std::span<Body> bodies, double length, int splits);
-  void contacts(std::vector<Contact>& out) const;
+  void contacts(std::vector<LinkContact>& out) const;
   Convergence convergence() const { return {}; }
 
  private:

@@ -4,13 +4,13 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
 #include "physics/contact/algorithm.h"
-#include "physics/most_contacts.h"
+#include "physics/contact_limits.h"
 
 namespace ziggurat::physics {
 namespace {
 
-/// How far a body's surface may move in a unit of time [m/s], from its last displacement for
-/// links of multi-bodies.
+/// Bound of the speed of a body's surface [m/s], from its last displacement for links of
+/// multi-bodies.
 btScalar surface_speed(const btCollisionObject& object, const contact::Collider& collider,
                        btScalar length) {
   btVector3 centre;

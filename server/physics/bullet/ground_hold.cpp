@@ -17,7 +17,7 @@ void GroundHold::getInfo2(btConstraintInfo2* info) {
     }
     if (row == 2) info->m_J1angularAxis[place + 2] = 1;
     const btScalar most =
-        (row < 2 ? motion_.limits.max_force : motion_.limits.max_torque) * motion_.length;
+        (row < 2 ? motion_.limits.max_force : motion_.limits.max_torque) * motion_.time_step;
     info->m_constraintError[place] = wanted[row];
     info->m_lowerLimit[place] = -most;
     info->m_upperLimit[place] = most;

@@ -8,8 +8,8 @@
 namespace ziggurat::physics {
 namespace {
 
-/// How much velocity a unit impulse on the joint gives it [1/kg] or [1/(kg m^2)]; 0 if unknown
-/// (before the first substep).
+/// Velocity change by a unit impulse on the joint [1/kg] or [1/(kg m^2)]; 0 if unknown (before the
+/// first substep).
 double mobility(MovingJoint& joint) {
   btMultiBody& multi = *joint.multi;
   auto& [impulse, response, scalars, vectors] = joint.scratch;

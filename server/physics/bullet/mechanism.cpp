@@ -30,7 +30,7 @@ void Mechanism::apply_torque(std::size_t part, const btVector3& torque) {
   }
 }
 
-void Mechanism::motions(std::span<Motion> out) const {
+void Mechanism::motions(std::span<Twist> out) const {
   if (rigid) {
     out[0] = {rigid->getLinearVelocity(), rigid->getAngularVelocity()};
     return;

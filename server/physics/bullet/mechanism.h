@@ -1,5 +1,5 @@
 #pragma once
-// What an entity is made of in Bullet: one rigid body, or one multi-body.
+// Mechanism of an entity in Bullet: one rigid body, or one multi-body.
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -29,7 +29,7 @@ struct Mechanism {
   btTransform transform(std::size_t part) const;
   void apply_force(std::size_t part, const btVector3& force);    ///< at the centre of mass [N]
   void apply_torque(std::size_t part, const btVector3& torque);  ///< [N m]
-  void motions(std::span<Motion> out) const;
+  void motions(std::span<Twist> out) const;
   bool sleeps() const;
 
   /// Brings the poses that Bullet caches up to date.
@@ -46,8 +46,8 @@ struct Mechanism {
 inline int multi_index(std::size_t part) { return static_cast<int>(part) - 1; }
 
 /// Builds an entity where it stands. A box, a cylinder, a robot on wheels, or a prototype of one
-/// link without magnets becomes a rigid body, everything else a multi-body with the reference link
-/// in its base. Links on fixed joints are parts of what carries them.
+/// link without magnets becomes a rigid body. Everything else becomes a multi-body with the
+/// reference link in its base. Links on fixed joints are parts of what carries them.
 /// @param physics  whether magnets act: then free spherical magnets are carried; what planes hold
 /// @param entity_number  into State::origins
 Body build(const scene::Entity& entity, const scene::Physics& physics, std::size_t entity_number);

@@ -12,7 +12,7 @@ namespace ziggurat::physics {
 /// @param base  X_WP of the reference link's part
 void move(Mechanism& mechanism, const btTransform& base, btDynamicsWorld& world);
 
-/// What sleeps beside the object, or on it, checks again whether it stands.
+/// Wakes sleepers beside the object, or on it, so that they check again whether they stand.
 void wake_neighbours(const btCollisionObject& object, btDynamicsWorld& world);
 
 }  // namespace ziggurat::physics

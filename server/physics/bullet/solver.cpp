@@ -33,7 +33,7 @@ inline btScalar dot(const btScalar* a, const btScalar* b, int count) {
 // to them at the end. Bullet's second copy of it, m_deltaVelocities, is not updated: it is never
 // read.
 
-/// What the impulses of this step have changed of the row's relative velocity so far.
+/// Change of the row's relative velocity by the impulses of this step.
 btScalar Solver::speed_change(const Row& row) const {
   btScalar speed = 0;
   const auto add_multi = [&](const btMultiBody& body, int jacobian_index) {

@@ -1,10 +1,10 @@
 #pragma once
 // Bullet's multi-body constraint solver with Coulomb friction that points against the slip.
 //
-// Bullet clips each contact's two friction impulses to the cone along the direction of what
-// either row alone would need. A wheel is light along its rolling direction and carries the
-// whole robot across it, so that direction is far from the slip's, and skidding robots turn at a
-// sixth of the right rate. Here the clipped impulse turns towards the slip itself.
+// Bullet clips each contact's two friction impulses to the cone along the direction of what either
+// row alone would need. A wheel is light along its rolling direction and carries the whole robot
+// across it. So that direction is far from the slip's, and skidding robots turn at a sixth of the
+// right rate. Here the clipped impulse turns towards the slip itself.
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 

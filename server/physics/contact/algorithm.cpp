@@ -9,8 +9,8 @@
 namespace ziggurat::physics::contact {
 namespace {
 
-/// Where a contact first stuck: a point on either body, in that body's frame. Bullet's friction
-/// only stops velocities; pulling a contact back to its anchor stops creep, too.
+/// Anchor of a contact where it first stuck: a point on either body, in that body's frame. Bullet's
+/// friction only stops velocities; pulling a contact back to its anchor stops creep, too.
 struct Anchor {
   btVector3 on_a, on_b;
 };
@@ -43,7 +43,7 @@ class Algorithm final : public btActivatingCollisionAlgorithm {
     const Collider& collider_a = collider_of(object_a);
     const Collider& collider_b = collider_of(object_b);
     const btScalar reach = collider_a.reach + collider_b.reach;
-    Contacts contacts = find(collider_a.shape, object_a.getWorldTransform(), collider_b.shape,
+    Manifold contacts = find(collider_a.shape, object_a.getWorldTransform(), collider_b.shape,
                              object_b.getWorldTransform(), reach);
     // Sorted in the frame of a body that moves: sorted in the floor's, a robot that turns would
     // be solved in another order for each heading, and drift that way.
@@ -69,7 +69,7 @@ class Algorithm final : public btActivatingCollisionAlgorithm {
   };
 
  private:
-  /// What is carried over from the last step's point.
+  /// State that is carried over from the last step's point.
   struct Old {
     btVector3 local_b;
     btScalar impulse;
@@ -77,7 +77,7 @@ class Algorithm final : public btActivatingCollisionAlgorithm {
     bool taken = false;
   };
 
-  void write(const Contacts& contacts, const Collider& a, const Collider& b, btScalar reach);
+  void write(const Manifold& contacts, const Collider& a, const Collider& b, btScalar reach);
   btVector3 slip(const btManifoldPoint& point, const Old* old, Anchor& anchor) const;
   void take_back(const std::array<btVector3, 4>& slips);
 
@@ -92,7 +92,7 @@ bool rolls_on(const Collider& collider, const btTransform& pose, const btVector3
 }
 
 /// Replaces the manifold's points, carrying impulses and anchors over to the nearest new ones.
-void Algorithm::write(const Contacts& contacts, const Collider& a, const Collider& b,
+void Algorithm::write(const Manifold& contacts, const Collider& a, const Collider& b,
                       btScalar reach) {
   std::array<Old, 4> old;
   const int old_count = manifold_->getNumContacts();
@@ -108,7 +108,7 @@ void Algorithm::write(const Contacts& contacts, const Collider& a, const Collide
   const bool rolls = rolls_on(a, pose_a, contacts.normal) || rolls_on(b, pose_b, contacts.normal);
   std::array<btVector3, 4> slips;
   for (int i = 0; i < contacts.count; ++i) {
-    const Point& contact = contacts.points[i];
+    const ManifoldPoint& contact = contacts.points[i];
     const btVector3 on_a = contact.on_b + contacts.normal * contact.distance;
     btManifoldPoint point(pose_a.invXform(on_a), pose_b.invXform(contact.on_b), contacts.normal,
                           contact.distance);
@@ -135,7 +135,7 @@ void Algorithm::write(const Contacts& contacts, const Collider& a, const Collide
   take_back(slips);
 }
 
-/// How far a contact has slipped from its anchor, in the tangent plane [m]; sets the anchor.
+/// Slip of a contact from its anchor, in the tangent plane [m]; sets the anchor.
 btVector3 Algorithm::slip(const btManifoldPoint& point, const Old* old, Anchor& anchor) const {
   anchor = {point.m_localPointA, point.m_localPointB};
   if (!old) return btVector3(0, 0, 0);
@@ -150,9 +150,9 @@ btVector3 Algorithm::slip(const btManifoldPoint& point, const Old* old, Anchor& 
   return slip;
 }
 
-/// Tells Bullet the slips to take back. Anchors set at different times contradict each other by
-/// a hair, and four contradicting points would push each other forever: the target is
-/// the rigid motion in the tangent plane that fits them best.
+/// Tells Bullet the slips to take back. Anchors set at different times conflict a little, and four
+/// conflicting points would push each other forever. The target is the rigid motion in the tangent
+/// plane that fits them best.
 void Algorithm::take_back(const std::array<btVector3, 4>& slips) {
   const int count = manifold_->getNumContacts();
   if (count == 0) return;

@@ -12,7 +12,7 @@
 
 namespace ziggurat::physics::contact {
 
-/// What the algorithm needs to know of a collision object, which has a pointer to it.
+/// Data of a collision object, which has a pointer to it.
 struct Collider {
   static constexpr std::size_t floor = static_cast<std::size_t>(-1);
   Shape shape;

@@ -1,8 +1,8 @@
-// Box against box: separating axes with signed distance, then the incident face clipped
-// against the reference face (S. Gottschalk 1996 for the axes; the clipping is Sutherland and
-// Hodgman's). Boxes that overlap always get a contact. Of those that are apart and not turned
-// against each other, two that pass diagonally may get none, as the clipped face is empty: so
-// blocks of a lattice, which touch their diagonal neighbours along an edge, can slide past them.
+// Box against box: separating axes with signed distance (S. Gottschalk 1996), then the incident
+// face clipped against the reference face (Sutherland and Hodgman).
+// Boxes that overlap always get a contact. Separate ones that are aligned and pass diagonally may
+// get none, as the clipped face is empty. So blocks of a lattice, which touch their diagonal
+// neighbours along an edge, can slide past them.
 
 #include "physics/contact/pairs.h"
 #include "physics/contact/polygon.h"
@@ -33,7 +33,7 @@ struct Separation {
 
 /// A face of one box touches: its corners on the incident side, clipped to the reference face.
 void clip_faces(const OrientedBox& reference, int face, const btVector3& outward,
-                const OrientedBox& incident, bool reference_is_a, btScalar reach, Contacts& out) {
+                const OrientedBox& incident, bool reference_is_a, btScalar reach, Manifold& out) {
   int against = 0;
   btScalar most = -1;
   for (int i = 0; i < 3; ++i) {
@@ -70,7 +70,7 @@ void clip_faces(const OrientedBox& reference, int face, const btVector3& outward
 
 /// Two edges cross: one point, on the edge of B where it passes nearest to that of A.
 void cross_edges(const OrientedBox& a, const OrientedBox& b, const Separation& edge,
-                 Contacts& out) {
+                 Manifold& out) {
   btVector3 on_a = a.centre, on_b = b.centre;
   for (int i = 0; i < 3; ++i) {
     if (i != edge.axis_a)
@@ -88,19 +88,19 @@ void cross_edges(const OrientedBox& a, const OrientedBox& b, const Separation& e
 }
 
 /// A face of one of two boxes touches.
-void touch_face(const OrientedBox& a, const OrientedBox& b, const Separation& face, btScalar reach, Contacts& out) {
+void touch_face(const OrientedBox& a, const OrientedBox& b, const Separation& face, btScalar reach, Manifold& out) {
   if (face.axis_a >= 0) return clip_faces(a, face.axis_a, face.a_to_b, b, true, reach, out);
   clip_faces(b, face.axis_b, -face.a_to_b, a, false, reach, out);
 }
 
-/// What else the best face would meet, above the point where edges cross: it may be there within the substep. A plank that lies
-/// on another one's edge rocks on both of its own edges.
+/// Adds further points of the best face, above the point where edges cross: they may touch within
+/// the substep. A plank that lies on another one's edge rocks on both of its own edges.
 void add_beside(const OrientedBox& a, const OrientedBox& b, const Separation& face, const Separation& edge, btScalar reach,
-                btScalar prefer, Contacts& out) {
+                btScalar prefer, Manifold& out) {
   constexpr btScalar along = btScalar(0.98);  // cosine of the angle between their normals
   const btScalar cosine = face.a_to_b.dot(edge.a_to_b);
   if (cosine < along) return;
-  Contacts beside;
+  Manifold beside;
   touch_face(a, b, face, reach * cosine, beside);
   for (int i = 0; i < beside.count; ++i) {
     const btScalar distance = beside.points[i].distance / cosine;
@@ -147,7 +147,7 @@ bool find_parallel(const OrientedBox& a, const OrientedBox& b, int& axis_a, int&
 /// @param one, other  of A and of B
 /// @param radius      of the edges [m]
 /// @return  false if it is a face that touches
-bool meet_along_edges(const Edge& one, const Edge& other, btScalar radius, btScalar reach, Contacts& out) {
+bool meet_along_edges(const Edge& one, const Edge& other, btScalar radius, btScalar reach, Manifold& out) {
   const btVector3& u = one.direction;
   const btVector3 between = other.middle - one.middle;
   const btVector3 across = between - u * u.dot(between);
@@ -172,7 +172,7 @@ bool meet_along_edges(const Edge& one, const Edge& other, btScalar radius, btSca
 
 }  // namespace
 
-void contact_points(const Box& box_a, const Box& box_b, const Placement& at, Contacts& out) {
+void contact_points(const Box& box_a, const Box& box_b, const PosedPair& at, Manifold& out) {
   const auto& [pose_a, pose_b, reach, support, useful] = at;
   const OrientedBox a(box_a, pose_a), b(box_b, pose_b);
   const btVector3 between = b.centre - a.centre;

@@ -20,7 +20,7 @@ struct Segment {
 
 /// The contact of the balls at two points of the segments.
 void add(const Capsule& a, const btVector3& on_a, const Capsule& b, const btVector3& on_b,
-         btScalar reach, Contacts& out) {
+         btScalar reach, Manifold& out) {
   const btVector3 between = on_a - on_b;
   const btScalar length = between.length();
   const btScalar distance = length - a.radius - b.radius;
@@ -31,12 +31,12 @@ void add(const Capsule& a, const btVector3& on_a, const Capsule& b, const btVect
 
 }  // namespace
 
-void contact_points(const Capsule& a, const Capsule& b, const Placement& at, Contacts& out) {
+void contact_points(const Capsule& a, const Capsule& b, const PosedPair& at, Manifold& out) {
   const Segment first(a, at.a), second(b, at.b);
   const btScalar cosine = first.axis.dot(second.axis);
   constexpr btScalar parallel = btScalar(0.9999);  // within 0.8 degrees
   if (btFabs(cosine) < parallel) {
-    // Where the lines are nearest, moved into both segments (C. Ericson, 2005, 5.1.9).
+    // Nearest points of the lines, moved into both segments (C. Ericson, 2005, 5.1.9).
     const btVector3 between = second.center - first.center;
     const btScalar of_first = first.axis.dot(between), of_second = second.axis.dot(between);
     const btScalar line = (of_first - cosine * of_second) / (1 - cosine * cosine);

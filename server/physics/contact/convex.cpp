@@ -25,7 +25,7 @@ struct Nearest {
 };
 
 Nearest search(const Body& a, const btConvexShape& shape_a, const Body& b,
-               const btConvexShape& shape_b, const Placement& at) {
+               const btConvexShape& shape_b, const PosedPair& at) {
   Nearest found;
   btGjkEpaSolver2::sResults results;
   // Bullet takes the guess and gives the normal in A's frame, the witnesses in the world.
@@ -70,7 +70,7 @@ Nearest with_shape(const Hull& hull, btScalar, Use use) {
 }
 
 /// @param margin  by which cores of boxes and cylinders are smaller: their edges are round [m]
-Nearest nearest(const Body& a, const Body& b, const Placement& at, btScalar margin) {
+Nearest nearest(const Body& a, const Body& b, const PosedPair& at, btScalar margin) {
   return std::visit(
       [&](const auto* first, const auto* second) {
         return with_shape(*first, margin, [&](const btConvexShape& shape_a) {
@@ -103,7 +103,7 @@ void consider_faces(const Body& body, const Body& other, bool of_a, btScalar pre
 }
 
 void clip_features(const BestFace& face, const Body& reference, const Body& incident,
-                   btScalar reach, Contacts& out) {
+                   btScalar reach, Manifold& out) {
   Polygon polygon = feature(incident, -face.outward);
   clip_to_face(polygon, reference, face.number);
   const btScalar plane = face.outward.dot(reference.centre) + extent(reference, face.outward);
@@ -116,7 +116,7 @@ void clip_features(const BestFace& face, const Body& reference, const Body& inci
   }
 }
 
-/// Where a side is along another line.
+/// Position of a side along another line.
 struct Station {
   btVector3 on_other;
   btScalar distance;
@@ -172,7 +172,7 @@ void look_across(const Body& a, const Body& b, Nearest& near) {
 }
 
 /// The two ends of what a side and an edge share, each with its own distance.
-void add_line(const Body& a, const Body& b, const Nearest& near, btScalar reach, Contacts& out) {
+void add_line(const Body& a, const Body& b, const Nearest& near, btScalar reach, Manifold& out) {
   Shared shared;
   if (!lie_along(a, b, near, shared)) return;
   for (const btScalar along : {shared.from, shared.to}) {
@@ -181,13 +181,14 @@ void add_line(const Body& a, const Body& b, const Nearest& near, btScalar reach,
   }
 }
 
-/// What else of the two the best face would meet, below the nearest point: it may be there within the substep.
+/// Adds further points of the best face, below the nearest point: they may touch within the
+/// substep.
 void add_beside(const BestFace& face, const Body& a, const Body& b, const Nearest& near, btScalar reach, btScalar prefer,
-                Contacts& out) {
+                Manifold& out) {
   const btScalar cosine = face.b_to_a().dot(near.b_to_a);
   // The side of a capsule that faces the normal is not the one that faces the face.
   if (cosine < btScalar(0.98) || std::holds_alternative<const Capsule*>(a.shape)) return;
-  Contacts beside;
+  Manifold beside;
   clip_features(face, face.of_a ? a : b, face.of_a ? b : a, reach * cosine, beside);
   for (int i = 0; i < beside.count; ++i) {
     const btScalar distance = beside.points[i].distance / cosine;
@@ -200,7 +201,7 @@ constexpr btScalar touching = btScalar(1e-6);  // what is nearer to a surface is
 /// The nearest direction and point of the shapes themselves. Where they touch GJK finds none, and what it finds may be
 /// anything: then as if they were a little apart.
 /// @param near  by cores
-Nearest nearest_sharp(const Body& a, const Body& b, const Placement& at, const Nearest& near) {
+Nearest nearest_sharp(const Body& a, const Body& b, const PosedPair& at, const Nearest& near) {
   constexpr btScalar apart = btScalar(1e-4);  // [m]
   const Nearest sharp = nearest(a, b, at, 0);
   if (sharp.distance > -BT_LARGE_FLOAT && btFabs(near.distance) > touching) return sharp;
@@ -212,8 +213,8 @@ Nearest nearest_sharp(const Body& a, const Body& b, const Placement& at, const N
   return beside;
 }
 
-/// Takes what separates best. Between cores edges are round: where they touch or nearly do, the direction is
-/// one between the faces that meet there, and the point is not on the surface.
+/// Takes the axis of largest separation. Edges between cores are round: near a touch the direction
+/// is one between the faces that meet there, and the point is off the surface.
 /// @param sharp  of the shapes themselves
 void sharpen(Nearest& near, const BestFace& face, const Nearest& sharp) {
   if (sharp.distance == -BT_LARGE_FLOAT) return;
@@ -222,7 +223,7 @@ void sharpen(Nearest& near, const BestFace& face, const Nearest& sharp) {
   if (face.distance > near.distance) near = {face.b_to_a(), sharp.on_b, face.distance, true};
 }
 
-btScalar least(const Contacts& contacts) {
+btScalar least(const Manifold& contacts) {
   btScalar distance = BT_LARGE_FLOAT;
   for (int i = 0; i < contacts.count; ++i) {
     distance = btMin(distance, contacts.points[i].distance);
@@ -232,7 +233,7 @@ btScalar least(const Contacts& contacts) {
 
 }  // namespace
 
-void clipped_contacts(const Body& a, const Body& b, const Placement& at, Contacts& out) {
+void clipped_contacts(const Body& a, const Body& b, const PosedPair& at, Manifold& out) {
   const btScalar prefer = btScalar(1e-3) * btMin(smallest(a), smallest(b));
 
   BestFace face;

@@ -131,8 +131,8 @@ Polygon feature_of(const Cylinder& cylinder, const Body& body, const btVector3& 
   return polygon;
 }
 
-/// Moves the corners of a polygon that lie beyond the rim, as those of the clipping planes do by up to 2 % of the radius, towards the
-/// axis onto it. Where the axis passes beside the polygon that would leave it.
+/// Moves corners of a polygon beyond the rim towards the axis onto it: the clipping planes miss it
+/// by up to 2 % of the radius. Where the axis passes beside the polygon they stay.
 void pull_to_rim(const Cylinder& cylinder, const Body& body, Polygon& polygon) {
   const btVector3& axis = body.axis[2];
   const auto arm = [&](int i) {

@@ -20,7 +20,7 @@ struct Body {
   }
 };
 
-/// How far the body reaches from its centre along a unit direction [m].
+/// Extent of the body from its centre along a unit direction [m].
 btScalar extent(const Body& body, const btVector3& direction);
 
 /// Its smallest half extent [m].
@@ -32,7 +32,8 @@ int face_count(const Body& body);
 /// The outward normal of a face, of two opposite ones the one that looks towards `point`.
 btVector3 face_towards(const Body& body, int face, const btVector3& point);
 
-/// What of the body faces a direction: a face, a cap as an octagon, or a line along the side.
+/// Feature of the body that faces a direction: a face, a cap as an octagon, or a line along the
+/// side.
 Polygon feature(const Body& body, const btVector3& towards);
 
 /// Cuts a polygon to the outline of a face: its edges, or a disc as 16 tangents.

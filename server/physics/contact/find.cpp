@@ -11,7 +11,7 @@ namespace {
 
 /// Whether a function for (A, B) in this order exists.
 template <class A, class B>
-concept Ordered = requires(const A& a, const B& b, const Placement& at, Contacts& out) {
+concept Ordered = requires(const A& a, const B& b, const PosedPair& at, Manifold& out) {
   contact_points(a, b, at, out);
 };
 
@@ -68,7 +68,7 @@ bool inside(const Hull& hull, const btVector3& p, btScalar slack) {
 }
 bool inside(const HalfSpace&, const btVector3& p, btScalar slack) { return p.z() <= slack; }
 
-// How far the shape reaches along a unit direction of its frame [m]:
+// Extent of the shape along a unit direction of its frame [m]:
 btScalar reach_of(const Box& box, const btVector3& d) { return box.half.dot(d.absolute()); }
 btScalar reach_of(const Cylinder& cylinder, const btVector3& d) {
   return cylinder.radius * btSqrt(d.x() * d.x() + d.y() * d.y()) +
@@ -103,16 +103,16 @@ bool far_apart(const Shape& a, const btTransform& pose_a, const Shape& b, const 
 
 }  // namespace
 
-void swap_sides(Contacts& contacts) {
+void swap_sides(Manifold& contacts) {
   for (int i = 0; i < contacts.count; ++i) {
     contacts.points[i].on_b += contacts.normal * contacts.points[i].distance;
   }
   contacts.normal = -contacts.normal;
 }
 
-Contacts find(const Shape& a, const btTransform& pose_a, const Shape& b, const btTransform& pose_b,
+Manifold find(const Shape& a, const btTransform& pose_a, const Shape& b, const btTransform& pose_b,
               btScalar reach, Support support, btScalar useful) {
-  Contacts out;
+  Manifold out;
   const bool flat = std::holds_alternative<HalfSpace>(a) || std::holds_alternative<HalfSpace>(b);
   if (far_apart(a, pose_a, b, pose_b, flat ? btMin(reach, useful) : reach)) return out;
   std::visit(
@@ -130,7 +130,7 @@ Contacts find(const Shape& a, const btTransform& pose_a, const Shape& b, const b
   return out;
 }
 
-bool holds(const Shape& shape, const btVector3& point, btScalar slack) {
+bool contains(const Shape& shape, const btVector3& point, btScalar slack) {
   return std::visit([&](const auto& each) { return inside(each, point, slack); }, shape);
 }
 
@@ -159,9 +159,10 @@ struct Across {
   }
 };
 
-/// The deepest point. Of those as deep as overlaps may be, one at a place that turns with the bodies: which one is deeper
-/// by rounding, or is found first, changes from one substep to the next, and what rests on others would tremble.
-int steadily_deepest(const Contacts& contacts, const Across& across) {
+/// The deepest point; of those within the usual overlap, one at a place that turns with the bodies.
+/// Otherwise rounding would change it from one substep to the next, and resting bodies would
+/// vibrate.
+int steadily_deepest(const Manifold& contacts, const Across& across) {
   constexpr btScalar same = btScalar(1e-6);  // depth [m]
   const btVector3 towards = across.first + btScalar(0.6) * across.second;  // no symmetry of squares has points at the same place
   const auto& points = contacts.points;
@@ -176,7 +177,7 @@ int steadily_deepest(const Contacts& contacts, const Across& across) {
 }
 
 /// Keeps the deepest point, the one farthest from it, and those farthest to both sides of the line between them.
-void keep_four(Contacts& contacts, int deepest) {
+void keep_four(Manifold& contacts, int deepest) {
   auto& points = contacts.points;
   // Ties go to the first: a later point must be better by more than rounding.
   const btScalar better = 1 + btScalar(1e-6), tiny = btScalar(1e-12);
@@ -194,7 +195,7 @@ void keep_four(Contacts& contacts, int deepest) {
     if (area < most_right * better - tiny) most_right = area, right = i;
   }
   const int kept[4] = {deepest, farthest, left, right};
-  std::array<Point, 4> chosen;
+  std::array<ManifoldPoint, 4> chosen;
   int count = 0;
   for (int i = 0; i < 4; ++i) {
     if (std::find(kept, kept + i, kept[i]) == kept + i) chosen[count++] = points[kept[i]];
@@ -205,7 +206,7 @@ void keep_four(Contacts& contacts, int deepest) {
 
 }  // namespace
 
-void reduce(Contacts& contacts, const btTransform& frame) {
+void reduce(Manifold& contacts, const btTransform& frame) {
   if (contacts.count < 2) return;
   auto& points = contacts.points;
   const Across across(contacts.normal, frame);
@@ -214,7 +215,7 @@ void reduce(Contacts& contacts, const btTransform& frame) {
   btVector3 middle(0, 0, 0);
   for (int i = 0; i < contacts.count; ++i) middle += points[i].on_b;
   middle /= btScalar(contacts.count);
-  std::array<std::pair<btScalar, Point>, 4> ordered;
+  std::array<std::pair<btScalar, ManifoldPoint>, 4> ordered;
   for (int i = 0; i < contacts.count; ++i) {
     const btVector3 arm = points[i].on_b - middle;
     ordered[i] = {turn(arm.dot(across.first), arm.dot(across.second)), points[i]};

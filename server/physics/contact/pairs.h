@@ -9,8 +9,8 @@
 
 namespace ziggurat::physics::contact {
 
-/// What a function needs besides the shapes.
-struct Placement {
+/// Poses and options of a pair of shapes.
+struct PosedPair {
   const btTransform& a;  ///< pose of A
   const btTransform& b;  ///< pose of B
   btScalar reach;        ///< [m]
@@ -18,21 +18,21 @@ struct Placement {
   btScalar useful = BT_LARGE_FLOAT;  ///< see find() [m]
 };
 
-void contact_points(const Box& a, const HalfSpace& b, const Placement& at, Contacts& out);
-void contact_points(const Cylinder& a, const HalfSpace& b, const Placement& at, Contacts& out);
-void contact_points(const Sphere& a, const HalfSpace& b, const Placement& at, Contacts& out);
-void contact_points(const Capsule& a, const HalfSpace& b, const Placement& at, Contacts& out);
-void contact_points(const Hull& a, const HalfSpace& b, const Placement& at, Contacts& out);
+void contact_points(const Box& a, const HalfSpace& b, const PosedPair& at, Manifold& out);
+void contact_points(const Cylinder& a, const HalfSpace& b, const PosedPair& at, Manifold& out);
+void contact_points(const Sphere& a, const HalfSpace& b, const PosedPair& at, Manifold& out);
+void contact_points(const Capsule& a, const HalfSpace& b, const PosedPair& at, Manifold& out);
+void contact_points(const Hull& a, const HalfSpace& b, const PosedPair& at, Manifold& out);
 
-void contact_points(const Sphere& a, const Sphere& b, const Placement& at, Contacts& out);
-void contact_points(const Sphere& a, const Box& b, const Placement& at, Contacts& out);
-void contact_points(const Sphere& a, const Cylinder& b, const Placement& at, Contacts& out);
-void contact_points(const Sphere& a, const Capsule& b, const Placement& at, Contacts& out);
-void contact_points(const Sphere& a, const Hull& b, const Placement& at, Contacts& out);
+void contact_points(const Sphere& a, const Sphere& b, const PosedPair& at, Manifold& out);
+void contact_points(const Sphere& a, const Box& b, const PosedPair& at, Manifold& out);
+void contact_points(const Sphere& a, const Cylinder& b, const PosedPair& at, Manifold& out);
+void contact_points(const Sphere& a, const Capsule& b, const PosedPair& at, Manifold& out);
+void contact_points(const Sphere& a, const Hull& b, const PosedPair& at, Manifold& out);
 
-void contact_points(const Capsule& a, const Capsule& b, const Placement& at, Contacts& out);
+void contact_points(const Capsule& a, const Capsule& b, const PosedPair& at, Manifold& out);
 
-void contact_points(const Box& a, const Box& b, const Placement& at, Contacts& out);
+void contact_points(const Box& a, const Box& b, const PosedPair& at, Manifold& out);
 
 /// Shapes with flat faces or straight sides, which GJK and clipping of features treats. The rank of
 /// A is at most that of B.
@@ -47,7 +47,7 @@ inline constexpr int clipping_rank<Hull> = 2;
 template <>
 inline constexpr int clipping_rank<Box> = 3;
 
-void clipped_contacts(const Body& a, const Body& b, const Placement& at, Contacts& out);
+void clipped_contacts(const Body& a, const Body& b, const PosedPair& at, Manifold& out);
 
 /// A shape that may be B where A is the other.
 template <class B, class A>
@@ -56,15 +56,15 @@ concept ClippedBy = clipping_rank<A>
 
 /// Pairs of these that have no function of their own above.
 template <class A, ClippedBy<A> B>
-void contact_points(const A& a, const B& b, const Placement& at, Contacts& out) {
+void contact_points(const A& a, const B& b, const PosedPair& at, Manifold& out) {
   clipped_contacts({&a, at.a}, {&b, at.b}, at, out);
 }
 
 /// Two half-spaces never touch.
-inline void contact_points(const HalfSpace&, const HalfSpace&, const Placement&, Contacts&) {}
+inline void contact_points(const HalfSpace&, const HalfSpace&, const PosedPair&, Manifold&) {}
 
 /// The same contacts seen from the other side: normal turned round, points moved to the
 /// surface of what was A.
-void swap_sides(Contacts& contacts);
+void swap_sides(Manifold& contacts);
 
 }  // namespace ziggurat::physics::contact

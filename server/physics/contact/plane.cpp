@@ -10,16 +10,16 @@ namespace ziggurat::physics::contact {
 namespace {
 
 /// Adds a point of A by its height over the plane.
-void add(const btVector3& point, const btTransform& plane, btScalar reach, Contacts& out) {
+void add(const btVector3& point, const btTransform& plane, btScalar reach, Manifold& out) {
   const btScalar distance = out.normal.dot(point - plane.getOrigin());
   if (distance <= reach) out.add(point - out.normal * distance, distance);
 }
 
-/// Of many points over one plane only the lowest can carry: ties keep their order.
-void keep_lowest(Contacts& contacts, int most) {
+/// Points over one plane: only the lowest of many can carry. Ties keep their order.
+void keep_lowest(Manifold& contacts, int most) {
   if (contacts.count <= most) return;
   sort_few(contacts.points.data(), contacts.points.data() + contacts.count,
-           [](const Point& p, const Point& q) { return p.distance < q.distance; });
+           [](const ManifoldPoint& p, const ManifoldPoint& q) { return p.distance < q.distance; });
   contacts.count = most;
 }
 
@@ -28,8 +28,8 @@ constexpr btScalar flat_tilt = 0.02;
 /// From this cosine of the tilt on a cylinder stands on a cap; below, it lies on its side.
 constexpr btScalar standing = 0.7;
 
-/// The lowest direction in a cap that is nearly flat, as one of 4096 that are fixed in the body, so that it does not
-/// change with every rounding: a cylinder tips over each point of its rim alike.
+/// The lowest direction in a cap that is nearly flat, one of 4096 that are fixed in the body. So it
+/// does not change with every rounding, and a cylinder tips over each point of its rim alike.
 /// @param x, y  in the cap;  @param down  the direction, of the length of the sine of the tilt
 btVector3 steady(const btVector3& x, const btVector3& y, const btVector3& down) {
   constexpr btScalar steps = 1024, rounding = btScalar(1e-11);
@@ -40,7 +40,7 @@ btVector3 steady(const btVector3& x, const btVector3& y, const btVector3& down) 
 }
 
 /// The corners of the face that looks down most.
-void add_lower_face(const Box& box, const Placement& at, Contacts& out) {
+void add_lower_face(const Box& box, const PosedPair& at, Manifold& out) {
   const btVector3 up = at.a.getBasis().transpose() * out.normal;  // in the box
   const int face = up.absolute().maxAxis();
   const int u = (face + 1) % 3, v = (face + 2) % 3;
@@ -53,8 +53,9 @@ void add_lower_face(const Box& box, const Placement& at, Contacts& out) {
   }
 }
 
-/// The same of a hull, and other corners that are as low as its lowest one: an edge or a corner that carries may be of other faces.
-void add_lower_face(const Hull& hull, const Placement& at, Contacts& out) {
+/// Points of a hull, and other corners as low as its lowest one: an edge or a corner that carries
+/// may belong to other faces.
+void add_lower_face(const Hull& hull, const PosedPair& at, Manifold& out) {
   constexpr btScalar as_low = btScalar(1e-5);  // [m]
   const Polyhedron& polyhedron = *hull.polyhedron;
   const btVector3 down = at.a.getBasis().transpose() * -out.normal;  // in the hull
@@ -69,7 +70,7 @@ void add_lower_face(const Hull& hull, const Placement& at, Contacts& out) {
 
 }  // namespace
 
-void contact_points(const Box& a, const HalfSpace&, const Placement& at, Contacts& out) {
+void contact_points(const Box& a, const HalfSpace&, const PosedPair& at, Manifold& out) {
   const auto& [pose_a, plane, reach, support, useful] = at;
   out.normal = plane.getBasis().getColumn(2);
   const btVector3& half = a.half;
@@ -82,7 +83,7 @@ void contact_points(const Box& a, const HalfSpace&, const Placement& at, Contact
   if (support == Support::lowest) keep_lowest(out, 4);
 }
 
-void contact_points(const Cylinder& a, const HalfSpace&, const Placement& at, Contacts& out) {
+void contact_points(const Cylinder& a, const HalfSpace&, const PosedPair& at, Manifold& out) {
   const auto& [pose_a, plane, reach, support, useful] = at;
   out.normal = plane.getBasis().getColumn(2);
   // The lower cap is the one that faces the plane.
@@ -108,13 +109,13 @@ void contact_points(const Cylinder& a, const HalfSpace&, const Placement& at, Co
   add(lower - down, plane, reach, out);
 }
 
-void contact_points(const Sphere& a, const HalfSpace&, const Placement& at, Contacts& out) {
+void contact_points(const Sphere& a, const HalfSpace&, const PosedPair& at, Manifold& out) {
   const auto& [pose_a, plane, reach, support, useful] = at;
   out.normal = plane.getBasis().getColumn(2);
   add(pose_a.getOrigin() - out.normal * a.radius, plane, reach, out);
 }
 
-void contact_points(const Capsule& a, const HalfSpace&, const Placement& at, Contacts& out) {
+void contact_points(const Capsule& a, const HalfSpace&, const PosedPair& at, Manifold& out) {
   const auto& [pose_a, plane, reach, support, useful] = at;
   out.normal = plane.getBasis().getColumn(2);
   const btVector3 to_end = pose_a.getBasis().getColumn(2) * a.half_length;
@@ -123,7 +124,7 @@ void contact_points(const Capsule& a, const HalfSpace&, const Placement& at, Con
   if (a.half_length > 0) add(lowest - to_end, plane, reach, out);
 }
 
-void contact_points(const Hull& a, const HalfSpace&, const Placement& at, Contacts& out) {
+void contact_points(const Hull& a, const HalfSpace&, const PosedPair& at, Manifold& out) {
   const auto& [pose_a, plane, reach, support, useful] = at;
   out.normal = plane.getBasis().getColumn(2);
   if (support == Support::face) return add_lower_face(a, at, out);

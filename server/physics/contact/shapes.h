@@ -1,10 +1,11 @@
 #pragma once
-// The contact geometry of the engine: which points of two convex bodies touch, or will within
-// the next substep. Pure functions of dimensions and poses; Bullet only lends its vector types.
+// The contact geometry of the engine: points at which two convex bodies touch, or will within the
+// next substep. Functions are pure functions of dimensions and poses; Bullet only lends its vector
+// types.
 //
-// Why not Bullet's own manifolds: they report nothing at positive distance and build a manifold
-// one point per step, so centimetre-sized bodies sink, tilt and explode at 10 ms substeps.
-// Here a whole manifold is made each step, points still apart included.
+// Bullet's own manifolds are not used. They report nothing at positive distance and build a
+// manifold one point per step. So bodies of a centimetre sink, tilt and explode at 10 ms substeps.
+// Here a whole manifold is made each step, with points that are still apart.
 
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 #include <LinearMath/btTransform.h>
@@ -26,7 +27,7 @@ struct Cylinder {
 struct Sphere {
   btScalar radius;  ///< [m]
 };
-/// What is within `radius` of a segment.
+/// All points within `radius` of a segment.
 struct Capsule {
   btScalar radius;       ///< [m]
   btScalar half_length;  ///< of the segment, along its z [m]
@@ -53,22 +54,22 @@ struct HalfSpace {};
 
 using Shape = std::variant<Box, Cylinder, Sphere, Capsule, Hull, HalfSpace>;
 
-/// Of the sphere about the shape's centre that holds it [m]; 0 of a half-space.
+/// Radius of the sphere about the shape's centre that holds it [m]; 0 of a half-space.
 btScalar bounding_radius(const Shape& shape);
 
-struct Point {
+struct ManifoldPoint {
   btVector3 on_b;     ///< on the surface of B, in the world [m]
   btScalar distance;  ///< along the normal; negative = overlap [m]
   /// From the place opposite, along the normal, to where the other body meets it: of what stands, or of B [m].
-  btVector3 until_met;
+  btVector3 offset_when_met;
 };
 
 /// Points that share one normal. Before reduction there may be up to `capacity` of them.
-struct Contacts {
+struct Manifold {
   static constexpr int capacity = Hull::most_corners;
   btVector3 normal{0, 0, 0};  ///< unit, from B to A
   int count = 0;
-  std::array<Point, capacity> points;
+  std::array<ManifoldPoint, capacity> points;
 
   void add(const btVector3& on_b, btScalar distance) {
     if (count < capacity) points[count++] = {on_b, distance, {0, 0, 0}};
@@ -85,24 +86,25 @@ enum class Support {
 /// Contacts of two bodies whose shape centres stand at the given world poses.
 /// @param reach   points farther apart than this are left out [m]
 /// @param useful  where all points would surely be farther apart than this, there may be none [m]
-Contacts find(const Shape& a, const btTransform& pose_a, const Shape& b, const btTransform& pose_b,
+Manifold find(const Shape& a, const btTransform& pose_a, const Shape& b, const btTransform& pose_b,
               btScalar reach, Support support = Support::lowest,
               btScalar useful = BT_LARGE_FLOAT);
 
 /// Whether a point lies in a shape or within `slack` of it.
 /// @param point  in the shape's frame [m];  @param slack  [m]
-bool holds(const Shape& shape, const btVector3& point, btScalar slack);
+bool contains(const Shape& shape, const btVector3& point, btScalar slack);
 
 /// The face that looks most along a direction of the polyhedron's frame; of equals the first.
 const Polyhedron::Face& face_along(const Polyhedron& polyhedron, const btVector3& direction);
 
-/// How far a shape reaches from its centre along a unit direction of its frame [m]; without bound:
+/// Extent of a shape from its centre along a unit direction of its frame [m]; without bound:
 /// BT_LARGE_FLOAT.
 btScalar reach_along(const Shape& shape, const btVector3& direction);
 
-/// Keeps at most four points that span the contact: the deepest within 1 um, the farthest from it and the
-/// two that enclose the largest area; in a stable order: by angle in the given frame, that of a
-/// body of the pair. The choice does not depend on depths that differ by less, or on the order of the points.
-void reduce(Contacts& contacts, const btTransform& frame);
+/// Keeps at most four points that span the contact: the deepest within 1 um, the farthest from it
+/// and the two that enclose the largest area.
+/// They are ordered by angle in the given frame, that of a body of the pair. The choice does not
+/// depend on depths that differ by less, or on the order of the points.
+void reduce(Manifold& contacts, const btTransform& frame);
 
 }  // namespace ziggurat::physics::contact

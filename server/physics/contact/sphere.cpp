@@ -11,7 +11,7 @@ namespace {
 /// One contact of a sphere (A) with the nearest surface point of B.
 /// @param outward  unit normal of B there; @param depth  distance of the sphere's centre
 void add(const Sphere& a, const btVector3& surface, const btVector3& outward, btScalar depth,
-         btScalar reach, Contacts& out) {
+         btScalar reach, Manifold& out) {
   const btScalar distance = depth - a.radius;
   if (distance > reach) return;
   out.normal = outward;
@@ -20,7 +20,7 @@ void add(const Sphere& a, const btVector3& surface, const btVector3& outward, bt
 
 /// One contact of a sphere with another.
 void add_round(const Sphere& a, const btVector3& center_a, btScalar radius_b,
-               const btVector3& center_b, btScalar reach, Contacts& out) {
+               const btVector3& center_b, btScalar reach, Manifold& out) {
   const btVector3 between = center_a - center_b;
   const btScalar length = between.length();
   const btVector3 outward = length > 0 ? between / length : btVector3(0, 0, 1);
@@ -29,18 +29,18 @@ void add_round(const Sphere& a, const btVector3& center_a, btScalar radius_b,
 
 }  // namespace
 
-void contact_points(const Sphere& a, const Sphere& b, const Placement& at, Contacts& out) {
+void contact_points(const Sphere& a, const Sphere& b, const PosedPair& at, Manifold& out) {
   add_round(a, at.a.getOrigin(), b.radius, at.b.getOrigin(), at.reach, out);
 }
 
-void contact_points(const Sphere& a, const Capsule& b, const Placement& at, Contacts& out) {
+void contact_points(const Sphere& a, const Capsule& b, const PosedPair& at, Manifold& out) {
   const btVector3 axis = at.b.getBasis().getColumn(2);
   const btScalar along = axis.dot(at.a.getOrigin() - at.b.getOrigin());
   const btScalar nearest = btMax(-b.half_length, btMin(b.half_length, along));
   add_round(a, at.a.getOrigin(), b.radius, at.b.getOrigin() + axis * nearest, at.reach, out);
 }
 
-void contact_points(const Sphere& a, const Box& b, const Placement& at, Contacts& out) {
+void contact_points(const Sphere& a, const Box& b, const PosedPair& at, Manifold& out) {
   const auto& [pose_a, pose_b, reach, support, useful] = at;
   const btVector3 centre = pose_b.invXform(pose_a.getOrigin());
   btVector3 nearest = centre;
@@ -68,7 +68,7 @@ void contact_points(const Sphere& a, const Box& b, const Placement& at, Contacts
   add(a, pose_b * nearest, pose_b.getBasis() * outward, -depth, reach, out);
 }
 
-void contact_points(const Sphere& a, const Cylinder& b, const Placement& at, Contacts& out) {
+void contact_points(const Sphere& a, const Cylinder& b, const PosedPair& at, Manifold& out) {
   const auto& [pose_a, pose_b, reach, support, useful] = at;
   const btVector3 centre = pose_b.invXform(pose_a.getOrigin());
   const btScalar radial = btSqrt(centre.x() * centre.x() + centre.y() * centre.y());
@@ -96,7 +96,7 @@ void contact_points(const Sphere& a, const Cylinder& b, const Placement& at, Con
   add(a, pose_b * nearest, pose_b.getBasis() * outward, depth, reach, out);
 }
 
-void contact_points(const Sphere& a, const Hull& b, const Placement& at, Contacts& out) {
+void contact_points(const Sphere& a, const Hull& b, const PosedPair& at, Manifold& out) {
   const auto& [pose_a, pose_b, reach, support, useful] = at;
   const btVector3 centre = pose_b.invXform(pose_a.getOrigin());
   const Polyhedron::Face* nearest = &b.polyhedron->faces[0];

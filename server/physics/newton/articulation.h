@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-#include "physics/motion.h"
+#include "physics/twist.h"
 
 namespace ziggurat::dynamics {
 class System;
@@ -23,7 +23,7 @@ struct Articulation {
   btTransform transform(std::size_t part) const;
   void apply_force(std::size_t part, const btVector3& force) const;  ///< at the centre of mass [N]
   void apply_torque(std::size_t part, const btVector3& torque) const;  ///< [N m]
-  void motions(std::span<Motion> out) const;
+  void motions(std::span<Twist> out) const;
   bool sleeps() const;
 };
 

@@ -5,24 +5,24 @@
 #include <algorithm>
 #include <tuple>
 
-#include "dynamics/fetch.h"
+#include "dynamics/prefetch.h"
 #include "physics/bit_reversed.h"
 #include "physics/convert.h"
 #include "physics/make_room.h"
-#include "physics/most_contacts.h"
+#include "physics/contact_limits.h"
 #include "physics/newton/tree.h"
 #include "physics/shape.h"
 
 namespace ziggurat::physics {
 namespace {
 
-// How much larger than needed a new box is made: by some steps at the present speed, as far as that
-// is little for its size, and at least by so much [m].
+// Slack of a new box: some steps at the present speed, at most a share of its size, at least this
+// distance [m].
 constexpr double least_slack = 1e-3;
 constexpr double steps_ahead = 12;
 constexpr double share_of_size = 0.1;
 
-constexpr std::size_t most_ahead = 8;  // colliders whose memory is asked for
+constexpr std::size_t most_ahead = 8;  // colliders that are prefetched
 
 bool inside(const btVector3& outer_low, const btVector3& outer_high, const btVector3& low,
             const btVector3& high) {
@@ -39,31 +39,31 @@ std::size_t index_of(const btBroadphaseProxy& proxy) {
   return reinterpret_cast<std::size_t>(proxy.m_clientObject);
 }
 
-/// A link's collider, without a place. None if nothing touches the link by itself.
+/// Makes a link's collider, without a pose. None if the link has no contacts of its own.
 std::optional<Collider> make_collider(const Body& body, const scene::Entity& entity,
                                       std::size_t i) {
   const scene::Link& link = entity.links[i];
   const LinkBody& placed = body.links[i];
   if (!link.collides || placed.carrier != LinkBody::carries_itself) return std::nullopt;
   Collider collider;
-  collider.present = true;
+  collider.is_present = true;
   collider.shape = contact_shape(link.geometry);
   collider.entity = body.entity;
   collider.link = i;
   collider.part = static_cast<std::uint32_t>(placed.part);
   collider.in_part = to_bullet(placed.in_part);
-  collider.centred = collider.in_part == btTransform::getIdentity();
+  collider.is_centred = collider.in_part == btTransform::getIdentity();
   collider.moves = body.parts[placed.part].moves;
-  collider.swings = collider.moves && !entity.movable;
-  collider.is_alone = entity.movable && body.parts.size() == 1 && collider.centred;
-  collider.rolls = body.ground.has_value() && i == 0;
+  collider.is_on_fixed_base = collider.moves && !entity.movable;
+  collider.is_single_body = entity.movable && body.parts.size() == 1 && collider.is_centred;
+  collider.has_wheels = body.ground.has_value() && i == 0;
   collider.surface = link.surface;
-  collider.half = to_bullet(placed.half_extents);
+  collider.half_extents = to_bullet(placed.half_extents);
   collider.radius = contact::bounding_radius(collider.shape);
   return collider;
 }
 
-/// The fastest that a point of it may be [m/s].
+/// Largest speed of a point of a collider [m/s].
 double speed_of(const Collider& collider) {
   return collider.velocity.length() + collider.angular_velocity.length() * collider.radius;
 }
@@ -81,7 +81,7 @@ struct Colliders::Filter final : btOverlapFilterCallback {
   const std::vector<ColliderGroup>& groups;
 };
 
-/// Which groups' boxes meet one.
+/// Collects the groups whose boxes meet one.
 struct Colliders::Hits final : btBroadphaseAabbCallback {
   explicit Hits(std::vector<std::size_t>& out) : found(out) {}
   bool process(const btBroadphaseProxy* proxy) override {
@@ -95,9 +95,9 @@ Colliders::Colliders() : filter_(std::make_unique<Filter>(groups)) {
   broadphase_.getOverlappingPairCache()->setOverlapFilterCallback(filter_.get());
 }
 
-double least_reach(const Colliders& colliders, double length) { return 1e-3 + std::max(15.0, 1.5 * colliders.gravity) * length * length; }
+double speculative_margin(const Colliders& colliders, double time_step) { return 1e-3 + std::max(15.0, 1.5 * colliders.gravity) * time_step * time_step; }
 
-/// Takes all pairs out first, at once: a box without pairs is gone in logarithmic time.
+/// Removes all pairs first, at once: a box without pairs is gone in logarithmic time.
 Colliders::~Colliders() {
   struct All final : btOverlapCallback {
     bool processOverlap(btBroadphasePair&) override { return true; }
@@ -123,8 +123,8 @@ void Colliders::add(const Body& body, const scene::Entity& entity, const dynamic
   make_room(all, made.size());
   make_room(groups, made.size());
   for (Collider& collider : made) {  // only Bullet allocates, which does not throw
-    place(collider, tree);
-    // What stands never leaves its box, so its links may have one each: a tighter one.
+    set_pose(collider, tree);
+    // Static links have a box each, which is tighter: they never leave it.
     const bool joins = &collider != &made.front() && collider.moves && groups.back().moves;
     if (!joins) groups.push_back({collider.entity, all.size(), 0, collider.moves});
     ++groups.back().count;
@@ -137,13 +137,13 @@ void Colliders::add(const Body& body, const scene::Entity& entity, const dynamic
 }
 
 Bounds Collider::bounds() const {
-  btVector3 extent = pose.getBasis().absolute() * half;  // no larger than a ball needs
+  btVector3 extent = pose.getBasis().absolute() * half_extents;  // at most that of the bounding sphere
   extent.setMin(btVector3(radius, radius, radius));
   extent += btVector3(reach, reach, reach);
   return {pose.getOrigin() - extent, pose.getOrigin() + extent};
 }
 
-/// Takes the boxes of its colliders, where they are.
+/// Sets a group's box about its colliders.
 void Colliders::enclose(ColliderGroup& group) {
   group.low.setValue(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
   group.high = -group.low;
@@ -159,15 +159,16 @@ void Colliders::insert(ColliderGroup& group, std::size_t index) {
                                         1, nullptr);
 }
 
-/// Tells the broad phase of new groups: one after another, 40 000 boxes in a row took minutes.
-void Colliders::settle() {
-  in_bit_reversed_order(groups.size() - settled_,
-                        [&](std::size_t i) { insert(groups[settled_ + i], settled_ + i); });
-  settled_ = groups.size();
+/// Inserts new groups into the broad phase in bit-reversed order: 40 000 boxes in a row took
+/// minutes.
+void Colliders::insert_new_groups() {
+  in_bit_reversed_order(groups.size() - inserted_,
+                        [&](std::size_t i) { insert(groups[inserted_ + i], inserted_ + i); });
+  inserted_ = groups.size();
 }
 
-int Colliders::depth() {
-  settle();
+int Colliders::tree_depth() {
+  insert_new_groups();
   return std::max(btDbvt::maxdepth(broadphase_.m_sets[0].m_root), btDbvt::maxdepth(broadphase_.m_sets[1].m_root));
 }
 
@@ -178,7 +179,7 @@ std::span<ColliderGroup> Colliders::groups_of(std::size_t entity) {
 }
 
 void Colliders::remove(std::size_t entity) {
-  settle();
+  insert_new_groups();
   for (ColliderGroup& group : groups_of(entity)) {
     if (!group.proxy) continue;
     broadphase_.destroyProxy(group.proxy, nullptr);
@@ -186,28 +187,28 @@ void Colliders::remove(std::size_t entity) {
     group = {};
     group.entity = entity;  // their order stays
   }
-  while (!all.empty() && !all.back().present && floor != all.size() - 1) all.pop_back();
+  while (!all.empty() && !all.back().is_present && floor != all.size() - 1) all.pop_back();
   while (!groups.empty() && !groups.back().proxy) groups.pop_back();
-  settled_ = groups.size();
+  inserted_ = groups.size();
 }
 
-void Colliders::moved(std::size_t entity, const dynamics::Tree& tree) {
-  settle();
+void Colliders::reset_poses(std::size_t entity, const dynamics::Tree& tree) {
+  insert_new_groups();
   for (ColliderGroup& group : groups_of(entity)) {
     if (!group.proxy) continue;
-    group.rests = false;
-    for (std::size_t i = group.first; i < group.first + group.count; ++i) place(all[i], tree);
+    group.is_static = false;
+    for (std::size_t i = group.first; i < group.first + group.count; ++i) set_pose(all[i], tree);
     broadphase_.destroyProxy(group.proxy, nullptr);
     enclose(group);
     insert(group, static_cast<std::size_t>(&group - groups.data()));
   }
 }
 
-void Colliders::place(Collider& collider, const dynamics::Tree& tree) const {
+void Colliders::set_pose(Collider& collider, const dynamics::Tree& tree) const {
   collider.pose = transform_of(tree, collider.part);
-  if (!collider.centred) collider.pose *= collider.in_part;
+  if (!collider.is_centred) collider.pose *= collider.in_part;
   if (!collider.moves) return;
-  const dynamics::Motion& motion = tree.motion[collider.part];
+  const dynamics::Motion& motion = tree.spatial_velocity[collider.part];
   const math::Vector3 arm = from_bullet(collider.pose.getOrigin()) - tree.origin;
   collider.velocity = to_bullet(motion.linear + motion.angular.cross(arm));
   collider.angular_velocity = to_bullet(motion.angular);
@@ -217,11 +218,11 @@ btTransform Colliders::pose(const Collider& collider, const dynamics::System& sy
   return transform_of(system.trees[collider.entity], collider.part) * collider.in_part;
 }
 
-/// Bullet's boxes only grow: a body that fell fast would keep a large one, and a neighbour in
-/// each pair it makes, forever. Ours are renewed when too small or much too large.
+/// Updates a group's box in the broad phase when it is too small or much too large. Bullet's boxes
+/// only grow: a fast body would keep a large one, with a neighbour in each pair, forever.
 /// @param step     how far it moves in the substep [m]
 /// @param shrinks  whether a box may be too large
-void Colliders::keep_in_box(ColliderGroup& group, double step, bool shrinks) {
+void Colliders::update_box(ColliderGroup& group, double step, bool shrinks) {
   const btVector3 size = group.high - group.low;
   const double most = share_of_size * std::min({size.x(), size.y(), size.z()});
   const double ahead = std::max(least_slack, std::min(steps_ahead * step, most));
@@ -235,82 +236,82 @@ void Colliders::keep_in_box(ColliderGroup& group, double step, bool shrinks) {
       static_cast<std::size_t>(broadphase_.getOverlappingPairCache()->getNumOverlappingPairs()));
 }
 
-void Colliders::follow(const dynamics::System& system, double length) {
-  for (std::size_t i = settled_; i < groups.size(); ++i) follow(groups[i], system, length);  // with boxes that last
-  settle();
-  const double least = least_reach(*this, length);
-  woke = false;
-  followed_.clear();
-  thrown.clear();
-  fast.clear();
+void Colliders::update_poses(const dynamics::System& system, double time_step) {
+  for (std::size_t i = inserted_; i < groups.size(); ++i) update_poses(groups[i], system, time_step);  // with boxes that last
+  insert_new_groups();
+  const double least = speculative_margin(*this, time_step);
+  has_woken = false;
+  updated_groups_.clear();
+  predicted.clear();
+  fast_entities.clear();
   for (ColliderGroup& group : groups) {
     if (!group.proxy) continue;
-    group.rested = group.rests;
-    group.rests = !group.moves || system.asleep(static_cast<int>(group.entity));
-    woke |= group.rested && !group.rests;
-    if (group.moves ? group.unchanged() : all[group.first].reach == least) continue;
-    if (group.moves) followed_.push_back(static_cast<std::size_t>(&group - groups.data()));
-    keep_in_box(group, follow(group, system, length), true);
+    group.was_static = group.is_static;
+    group.is_static = !group.moves || system.is_asleep(static_cast<int>(group.entity));
+    has_woken |= group.was_static && !group.is_static;
+    if (group.moves ? group.is_unchanged() : all[group.first].reach == least) continue;
+    if (group.moves) updated_groups_.push_back(static_cast<std::size_t>(&group - groups.data()));
+    update_box(group, update_poses(group, system, time_step), true);
   }
 }
 
-void Colliders::follow(const dynamics::System& system, double length, const TreeSet& chosen) {
-  settle();
-  followed_.clear();
-  thrown.clear();
-  fast.clear();
-  each_of(groups, chosen, [&](ColliderGroup& group) {
+void Colliders::update_poses(const dynamics::System& system, double time_step, const TreeSet& active) {
+  insert_new_groups();
+  updated_groups_.clear();
+  predicted.clear();
+  fast_entities.clear();
+  each_of(groups, active, [&](ColliderGroup& group) {
     if (!group.proxy || !group.moves) return;
-    group.rests = false;
-    followed_.push_back(static_cast<std::size_t>(&group - groups.data()));
-    keep_in_box(group, follow(group, system, length), false);
+    group.is_static = false;
+    updated_groups_.push_back(static_cast<std::size_t>(&group - groups.data()));
+    update_box(group, update_poses(group, system, time_step), false);
   });
 }
 
-/// Asks for the memory that follow() takes for the groups after one.
-void Colliders::fetch_after(const ColliderGroup& group, const dynamics::System& system) const {
+/// Prefetches the memory that update_poses() takes for the groups after one.
+void Colliders::prefetch_after(const ColliderGroup& group, const dynamics::System& system) const {
   const auto later = [&](std::size_t by) -> const ColliderGroup* {
     const std::size_t index = static_cast<std::size_t>(&group - groups.data()) + by;
     return index < groups.size() && groups[index].moves ? &groups[index] : nullptr;
   };
-  if (const ColliderGroup* next = later(6)) dynamics::fetch(&system.trees[next->entity], sizeof(dynamics::Tree));
+  if (const ColliderGroup* next = later(6)) dynamics::prefetch(&system.trees[next->entity], sizeof(dynamics::Tree));
   if (const ColliderGroup* next = later(3)) {
     const dynamics::Tree& tree = system.trees[next->entity];
-    dynamics::fetch(tree.rotation);
-    dynamics::fetch(tree.position);
-    dynamics::fetch(tree.motion);
-    dynamics::fetch(&all[next->first], std::min(next->count, most_ahead) * sizeof(Collider));
-    dynamics::fetch(next->proxy, sizeof(*next->proxy));
+    dynamics::prefetch(tree.rotation);
+    dynamics::prefetch(tree.position);
+    dynamics::prefetch(tree.spatial_velocity);
+    dynamics::prefetch(&all[next->first], std::min(next->count, most_ahead) * sizeof(Collider));
+    dynamics::prefetch(next->proxy, sizeof(*next->proxy));
   }
 }
 
-/// Takes the poses and motions of its colliders, and notes whether it is fast.
+/// Updates poses and velocities of a group's colliders, and notes whether it is fast.
 /// @return  how far it moves [m]
-double Colliders::follow(ColliderGroup& group, const dynamics::System& system, double length) {
+double Colliders::update_poses(ColliderGroup& group, const dynamics::System& system, double time_step) {
   double fastest = 0;
-  if (group.moves) fetch_after(group, system);
+  if (group.moves) prefetch_after(group, system);
   for (std::size_t i = group.first; i < group.first + group.count; ++i) {
     Collider& collider = all[i];
-    collider.reach = least_reach(*this, length);
+    collider.reach = speculative_margin(*this, time_step);
     if (!group.moves) continue;
-    place(collider, system.trees[group.entity]);
+    set_pose(collider, system.trees[group.entity]);
     const double speed = speed_of(collider);
-    collider.reach += 1.3 * length * speed;
+    collider.reach += 1.3 * time_step * speed;
     fastest = std::max(fastest, speed);
   }
   enclose(group);
-  if (length * fastest > least_reach(*this, length) / 2) fast.push_back(static_cast<int>(group.entity));
-  return length * fastest;
+  if (time_step * fastest > speculative_margin(*this, time_step) / 2) fast_entities.push_back(static_cast<int>(group.entity));
+  return time_step * fastest;
 }
 
-bool Colliders::widen(std::span<const int> trees, const dynamics::System& system, double length) {
+bool Colliders::add_predictions(std::span<const int> trees, const dynamics::System& system, double time_step) {
   bool any = false;
   const auto is_known = [&](std::size_t index, const Collider& moved) {
     const auto moves_so = [&](const Collider& known) {
       const double turns = (moved.angular_velocity - known.angular_velocity).length() * moved.radius;
-      return length * ((moved.velocity - known.velocity).length() + turns) <= least_reach(*this, length);
+      return time_step * ((moved.velocity - known.velocity).length() + turns) <= speculative_margin(*this, time_step);
     };
-    return moves_so(all[index]) || std::ranges::any_of(thrown, [&](const Thrown& known) {
+    return moves_so(all[index]) || std::ranges::any_of(predicted, [&](const PredictedCollider& known) {
       return known.index == index && moves_so(known.collider);
     });
   };
@@ -319,23 +320,23 @@ bool Colliders::widen(std::span<const int> trees, const dynamics::System& system
       double fastest = 0;
       for (std::size_t i = group.first; i < group.first + group.count; ++i) {
         Collider moved = all[i];
-        place(moved, system.trees[tree]);
+        set_pose(moved, system.trees[tree]);
         if (is_known(i, moved)) continue;
         const double speed = speed_of(moved);
-        all[i].reach = moved.reach = std::max(all[i].reach, btScalar(least_reach(*this, length) + 1.3 * length * speed));
-        thrown.push_back({i, std::move(moved)});
+        all[i].reach = moved.reach = std::max(all[i].reach, btScalar(speculative_margin(*this, time_step) + 1.3 * time_step * speed));
+        predicted.push_back({i, std::move(moved)});
         fastest = std::max(fastest, speed);
       }
       if (fastest == 0) continue;
       any = true;
       enclose(group);
-      keep_in_box(group, length * fastest, false);
+      update_box(group, time_step * fastest, false);
     }
   }
   return any;
 }
 
-void Colliders::find_near(const ColliderGroup& a, const ColliderGroup& b, std::vector<Near>& out) {
+void Colliders::find_pairs(const ColliderGroup& a, const ColliderGroup& b, std::vector<ColliderPair>& out) {
   const Bounds all_of_b{b.low, b.high};
   if (!boxes_meet({a.low, a.high}, all_of_b)) return;
   bounds_.clear();
@@ -352,34 +353,34 @@ void Colliders::find_near(const ColliderGroup& a, const ColliderGroup& b, std::v
   }
 }
 
-void Colliders::find_near(std::vector<Near>& out) {
+void Colliders::find_pairs(std::vector<ColliderPair>& out) {
   out.clear();
-  settle();
+  insert_new_groups();
   broadphase_.calculateOverlappingPairs(nullptr);
   const btBroadphasePairArray& pairs =
       broadphase_.getOverlappingPairCache()->getOverlappingPairArray();
   for (int i = 0; i < pairs.size(); ++i) {
     const ColliderGroup& a = groups[index_of(*pairs[i].m_pProxy0)];
     const ColliderGroup& b = groups[index_of(*pairs[i].m_pProxy1)];
-    if (!(a.unchanged() && b.unchanged())) find_near(a, b, out);
+    if (!(a.is_unchanged() && b.is_unchanged())) find_pairs(a, b, out);
   }
-  // Bullet's order depends on all that the broad phase has seen, which no snapshot has.
-  std::ranges::sort(out, {}, [](const Near& near) { return std::tie(near.a, near.b); });
+  // Bullet's order depends on the history of the broad phase, which no snapshot has.
+  std::ranges::sort(out, {}, [](const ColliderPair& near) { return std::tie(near.a, near.b); });
 }
 
-void Colliders::find_near(std::vector<Near>& out, const TreeSet& chosen) {
+void Colliders::find_pairs(std::vector<ColliderPair>& out, const TreeSet& active) {
   out.clear();
-  settle();
+  insert_new_groups();
   Hits hits(hits_);
-  for (const std::size_t index : followed_) {
+  for (const std::size_t index : updated_groups_) {
     const ColliderGroup& group = groups[index];
     hits_.clear();
     broadphase_.aabbTest(group.low, group.high, hits);
     std::sort(hits_.begin(), hits_.end());
     for (const std::size_t hit : hits_) {
       const ColliderGroup& other = groups[hit];
-      const bool counts = !other.moves || (chosen.holds[other.entity] && hit > index);
-      if (counts && other.entity != group.entity) find_near(group, other, out);
+      const bool counts = !other.moves || (active.contains[other.entity] && hit > index);
+      if (counts && other.entity != group.entity) find_pairs(group, other, out);
     }
   }
 }

@@ -12,8 +12,8 @@
 namespace ziggurat::physics {
 namespace {
 
-/// What the dialect takes where a scene says nothing is for its own clock.
-void forget_usual_damping(Body& body, const scene::Physics& physics) {
+/// Clears the dialect's default damping: it is meant for its own clock.
+void clear_default_damping(Body& body, const scene::Physics& physics) {
   if (physics.clock != scene::Clock::nominal) return;
   for (LinkBody& link : body.links) {
     if (link.damping.usual_linear) link.damping.linear = 0;
@@ -35,17 +35,18 @@ std::vector<CoordinateJoint> coordinate_joints_of(const scene::Entity& entity, c
   return made;
 }
 
-/// Those of an entity: joints stand in the order of their entities.
+/// Joints of an entity: joints stand in the order of their entities.
 std::span<CoordinateJoint> joints_of(std::size_t entity, std::vector<CoordinateJoint>& joints) {
   return {std::ranges::lower_bound(joints, entity, {}, &CoordinateJoint::entity),
           std::ranges::upper_bound(joints, entity, {}, &CoordinateJoint::entity)};
 }
 
-/// Entities of a kind mostly come one after the other, or by turns with a few others.
+/// Shares models with recent entities: equal ones mostly follow each other, or alternate with a few
+/// others.
 void share_mechanism(dynamics::Tree& tree, const std::vector<dynamics::Tree>& trees) {
   constexpr std::size_t most = 8;
   for (std::size_t i = 0; i < std::min(most, trees.size()); ++i) {
-    if (tree.share(trees[trees.size() - 1 - i])) return;
+    if (tree.share_model(trees[trees.size() - 1 - i])) return;
   }
 }
 
@@ -55,19 +56,19 @@ NewtonCore::NewtonCore(const scene::Physics& physics) : settings_(physics) { col
 
 Body NewtonCore::add(const scene::Entity& entity, std::size_t number) {
   Body body = make_body(entity, settings_, number);
-  forget_usual_damping(body, settings_);
+  clear_default_damping(body, settings_);
   dynamics::Tree tree = make_tree(body, entity, settings_);
   const std::vector<CoordinateJoint> joints = coordinate_joints_of(entity, body);
   share_mechanism(tree, system_.trees);
   make_room(system_.trees, 1);
   make_room(joints_, joints.size());
-  make_room(held_, 1);
-  make_room(lags_.of_tree, 1);
+  make_room(ground_servos_, 1);
+  make_room(leapfrog_sync_.of_tree, 1);
   colliders_.add(body, entity, tree);
   system_.trees.push_back(std::move(tree));
-  lags_.of_tree.push_back(Lags::unknown);
+  leapfrog_sync_.of_tree.push_back(LeapfrogSync::unknown);
   joints_.insert(joints_.end(), joints.begin(), joints.end());
-  if (body.ground && entity.movable) held_.push_back({number, {}});
+  if (body.ground && entity.movable) ground_servos_.push_back({number, {}});
   body.articulation = Articulation{&system_, number};
   return body;
 }
@@ -75,13 +76,13 @@ Body NewtonCore::add(const scene::Entity& entity, std::size_t number) {
 void NewtonCore::detach(std::size_t entity) {
   contacts_.forget(entity, system_);
   colliders_.remove(entity);
-  held_.erase(std::ranges::lower_bound(held_, entity, {}, &Held::entity),
-              std::ranges::upper_bound(held_, entity, {}, &Held::entity));
+  ground_servos_.erase(std::ranges::lower_bound(ground_servos_, entity, {}, &GroundServo::entity),
+              std::ranges::upper_bound(ground_servos_, entity, {}, &GroundServo::entity));
 }
 
 void NewtonCore::remove(Body& body) {
   detach(body.entity);
-  system_.trees[body.entity].take_apart();
+  system_.trees[body.entity].clear();
   for (CoordinateJoint& joint : joints_of(body.entity, joints_)) {
     joint.present = false;
     joint.mode = scene::JointMode::disabled;
@@ -93,7 +94,7 @@ void NewtonCore::remove(Body& body) {
 void NewtonCore::take_back(Body& body) {
   detach(body.entity);
   system_.trees.pop_back();
-  lags_.of_tree.pop_back();
+  leapfrog_sync_.of_tree.pop_back();
   std::erase_if(joints_, [&](const auto& joint) { return joint.entity == body.entity; });
   body.articulation.reset();
 }
@@ -110,23 +111,23 @@ void begin_anew(NewtonCore& core, std::size_t entity) {
   for (CoordinateJoint& joint : joints_of(entity, core.joints_)) {
     joint.limit_impulse = joint.motor_impulse = 0;
   }
-  for (NewtonCore::Held& held : core.held_) {
+  for (NewtonCore::GroundServo& held : core.ground_servos_) {
     if (held.entity == entity) held.impulses = {};
   }
   core.contacts_.forget(entity, core.system_);
-  core.lags_.of_tree[entity] = Lags::unknown;
+  core.leapfrog_sync_.of_tree[entity] = LeapfrogSync::unknown;
   core.system_.wake(static_cast<int>(entity));
-  core.colliders_.moved(entity, core.system_.trees[entity]);
+  core.colliders_.reset_poses(entity, core.system_.trees[entity]);
 }
 
 void set_joint(NewtonCore& core, JointIndex index, double position, double velocity) {
   const CoordinateJoint& joint = core.joints_[index.value];
   dynamics::Tree& tree = core.system_.trees[joint.entity];
-  tree.q[place_of(tree, joint.part)] = position;
+  tree.q[position_of(tree, joint.part)] = position;
   tree.v[dof_of(tree, joint.part)] = velocity;
-  tree.flight_step = 0;
-  dynamics::place(tree);
-  dynamics::move(tree);
+  tree.integrator_step = 0;
+  dynamics::forward_kinematics(tree);
+  dynamics::velocity_kinematics(tree);
   begin_anew(core, joint.entity);
 }
 
@@ -134,7 +135,7 @@ std::optional<std::size_t> NewtonCore::overlapped_by(
     std::span<const PlacedCollider> colliders, std::size_t except) const {
   std::optional<std::size_t> first;
   for (const Collider& collider : colliders_.all) {
-    if (!collider.present || collider.entity == except || (first && *first <= collider.entity)) continue;
+    if (!collider.is_present || collider.entity == except || (first && *first <= collider.entity)) continue;
     const btVector3 part = to_bullet(system_.trees[collider.entity].position[collider.part]);
     const btScalar reach = collider.radius + collider.in_part.getOrigin().length();
     const auto is_far = [&](const PlacedCollider& each) {
@@ -164,7 +165,7 @@ double NewtonCore::position(JointIndex index) const {
   const CoordinateJoint& joint = joints_[index.value];
   if (!joint.present) return 0;
   const dynamics::Tree& tree = system_.trees[joint.entity];
-  return tree.q[place_of(tree, joint.part)];
+  return tree.q[position_of(tree, joint.part)];
 }
 
 double NewtonCore::velocity(JointIndex index) const {

@@ -9,9 +9,9 @@
 
 #include "dynamics/system.h"
 #include "physics/bodies.h"
-#include "physics/newton/contacts.h"
-#include "physics/newton/division.h"
-#include "physics/newton/lags.h"
+#include "physics/newton/contact_cache.h"
+#include "physics/newton/substep_partition.h"
+#include "physics/newton/leapfrog_sync.h"
 #include "physics/newton/motors.h"
 #include "physics/overlap.h"
 #include "physics/plugin.h"
@@ -19,9 +19,9 @@
 
 namespace ziggurat::physics {
 
-/// What acts on a set of trees that takes a substep in parts, in its order.
-struct HeldBack {
-  std::vector<dynamics::Wrench> pushes;  ///< on their links
+/// Forces on a set of trees that takes a substep in parts, in its order.
+struct DeferredForces {
+  std::vector<dynamics::Wrench> wrenches;  ///< on their links
   std::vector<math::Vector3> gravity;    ///< that was taken from them: of the first ones, or of all [m/s^2]
 };
 
@@ -45,8 +45,8 @@ class NewtonCore {
   double position(JointIndex joint) const;
   double velocity(JointIndex joint) const;
 
-  void substep(std::span<Body> bodies, double length, int splits, Plugin* stiff);
-  void contacts(std::vector<Contact>& out) const { contacts_.tell(out); }
+  void substep(std::span<Body> bodies, double time_step, int splits, Plugin* stiff);
+  void contacts(std::vector<LinkContact>& out) const { contacts_.list_contacts(out); }
   Convergence convergence() const { return convergence_; }
   friend void set_joint(NewtonCore& core, JointIndex joint, double position, double velocity);
   /// Forgets of an entity that was put somewhere else what it remembers of contacts, joints and steps.
@@ -54,53 +54,53 @@ class NewtonCore {
   friend void archive_fields(math::Archive& archive, NewtonCore& core);
 
  private:
-  /// A body that is held to a motion over the ground.
-  struct Held {
+  /// A body whose servos hold it to a motion over the ground.
+  struct GroundServo {
     std::size_t entity = 0;
     std::array<double, 3> impulses{};  // of the last substep [N s], [N m s]
   };
 
   void detach(std::size_t entity);
   /// Trees that take a part of a substep, or all of it.
-  struct Share {
-    const TreeSet* chosen = nullptr;  // null: all
-    double length = 0;                // [s]
+  struct SubstepPart {
+    const TreeSet* active = nullptr;  // null: all
+    double time_step = 0;                // [s]
     int splits = 1;                   // of the scene's substep, see substep()
-    double of_impulses = 1;           // of the substep's forces and impulses, that act in it
-    bool more = false;                // other parts follow
-    int parts_left = 1;               // until motors should be at their targets, with this one
+    double force_share = 1;           // of the substep's forces and impulses, that act in it
+    bool is_followed = false;                // other parts follow
+    int parts_left = 1;               // until motors should reach their targets, with this one
     int most_parts = 1;               // into which islands may divide it
     bool is_part = false;             // it is one of these
     double allowed_overlap = 1e-6;    // that remains [m]
-    double softness = dynamics::System::usual_softness;
-    std::span<const int> trees() const { return chosen ? chosen->trees : std::span<const int>(); }
+    double compliance_factor = dynamics::System::default_compliance_factor;
+    std::span<const int> trees() const { return active ? active->trees : std::span<const int>(); }
   };
-  void prepare(std::span<Body> bodies, const Share& share);
-  bool wake_disturbed(const Share& share, std::span<dynamics::Contact>& contacts, bool woke);
-  void step(const Share& share);
-  bool foresee(const Share& share, std::span<dynamics::Contact>& contacts, bool& woke);
-  void take_part(std::span<Body> bodies, const Share& part);
-  void remember(const Share& share);
-  void substep_in_parts(std::span<Body> bodies, double length, int splits, int count,
+  void prepare(std::span<Body> bodies, const SubstepPart& part);
+  bool wake_disturbed(const SubstepPart& part, std::span<dynamics::ContactPoint>& contacts, bool woke);
+  void step(const SubstepPart& part);
+  bool predict_contacts(const SubstepPart& part, std::span<dynamics::ContactPoint>& contacts, bool& woke);
+  void step_part(std::span<Body> bodies, const SubstepPart& part);
+  void store_impulses(const SubstepPart& part);
+  void step_leapfrog(std::span<Body> bodies, double time_step, int splits, int count,
                         Plugin& stiff);
-  void divide(std::span<Body> bodies, const Share& whole);
-  void take_parts(std::span<Body> bodies, const Share& whole, int count);
+  void step_divided_islands(std::span<Body> bodies, const SubstepPart& whole);
+  void step_in_parts(std::span<Body> bodies, const SubstepPart& whole, int count);
 
   scene::Physics settings_;
   dynamics::System system_;
   dynamics::Workspace work_;
   Colliders colliders_;
-  Contacts contacts_{colliders_};
+  ContactCache contacts_{colliders_};
   std::vector<CoordinateJoint> joints_;
-  std::vector<Held> held_;
+  std::vector<GroundServo> ground_servos_;
   std::vector<dynamics::Servo> servos_;
   std::vector<dynamics::Limit> limits_;
-  Division division_;
-  Lags lags_;
-  dynamics::LeftIslands left_;  // by the whole substep
-  TreeSet chosen_;              // the trees of one of them, or all others
-  HeldBack held_back_;
-  dynamics::Foresight foresight_;
+  SubstepPartition partition_;
+  LeapfrogSync leapfrog_sync_;
+  dynamics::IslandsToSubdivide islands_to_subdivide_;  // by the whole substep
+  TreeSet active_;              // the trees of one of them, or all others
+  DeferredForces deferred_forces_;
+  dynamics::PredictedVelocities prediction_;
   Convergence convergence_;
 };
 

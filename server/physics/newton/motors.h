@@ -1,5 +1,5 @@
 #pragma once
-// Joints with a coordinate: limits and motors; and what holds robots on wheels to their motion.
+// Motors and limits of joints with a coordinate, and servos of robots on wheels.
 
 #include <optional>
 
@@ -29,10 +29,10 @@ struct CoordinateJoint {
 /// @param impulse      its limit in that substep or part [N s] or [N m s]
 /// @param is_factored  whether `work` has the factors of the tree's mass as it is now; in and out
 dynamics::Servo servo_of(const CoordinateJoint& joint, const dynamics::Tree& tree,
-                         dynamics::Workspace& work, double length, double left, double impulse,
+                         dynamics::Workspace& work, double time_step, double left, double impulse,
                          bool& is_factored);
 
-/// What holds a body to its GroundMotion: speeds along and across, turn rate about the vertical.
+/// Servos that hold a body to its GroundMotion: velocity along and across, rate about the vertical.
 /// @param impulses  of the last substep
 std::array<dynamics::Servo, 3> servos_of(const Body& body, const std::array<double, 3>& impulses);
 

@@ -3,11 +3,11 @@
 namespace ziggurat::physics {
 
 void PairLists::make_room(std::size_t pairs) {
-  if (places_.size() < pairs) places_.resize(pairs);
+  if (links_.size() < pairs) links_.resize(pairs);
 }
 
 void PairLists::add(int pair, std::size_t a, std::optional<std::size_t> b) {
-  Place& place = places_[pair];
+  Links& place = links_[pair];
   place.colliders = {a, b.value_or(none)};
   for (std::size_t side = 0; side < 2; ++side) {
     const std::size_t collider = place.colliders[side];
@@ -15,13 +15,13 @@ void PairLists::add(int pair, std::size_t a, std::optional<std::size_t> b) {
     const int next = first_[collider];
     place.previous[side] = 0;
     place.next[side] = next;
-    if (next != 0) places_[next].previous[places_[next].side(collider)] = pair;
+    if (next != 0) links_[next].previous[links_[next].side(collider)] = pair;
     first_[collider] = pair;
   }
 }
 
 void PairLists::remove(int pair) {
-  const Place& place = places_[pair];
+  const Links& place = links_[pair];
   for (std::size_t side = 0; side < 2; ++side) {
     const std::size_t collider = place.colliders[side];
     if (collider == none) continue;
@@ -29,9 +29,9 @@ void PairLists::remove(int pair) {
     if (previous == 0) {
       first_[collider] = next;
     } else {
-      places_[previous].next[places_[previous].side(collider)] = next;
+      links_[previous].next[links_[previous].side(collider)] = next;
     }
-    if (next != 0) places_[next].previous[places_[next].side(collider)] = previous;
+    if (next != 0) links_[next].previous[links_[next].side(collider)] = previous;
   }
 }
 
@@ -39,7 +39,7 @@ void PairLists::collect(std::size_t collider, std::vector<int>& out) const {
   if (collider >= first_.size()) return;
   for (int pair = first_[collider]; pair != 0;) {
     out.push_back(pair);
-    pair = places_[pair].next[places_[pair].side(collider)];
+    pair = links_[pair].next[links_[pair].side(collider)];
   }
 }
 

@@ -1,6 +1,5 @@
 #pragma once
-// Which pairs each collider is in, so that one which is removed or moved is forgotten without a
-// look at all other pairs.
+// Lists of each collider's pairs: removing a collider visits no other pairs.
 
 #include <array>
 #include <cstddef>
@@ -13,11 +12,11 @@ class PairLists {
  public:
   /// Makes lists for this many colliders. Those beyond must be empty.
   void resize(std::size_t colliders) { first_.resize(colliders, 0); }
-  void clear() { first_.clear(), places_.clear(); }
-  /// Makes memory for pairs with lower numbers than this: add() takes none then.
+  void clear() { first_.clear(), links_.clear(); }
+  /// Reserves memory for pairs with lower numbers than this: add() takes none then.
   void make_room(std::size_t pairs);
-  /// Puts a pair into the lists of its colliders.
-  /// @param pair  its number, > 0;  @param b  none: what has no list
+  /// Adds a pair to the lists of its colliders.
+  /// @param pair  its number, > 0;  @param b  none: a collider without a list
   void add(int pair, std::size_t a, std::optional<std::size_t> b);
   void remove(int pair);
   /// Appends a collider's pairs to `out`, in any order.
@@ -25,13 +24,13 @@ class PairLists {
 
  private:
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
-  /// Where a pair stands in the lists of its two colliders.
-  struct Place {
+  /// Links of a pair in the lists of its two colliders.
+  struct Links {
     std::array<std::size_t, 2> colliders{none, none};
     std::array<int, 2> previous{}, next{};  // 0: none
     std::size_t side(std::size_t collider) const { return colliders[0] == collider ? 0 : 1; }
   };
-  std::vector<Place> places_;  // by the pairs' numbers
+  std::vector<Links> links_;  // by the pairs' numbers
   std::vector<int> first_;     // of each collider; 0: none
 };
 

@@ -1,4 +1,4 @@
-// How the core moves all trees on by a substep: at once, and in parts where something asks for that.
+// A substep of all trees: as a whole, and in parts where a stiff pair or an island asks for them.
 
 #include <algorithm>
 #include <utility>
@@ -8,37 +8,37 @@
 namespace ziggurat::physics {
 namespace {
 
-/// What an overlap of bodies that magnets press together may remain [m]: with 64 N a micrometre is
-/// 3e-4 of the bond of two magnets of 10 mm.
+/// Penetration that remains between magnetic bodies [m]: with 64 N a micrometre is 3e-4 of the bond
+/// of two magnets of 10 mm.
 constexpr double overlap_of_magnets = 1e-7;
 
-/// Into how many a substep may be divided for what is pulled too hard or nutates too far.
+/// Largest number of parts of a substep for geometric or gyroscopic stiffness.
 constexpr int most_parts = 200;
 
-/// Those of all trees, if none are chosen.
+/// Calls visit for the items of all trees, if none are chosen.
 template <class Item, class Visit>
-void each_of(std::vector<Item>& items, const TreeSet* chosen, Visit visit) {
-  if (chosen) return physics::each_of(items, *chosen, visit);
+void each_of(std::vector<Item>& items, const TreeSet* active, Visit visit) {
+  if (active) return physics::each_of(items, *active, visit);
   std::for_each(items.begin(), items.end(), visit);
 }
 
-/// Notes what pushes some trees.
-void note_pushes(const dynamics::System& system, const TreeSet& chosen, HeldBack& out) {
-  out.pushes.clear();
-  for (const int number : chosen.trees) {
+/// Saves the external wrenches of some trees.
+void save_wrenches(const dynamics::System& system, const TreeSet& active, DeferredForces& out) {
+  out.wrenches.clear();
+  for (const int number : active.trees) {
     const auto& external = system.trees[number].external;
-    out.pushes.insert(out.pushes.end(), external.begin(), external.end());
+    out.wrenches.insert(out.wrenches.end(), external.begin(), external.end());
   }
 }
 
-/// Takes it from them, and their gravity.
-void hold_back(dynamics::System& system, const TreeSet& chosen, HeldBack& out) {
-  note_pushes(system, chosen, out);
+/// Moves the external wrenches and gravity of some trees to the deferred forces.
+void defer_forces(dynamics::System& system, const TreeSet& active, DeferredForces& out) {
+  save_wrenches(system, active, out);
   out.gravity.clear();
-  out.gravity.reserve(chosen.trees.size());
-  for (const int number : chosen.trees) out.gravity.push_back(system.trees[number].gravity);
-  auto push = out.pushes.begin();
-  for (const int number : chosen.trees) {
+  out.gravity.reserve(active.trees.size());
+  for (const int number : active.trees) out.gravity.push_back(system.trees[number].gravity);
+  auto push = out.wrenches.begin();
+  for (const int number : active.trees) {
     dynamics::Tree& tree = system.trees[number];
     for (std::size_t k = 0; k < tree.links.size(); ++k, ++push) {
       push->force += tree.links[k].mass * tree.gravity;
@@ -48,61 +48,63 @@ void hold_back(dynamics::System& system, const TreeSet& chosen, HeldBack& out) {
   }
 }
 
-/// Pushes them so, times `share`.
-void push(dynamics::System& system, const TreeSet& chosen, const HeldBack& held, double share) {
-  auto push = held.pushes.begin();
-  for (const int number : chosen.trees) {
+/// Applies the deferred forces, times `share`.
+void apply_deferred(dynamics::System& system, const TreeSet& active, const DeferredForces& deferred, double share) {
+  auto push = deferred.wrenches.begin();
+  for (const int number : active.trees) {
     for (std::size_t k = 0; k < system.trees[number].links.size(); ++k, ++push) {
-      system.push(number, static_cast<int>(k), {share * push->moment, share * push->force});
+      system.apply_wrench(number, static_cast<int>(k), {share * push->moment, share * push->force});
     }
   }
 }
 
-/// Gives trees back their gravity at its end, also where something throws.
-struct GravityComesBack {
+/// Restores the gravity of trees at its end, also after an exception.
+struct GravityGuard {
   dynamics::System& system;
-  const TreeSet& chosen;
-  const std::vector<math::Vector3>& gravity;  ///< see HeldBack
+  const TreeSet& active;
+  const std::vector<math::Vector3>& gravity;  ///< see DeferredForces
 
-  ~GravityComesBack() {
+  ~GravityGuard() {
     for (std::size_t i = 0; i < gravity.size(); ++i) {
-      system.trees[chosen.trees[i]].gravity = gravity[i];
+      system.trees[active.trees[i]].gravity = gravity[i];
     }
   }
 };
 
-/// Gives trees back their speeds at its end, also where something throws.
-struct SpeedsComeBack {
+/// Restores the velocities of trees at its end, also after an exception.
+struct VelocityGuard {
   dynamics::System& system;
-  dynamics::Foresight& foresight;
+  dynamics::PredictedVelocities& foresight;
 
-  ~SpeedsComeBack() { swap_speeds(system.trees, foresight); }
+  ~VelocityGuard() { swap_velocities(system.trees, foresight); }
 };
 
+/// Sets the active trees.
 /// @param trees  ascending
-/// @param holds  whether it becomes the set of these trees, or of all others, which it does not list
-void choose(TreeSet& out, std::span<const int> trees, bool holds, std::size_t count) {
+/// @param holds  whether it becomes the set of these trees, or of all others, which it does not
+///               list
+void set_active(TreeSet& out, std::span<const int> trees, bool holds, std::size_t count) {
   out.trees.assign(trees.begin(), holds ? trees.end() : trees.begin());
-  out.holds.assign(count, !holds);
-  for (const int tree : trees) out.holds[tree] = holds;
+  out.contains.assign(count, !holds);
+  for (const int tree : trees) out.contains[tree] = holds;
 }
 
-/// Takes several steps: each undoes four fifths of an overlap, and turns what it pushes.
-void push_apart_what_turned(dynamics::System& system, Contacts& contacts, std::span<const int> trees) {
+/// Recovers overlaps by several steps: each resolves four fifths, and rotates the bodies.
+void recover_overlaps(dynamics::System& system, ContactCache& contacts, std::span<const int> trees) {
   constexpr int most_passes = 4;
   for (int pass = 0; pass < most_passes; ++pass) {
-    const std::span<dynamics::Contact> overlaps = contacts.find_turned(system);
+    const std::span<dynamics::ContactPoint> overlaps = contacts.find_new_overlaps(system);
     if (overlaps.empty()) return;
-    system.push_apart(overlaps, trees);
+    system.separate(overlaps, trees);
   }
 }
 
 /// Wakes all trees but some.
-/// @return  whether something slept
-bool wake_others(dynamics::System& system, const TreeSet& those) {
+/// @return  whether one slept
+bool wake_all_except(dynamics::System& system, const TreeSet& those) {
   bool woke = false;
-  for (std::size_t i = 0; i < those.holds.size(); ++i) {
-    if (those.holds[i] || !system.asleep(static_cast<int>(i))) continue;
+  for (std::size_t i = 0; i < those.contains.size(); ++i) {
+    if (those.contains[i] || !system.is_asleep(static_cast<int>(i))) continue;
     system.wake(static_cast<int>(i));
     woke = true;
   }
@@ -111,209 +113,210 @@ bool wake_others(dynamics::System& system, const TreeSet& those) {
 
 }  // namespace
 
-/// Tells the solver what a share allows, and collects its servos and limits.
-void NewtonCore::prepare(std::span<Body> bodies, const Share& share) {
-  system_.allowed_overlap = share.allowed_overlap;
-  system_.softness = share.softness;
-  system_.most_parts = share.most_parts;
-  system_.is_part = share.is_part;
+/// Sets the system's options for a part, and collects its servos and limits.
+void NewtonCore::prepare(std::span<Body> bodies, const SubstepPart& part) {
+  system_.allowed_overlap = part.allowed_overlap;
+  system_.compliance_factor = part.compliance_factor;
+  system_.most_parts = part.most_parts;
+  system_.is_part = part.is_part;
   servos_.clear();
   limits_.clear();
   std::size_t entity = 0;  // joints of an entity stand together
   bool is_factored = false;
-  each_of(joints_, share.chosen, [&](const CoordinateJoint& joint) {
+  each_of(joints_, part.active, [&](const CoordinateJoint& joint) {
     const dynamics::Tree& tree = system_.trees[joint.entity];
     if (std::exchange(entity, joint.entity) != joint.entity) is_factored = false;
     if (joint.mode != scene::JointMode::disabled) {
-      const double impulse = joint.max_impulse / share.splits * share.of_impulses;
-      servos_.push_back(servo_of(joint, tree, work_, share.length, share.parts_left * share.length, impulse, is_factored));
-      servos_.back().impulse *= share.of_impulses;
+      const double impulse = joint.max_impulse / part.splits * part.force_share;
+      servos_.push_back(servo_of(joint, tree, work_, part.time_step, part.parts_left * part.time_step, impulse, is_factored));
+      servos_.back().impulse *= part.force_share;
     }
     if (joint.limit) {
       limits_.push_back({static_cast<int>(joint.entity), static_cast<int>(joint.part),
                          joint.limit->lower, joint.limit->upper,
-                         share.of_impulses * joint.limit_impulse});
+                         part.force_share * joint.limit_impulse});
     }
   });
-  each_of(held_, share.chosen, [&](const Held& held) {
+  each_of(ground_servos_, part.active, [&](const GroundServo& held) {
     for (dynamics::Servo servo : servos_of(bodies[held.entity], held.impulses)) {
-      servo.lower *= share.of_impulses;
-      servo.upper *= share.of_impulses;
-      servo.impulse *= share.of_impulses;
+      servo.lower *= part.force_share;
+      servo.upper *= part.force_share;
+      servo.impulse *= part.force_share;
       servos_.push_back(servo);
     }
   });
 }
 
-/// The impulses of this substep are where the next one begins. Those of a part without forces are
-/// not: the ones of the substep before are nearer to what comes.
-void NewtonCore::remember(const Share& share) {
-  contacts_.remember(share.more);
-  if (share.of_impulses == 0) return;
+/// Stores the impulses: the next substep starts from them. A part without forces stores none: the
+/// substep before is a better start.
+void NewtonCore::store_impulses(const SubstepPart& part) {
+  contacts_.store_impulses(part.is_followed);
+  if (part.force_share == 0) return;
   std::size_t servo = 0, limit = 0;
-  each_of(joints_, share.chosen, [&](CoordinateJoint& joint) {
+  each_of(joints_, part.active, [&](CoordinateJoint& joint) {
     if (joint.mode != scene::JointMode::disabled) {
-      joint.motor_impulse = servos_[servo++].impulse / share.of_impulses;
+      joint.motor_impulse = servos_[servo++].impulse / part.force_share;
     }
-    if (joint.limit) joint.limit_impulse = limits_[limit++].impulse / share.of_impulses;
+    if (joint.limit) joint.limit_impulse = limits_[limit++].impulse / part.force_share;
   });
-  each_of(held_, share.chosen, [&](Held& held) {
-    for (double& impulse : held.impulses) impulse = servos_[servo++].impulse / share.of_impulses;
+  each_of(ground_servos_, part.active, [&](GroundServo& held) {
+    for (double& impulse : held.impulses) impulse = servos_[servo++].impulse / part.force_share;
   });
 }
 
-/// Wakes what something disturbs. Then what rests may be touched, too.
+/// Wakes disturbed sleepers. Then contacts of other sleepers are needed, too.
 /// @param contacts  in and out;  @param woke  whether something woke before
 /// @return          whether something has woken
-bool NewtonCore::wake_disturbed(const Share& share, std::span<dynamics::Contact>& contacts, bool woke) {
-  woke |= system_.wake_disturbed(share.length, contacts, servos_, share.trees());
-  if (!woke || share.chosen) return woke;
-  contacts = contacts_.add_resting();
-  return system_.wake_disturbed(share.length, contacts, servos_, share.trees()) || woke;
+bool NewtonCore::wake_disturbed(const SubstepPart& part, std::span<dynamics::ContactPoint>& contacts, bool woke) {
+  woke |= system_.wake_disturbed(part.time_step, contacts, servos_, part.trees());
+  if (!woke || part.active) return woke;
+  contacts = contacts_.add_resting_contacts();
+  return system_.wake_disturbed(part.time_step, contacts, servos_, part.trees()) || woke;
 }
 
-/// Moves on what wake_disturbed() has been told.
-void NewtonCore::step(const Share& share) {
-  system_.swings = contacts_.swings;
+/// Advances by the constraints of wake_disturbed().
+void NewtonCore::step(const SubstepPart& part) {
+  system_.rotations_until_impact = contacts_.rotations_until_impact;
   const dynamics::Report report = system_.advance(limits_);
-  if (!system_.left.trees.empty()) {
-    choose(chosen_, system_.left.trees, false, system_.trees.size());
-    contacts_.keep(chosen_);
+  if (!system_.islands_to_subdivide.trees.empty()) {
+    set_active(active_, system_.islands_to_subdivide.trees, false, system_.trees.size());
+    contacts_.keep_contacts(active_);
   }
-  remember(share);
-  push_apart_what_turned(system_, contacts_, share.trees());
+  store_impulses(part);
+  recover_overlaps(system_, contacts_, part.trees());
   convergence_.islands += report.islands;
   convergence_.not_converged += report.not_converged;
-  convergence_.worst = std::max(convergence_.worst, report.miss);
+  convergence_.worst = std::max(convergence_.worst, report.residual);
 }
 
-void NewtonCore::substep(std::span<Body> bodies, double length, int splits, Plugin* stiff) {
-  Share whole;
-  whole.length = length;
+void NewtonCore::substep(std::span<Body> bodies, double time_step, int splits, Plugin* stiff) {
+  SubstepPart whole;
+  whole.time_step = time_step;
   whole.splits = splits;
   whole.most_parts = most_parts;
-  colliders_.follow(system_, length);
+  colliders_.update_poses(system_, time_step);
   prepare(bodies, whole);
-  std::span<dynamics::Contact> contacts = contacts_.find(length);
+  std::span<dynamics::ContactPoint> contacts = contacts_.find_contacts(time_step);
   bool woke = false;
-  if (stiff) {  // what takes the substep in parts must be awake
-    division_.find(stiff->stiff_pairs(), contacts_.near(), {}, colliders_.all, system_.trees);
-    woke = wake_others(system_, division_.with(0));
+  if (stiff) {  // trees with parts must be awake
+    partition_.partition(stiff->stiff_pairs(), contacts_.near_pairs(), {}, colliders_.all, system_.trees);
+    woke = wake_all_except(system_, partition_.trees_with(0));
   }
   woke = wake_disturbed(whole, contacts, woke);
-  woke |= foresee(whole, contacts, woke);
+  woke |= predict_contacts(whole, contacts, woke);
   if (!stiff) {
-    change_lags(lags_, system_, work_, length, nullptr, contacts, servos_);
+    synchronise_velocities(leapfrog_sync_, system_, work_, time_step, nullptr, contacts, servos_);
     step(whole);
-    return divide(bodies, whole);
+    return step_divided_islands(bodies, whole);
   }
-  if (woke) {  // what has just woken, or is thrown, may touch others
-    division_.find(stiff->stiff_pairs(), contacts_.near(), contacts, colliders_.all, system_.trees);
+  if (woke) {  // trees that woke or were accelerated may touch others
+    partition_.partition(stiff->stiff_pairs(), contacts_.near_pairs(), contacts, colliders_.all, system_.trees);
   }
-  change_lags(lags_, system_, work_, length, &division_, contacts, servos_);
-  whole.chosen = &division_.with(0);
-  if (!whole.chosen->trees.empty()) {
-    const auto is_other = [&](const auto& item) { return !whole.chosen->holds[item.tree]; };
+  synchronise_velocities(leapfrog_sync_, system_, work_, time_step, &partition_, contacts, servos_);
+  whole.active = &partition_.trees_with(0);
+  if (!whole.active->trees.empty()) {
+    const auto is_other = [&](const auto& item) { return !whole.active->contains[item.tree]; };
     std::erase_if(servos_, is_other);
     std::erase_if(limits_, is_other);
-    system_.wake_disturbed(length, contacts_.keep(*whole.chosen), servos_, whole.trees());
+    system_.wake_disturbed(time_step, contacts_.keep_contacts(*whole.active), servos_, whole.trees());
     step(whole);
-    divide(bodies, whole);
+    step_divided_islands(bodies, whole);
   }
-  for (const int count : division_.counts()) {
-    substep_in_parts(bodies, length, splits, count, *stiff);
+  for (const int count : partition_.part_counts()) {
+    step_leapfrog(bodies, time_step, splits, count, *stiff);
   }
 }
 
-/// Looks for contacts again with the speeds that things are set in motion with within the substep: what they would pass through is
-/// beyond the reach that their speeds at its beginning give them. What they strike may be thrown, too.
-/// @param contacts  in and out;  @param woke  in: whether something woke; out: also by what is thrown
+/// Finds contacts again with the velocities that servos, wrenches and impacts give within the
+/// substep. Their obstacles are beyond the reach of the initial velocities. Impacts may accelerate
+/// further bodies.
+/// @param contacts  in and out;  @param woke  in: whether something woke; out: also by an impact
 /// @return          whether there are other contacts
-bool NewtonCore::foresee(const Share& share, std::span<dynamics::Contact>& contacts, bool& woke) {
+bool NewtonCore::predict_contacts(const SubstepPart& part, std::span<dynamics::ContactPoint>& contacts, bool& woke) {
   constexpr int most_blows = 8;
   bool any = false;
-  for (int i = 0; i < most_blows && system_.foresee(limits_, least_reach(colliders_, share.length), colliders_.fast, foresight_); ++i) {
-    const SpeedsComeBack at_the_end{system_, foresight_};
-    swap_speeds(system_.trees, foresight_);
-    if (!colliders_.widen(foresight_.trees, system_, share.length)) break;
+  for (int i = 0; i < most_blows && system_.predict_velocities(limits_, speculative_margin(colliders_, part.time_step), colliders_.fast_entities, prediction_); ++i) {
+    const VelocityGuard at_the_end{system_, prediction_};
+    swap_velocities(system_.trees, prediction_);
+    if (!colliders_.add_predictions(prediction_.trees, system_, part.time_step)) break;
     any = true;
-    contacts = share.chosen ? contacts_.find(share.length, *share.chosen, share.of_impulses) : contacts_.find(share.length);
-    woke = wake_disturbed(share, contacts, woke);
+    contacts = part.active ? contacts_.find_contacts(part.time_step, *part.active, part.force_share) : contacts_.find_contacts(part.time_step);
+    woke = wake_disturbed(part, contacts, woke);
   }
   return any;
 }
 
-/// Moves some trees on by a part of the substep. What they may touch is awake.
-void NewtonCore::take_part(std::span<Body> bodies, const Share& part) {
-  colliders_.follow(system_, part.length, *part.chosen);
+/// Advances some trees by a part of the substep. Trees that they may touch are awake.
+void NewtonCore::step_part(std::span<Body> bodies, const SubstepPart& part) {
+  colliders_.update_poses(system_, part.time_step, *part.active);
   prepare(bodies, part);
-  std::span<dynamics::Contact> contacts = contacts_.find(part.length, *part.chosen, part.of_impulses);
+  std::span<dynamics::ContactPoint> contacts = contacts_.find_contacts(part.time_step, *part.active, part.force_share);
   bool woke = wake_disturbed(part, contacts, false);
-  foresee(part, contacts, woke);
+  predict_contacts(part, contacts, woke);
   step(part);
 }
 
-/// Moves a set of trees on in steps of length / count. Forces act in the middle of each, as
-/// impulses: a step ends half-way between two of them, so that places and velocities belong
-/// together to second order (drift, kick, drift). All that acts does so, gravity and motors too,
-/// because friction that holds against a force must have the same share of what presses.
-void NewtonCore::substep_in_parts(std::span<Body> bodies, double length, int splits, int count,
+/// Moves a set of trees by leapfrog steps of length / count (drift, kick, drift). Forces act as
+/// impulses in the middle of each. A step ends half-way between two of them, so positions and
+/// velocities agree to second order. Gravity and motors act alike, because friction against a force
+/// needs the same share of the normal load.
+void NewtonCore::step_leapfrog(std::span<Body> bodies, double time_step, int splits, int count,
                                   Plugin& stiff) {
-  const TreeSet& chosen = division_.with(count);
-  Share share;
-  share.chosen = &chosen;
-  share.splits = splits;
-  share.allowed_overlap = overlap_of_magnets;
-  share.softness = 0;  // half of the parts have no forces, so nothing that presses
-  contacts_.choose(chosen);
-  stiff.choose_stiff(chosen.holds);
+  const TreeSet& active = partition_.trees_with(count);
+  SubstepPart part;
+  part.active = &active;
+  part.splits = splits;
+  part.allowed_overlap = overlap_of_magnets;
+  part.compliance_factor = 0;  // half of the parts have no forces, so no normal load
+  contacts_.begin_parts(active);
+  stiff.choose_stiff(active.contains);
   stiff.push_stiff(bodies, -1);
-  held_back_.gravity.clear();
-  const GravityComesBack at_the_end{system_, chosen, held_back_.gravity};
-  hold_back(system_, chosen, held_back_);
+  deferred_forces_.gravity.clear();
+  const GravityGuard at_the_end{system_, active, deferred_forces_.gravity};
+  defer_forces(system_, active, deferred_forces_);
   for (int i = 0; i <= count; ++i) {
     const bool half = i == 0 || i == count;
     const double kick = i == 0 ? 0 : half ? 2 : 1;  // of the forces over this length
-    share.length = length / count / (half ? 2 : 1);
-    share.of_impulses = kick * share.length / length;
-    share.more = i < count;
+    part.time_step = time_step / count / (half ? 2 : 1);
+    part.force_share = kick * part.time_step / time_step;
+    part.is_followed = i < count;
     if (i > 0) {
-      push(system_, chosen, held_back_, kick);
+      apply_deferred(system_, active, deferred_forces_, kick);
       stiff.push_stiff(bodies, kick);
     }
-    take_part(bodies, share);
+    step_part(bodies, part);
   }
 }
 
-/// Moves the islands on that the whole substep left as they were.
-void NewtonCore::divide(std::span<Body> bodies, const Share& whole) {
-  std::swap(left_, system_.left);
-  for (const auto& [parts, first, last] : left_.islands) {
-    const std::span<const int> trees = std::span(left_.trees).subspan(first, last - first);
+/// Advances the islands that the whole substep left unchanged.
+void NewtonCore::step_divided_islands(std::span<Body> bodies, const SubstepPart& whole) {
+  std::swap(islands_to_subdivide_, system_.islands_to_subdivide);
+  for (const auto& [parts, first, last] : islands_to_subdivide_.islands) {
+    const std::span<const int> trees = std::span(islands_to_subdivide_.trees).subspan(first, last - first);
     if (parts >= many_parts && convergence_.divided++ == 0) {
       const auto links = [&](int tree) { return system_.trees[tree].links.size(); };
       convergence_.divided_entity = static_cast<std::size_t>(*std::ranges::max_element(trees, {}, links));
     }
-    choose(chosen_, trees, true, system_.trees.size());
-    take_parts(bodies, whole, parts);
+    set_active(active_, trees, true, system_.trees.size());
+    step_in_parts(bodies, whole, parts);
   }
 }
 
-/// Moves chosen_ on in equal parts. What pushes it stays the same.
-void NewtonCore::take_parts(std::span<Body> bodies, const Share& whole, int count) {
-  note_pushes(system_, chosen_, held_back_);
-  Share part = whole;
-  part.chosen = &chosen_;
-  part.length /= count;
-  part.of_impulses /= count;
+/// Advances active_ in equal parts, under constant wrenches.
+void NewtonCore::step_in_parts(std::span<Body> bodies, const SubstepPart& whole, int count) {
+  save_wrenches(system_, active_, deferred_forces_);
+  SubstepPart part = whole;
+  part.active = &active_;
+  part.time_step /= count;
+  part.force_share /= count;
   part.most_parts = 1;
   part.is_part = true;
-  contacts_.choose(chosen_);
+  contacts_.begin_parts(active_);
   for (int i = 0; i < count; ++i) {
     part.parts_left = count - i;
-    part.more = part.parts_left > 1;
-    if (i > 0) push(system_, chosen_, held_back_, 1);
-    take_part(bodies, part);
+    part.is_followed = part.parts_left > 1;
+    if (i > 0) apply_deferred(system_, active_, deferred_forces_, 1);
+    step_part(bodies, part);
   }
 }
 

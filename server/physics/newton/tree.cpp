@@ -27,7 +27,7 @@ void join(dynamics::Link& link, const Body& body, const scene::Joint& joint) {
   link.axis = joint.child_frame.orientation.conjugate() * joint.axis;
 }
 
-/// What holds a body to the ground keeps it upright, and at its height on a plane.
+/// Freedoms of a root: wheels keep a body upright, and a plane at its height.
 unsigned freedoms_of(const Body& body, const scene::Entity& entity, const scene::Physics& physics) {
   if (!body.ground) return dynamics::all_freedoms;
   return plane_of(entity, physics) ? dynamics::planar_freedoms : dynamics::upright_freedoms;
@@ -60,6 +60,6 @@ btTransform transform_of(const dynamics::Tree& tree, std::size_t part) {
 }
 
 int dof_of(const dynamics::Tree& tree, std::size_t part) { return tree.first_dof[part]; }
-int place_of(const dynamics::Tree& tree, std::size_t part) { return tree.first_place[part]; }
+int position_of(const dynamics::Tree& tree, std::size_t part) { return tree.first_position[part]; }
 
 }  // namespace ziggurat::physics

@@ -1,5 +1,5 @@
 #pragma once
-// Trees that take a substep, or a part of one, together.
+// A set of trees that take a substep, or a part of one, together.
 
 #include <algorithm>
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace ziggurat::physics {
 
 struct TreeSet {
   std::vector<int> trees;           ///< ascending
-  std::vector<std::uint8_t> holds;  ///< of each tree of the system whether it is in the set
+  std::vector<std::uint8_t> contains;  ///< of each tree of the system whether it is in the set
 };
 
 /// Calls visit(item) for the items of a set's trees, in ascending order.

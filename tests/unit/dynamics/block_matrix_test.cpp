@@ -25,12 +25,12 @@ TEST(BlockMatrix, SolvesUnsymmetricSystemsWithNegativePivots) {
   const auto draw = [&] { return static_cast<double>(random() % 2001) / 1000 - 1; };
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(24, 24);
   const auto fill = [&](int i, int j) {
-    double* block = matrix.block(i, j);
+    double* constraint = matrix.block(i, j);
     for (int r = 0; r < sizes[i]; ++r) {
       for (int c = 0; c < sizes[j]; ++c) {
         double value = draw();
         if (i == j && r == c) value += r % 2 ? -8 : 8;
-        block[r * sizes[j] + c] = value;
+        constraint[r * sizes[j] + c] = value;
         dense(matrix.offset(i) + r, matrix.offset(j) + c) = value;
       }
     }

@@ -1,7 +1,7 @@
 #pragma once
-// Contact points of two boxes: the axis of least overlap among the 15 that can separate them
-// (S. Gottschalk, M. C. Lin, D. Manocha, SIGGRAPH 1996), then the incident face clipped by the
-// sides of the reference face, or the nearest points of two edges; at most four points.
+// Contact points of two boxes: the axis of least overlap among the 15 that can separate them (S.
+// Gottschalk, M. C. Lin, D. Manocha, SIGGRAPH 1996). Then the incident face is clipped by the sides
+// of the reference face, or two edges have their nearest points; at most four points.
 
 #include <algorithm>
 #include <array>

@@ -20,8 +20,8 @@ constexpr double radius = 0.05, mass = 0.3;  // of the ball [m], [kg]
 /// A ball on a floor that may slope along x.
 struct Ball {
   System system;
-  std::vector<Contact> contacts;
-  Contact law;  // coefficients
+  std::vector<ContactPoint> contacts;
+  ContactPoint law;  // coefficients
   double slope = 0;
 
   explicit Ball(double height) {
@@ -32,9 +32,9 @@ struct Ball {
                               math::Pose{Vector3(0, 0, height), Quaternion::Identity()});
   }
   Tree& tree() { return system.trees[0]; }
-  void step(double length) {
+  void step(double time_step) {
     tree().gravity = g * Vector3(std::sin(slope), 0, -std::cos(slope));
-    Contact contact = law;
+    ContactPoint contact = law;
     contact.a.tree = 0;
     const Vector3& centre = tree().position[0];
     contact.point = Vector3(centre.x(), centre.y(), 0);
@@ -44,19 +44,19 @@ struct Ball {
       contact.angular_impulse = contacts[0].angular_impulse;
     }
     contacts.clear();
-    const double reach = 1e-3 + 2 * length * tree().velocity(0).norm();
+    const double reach = 1e-3 + 2 * time_step * tree().velocity(0).norm();
     if (contact.gap < reach) contacts.push_back(contact);
-    const Report report = system.step(length, contacts);
+    const Report report = system.step(time_step, contacts);
     EXPECT_EQ(report.not_converged, 0);
   }
   void roll(double speed) {
     tree().v[3] = speed, tree().v[1] = speed / radius;
-    move(tree());
+    velocity_kinematics(tree());
   }
 };
 
-// The height of a rebound is the square of the restitution times the height of the fall, whenever in a substep the
-// ball strikes: both falls are exact.
+// A rebound rises to the square of the restitution times the height of the fall, at any time of the
+// impact in a substep: both falls are exact.
 TEST(Friction, ABallBouncesAsHighAsItsRestitutionSays) {
   for (const double restitution : {0.5, 1.}) {
     for (const double hz : long_runs::some_of({50., 100., 1000.})) {
@@ -99,7 +99,7 @@ TEST(Friction, RollingFrictionStopsABall) {
   for (const double hz : long_runs::some_of({100., 1000.})) {
     Ball ball(radius);
     ball.law.friction = 0.5;
-    ball.law.rolling = lever;
+    ball.law.rolling_friction = lever;
     ball.roll(speed);
     for (int i = 0; i < hz; ++i) ball.step(1 / hz);
     EXPECT_NEAR(ball.tree().v[3], speed - deceleration, 1e-5 * speed) << hz;
@@ -118,15 +118,15 @@ TEST(Friction, RollingFrictionHoldsABallOnASlope) {
   for (const double share : {0.95, 1.05}) {
     Ball ball(radius);
     ball.law.friction = 0.5;
-    ball.law.rolling = 1e-3;
-    ball.slope = std::atan(share * ball.law.rolling / radius);
+    ball.law.rolling_friction = 1e-3;
+    ball.slope = std::atan(share * ball.law.rolling_friction / radius);
     for (int i = 0; i < 1000; ++i) ball.step(0.01);
     const double x = ball.tree().position[0].x();
     if (share < 1) {
       EXPECT_LT(std::abs(x), 1e-6);
     } else {
       const double a = 5. / 7 * g * std::cos(ball.slope) *
-                       (std::tan(ball.slope) - ball.law.rolling / radius);
+                       (std::tan(ball.slope) - ball.law.rolling_friction / radius);
       EXPECT_NEAR(x / (a * 100 / 2), 1, 2e-3);
     }
   }
@@ -137,9 +137,9 @@ TEST(Friction, SpinningFrictionStopsATurningBall) {
   const double lever = 1e-4, spin = 3;
   Ball ball(radius);
   ball.law.friction = 0.5;
-  ball.law.spinning = lever;
+  ball.law.spinning_friction = lever;
   ball.tree().v[2] = spin;
-  move(ball.tree());
+  velocity_kinematics(ball.tree());
   const double deceleration = lever * mass * g / (0.4 * mass * radius * radius);
   for (int i = 0; i < 100; ++i) ball.step(0.01);
   EXPECT_NEAR(ball.tree().v[2], spin - deceleration, 1e-6);
@@ -183,9 +183,9 @@ TEST(Servo, PushesALinkAlongADirectionUpToItsImpulse) {
   std::vector<Servo> servos(2);
   for (Servo& servo : servos) servo.tree = 0, servo.lower = -0.01, servo.upper = 0.01;
   servos[0].direction.linear = Vector3(0.6, 0.8, 0);
-  servos[0].speed = 0.2;
+  servos[0].target_velocity = 0.2;
   servos[1].direction.angular = Vector3::UnitZ();
-  servos[1].speed = 0.1;
+  servos[1].target_velocity = 0.1;
   servos[1].lower = -1, servos[1].upper = 1;
   for (int i = 0; i < 20; ++i) system.step(0.01, {}, servos);
   EXPECT_NEAR(system.trees[0].velocity(0).norm(), 20 * 0.01 / 2, 1e-9);
@@ -205,14 +205,14 @@ TEST(Servo, HoldsAPositionUnderLoad) {
   std::vector<Servo> servos(1);
   servos[0].tree = 0, servos[0].dof = 0, servos[0].lower = -10, servos[0].upper = 10;
   for (int i = 0; i < 200; ++i) {
-    servos[0].speed = std::clamp((0.3 - system.trees[0].q[0]) / 0.01, -0.5, 0.5);
+    servos[0].target_velocity = std::clamp((0.3 - system.trees[0].q[0]) / 0.01, -0.5, 0.5);
     system.step(0.01, {}, servos);
   }
   EXPECT_NEAR(system.trees[0].q[0], 0.3, 1e-9);
   EXPECT_NEAR(servos[0].impulse, 2 * g * 0.01, 1e-7);
 }
 
-// What an island gives does not depend on the order in which its contacts are listed.
+// Impulses of an island do not depend on the order of its contacts.
 TEST(Island, TheOrderOfContactsChangesNoBit) {
   const auto run = [](bool reversed) {
     System system;
@@ -221,13 +221,13 @@ TEST(Island, TheOrderOfContactsChangesNoBit) {
                                           {Vector3(0, 0, 0.05 + 0.1 * i), Quaternion::Identity()}));
       testing::weigh(system.trees[i]);
       system.trees[i].v = {0, 0.3, 0.2, 0.4 + i, 0.1, 0};
-      move(system.trees[i]);
+      velocity_kinematics(system.trees[i]);
     }
-    std::vector<Contact> contacts;
+    std::vector<ContactPoint> contacts;
     for (int i = 0; i < 2; ++i) {
       for (const double x : {-0.05, 0.05}) {
         for (const double y : {-0.05, 0.05}) {
-          Contact contact;
+          ContactPoint contact;
           contact.a.tree = i, contact.b.tree = i - 1;
           contact.point = Vector3(x, y, 0.1 * i);
           contact.friction = 0.4;

@@ -71,7 +71,7 @@ TEST(Joint, WhatCrossesMostOfItsRangeInASubstepStopsAtItsLimit) {
     limit.tree = 0, limit.link = 1, limit.lower = -1, limit.upper = 1;
     world.limits = {limit};
     world.tree(0).q[0] = speed < 0 ? 0.2 : -0.2;
-    place(world.tree(0));
+    forward_kinematics(world.tree(0));
     world.tree(0).v[0] = 1.4 * speed;
     world.step(0.01);
     EXPECT_NEAR(world.tree(0).q[0], speed < 0 ? -1 : 1, 1e-6);
@@ -83,7 +83,7 @@ TEST(Joint, AVelocityServoHoldsItsSpeedUnderLoadUpToItsImpulse) {
   Touching world;
   world.add(slide(2), Vector3::Zero(), 0);
   Servo servo;
-  servo.tree = 0, servo.dof = 0, servo.speed = 0.3;
+  servo.tree = 0, servo.dof = 0, servo.target_velocity = 0.3;
   servo.lower = -0.5, servo.upper = 0.5;
   world.servos = {servo};
   for (int i = 0; i < 100; ++i) world.step(0.01);
@@ -101,10 +101,10 @@ TEST(Joint, TheImpulseOfAServoDoesNotDisplaceWhatOverlaps) {
   system.solver().options.newton_work = 0;  // displacements by sweeps
   system.trees.push_back(slide(2));
   system.trees.push_back(testing::box({0.1, 0.1, 0.1}, 1, {{0, 0, 0.1}, {1, 0, 0, 0}}));
-  std::vector<Contact> contacts;
+  std::vector<ContactPoint> contacts;
   for (const double x : {-0.05, 0.05}) {
     for (const double y : {-0.05, 0.05}) {
-      Contact& contact = contacts.emplace_back();
+      ContactPoint& contact = contacts.emplace_back();
       contact.a = {1, 0}, contact.b = {0, 1};
       contact.point = {x, y, 0.05}, contact.gap = -1e-3, contact.friction = 0.5;
     }
@@ -139,16 +139,16 @@ TEST(Joint, DampingBalancesAForce) {
   Link load = testing::hung(testing::box_link({0.2, 0.2, 0.2}, 1), 0, JointType::prismatic,
                             Vector3::UnitX(), Vector3::Zero(), Vector3::Zero());
   load.damping = 20;
-  for (const double length : {0.01, 0.1}) {
+  for (const double time_step : {0.01, 0.1}) {
     System system;
     system.trees.emplace_back(std::vector<Link>{testing::ground(), load}, math::Pose());
     double before = 0;
     for (int i = 0; i < 200; ++i) {
       before = system.trees[0].q[0];
-      system.push(0, 1, {Vector3::Zero(), Vector3(3, 0, 0)});
-      system.step(length, {});
+      system.apply_wrench(0, 1, {Vector3::Zero(), Vector3(3, 0, 0)});
+      system.step(time_step, {});
     }
-    EXPECT_NEAR((system.trees[0].q[0] - before) / length, 3.0 / 20, 1e-6) << length;
+    EXPECT_NEAR((system.trees[0].q[0] - before) / time_step, 3.0 / 20, 1e-6) << time_step;
   }
 }
 
@@ -164,7 +164,7 @@ TEST(Joint, ServosKeepTheMomentum) {
   world.add(Tree(links, {}), Vector3::Zero(), 0);
   for (int dof : {6, 7}) {
     Servo servo;
-    servo.tree = 0, servo.dof = dof, servo.speed = dof - 5, servo.lower = -1, servo.upper = 1;
+    servo.tree = 0, servo.dof = dof, servo.target_velocity = dof - 5, servo.lower = -1, servo.upper = 1;
     world.servos.push_back(servo);
   }
   const auto momentum = [&] {

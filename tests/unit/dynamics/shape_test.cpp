@@ -15,9 +15,9 @@ using testing::g;
 using testing::Touching;
 
 /// Points on the rim of each cylinder's lower face, against the upper face of the one below.
-std::vector<Contact> rims(const System& system, double radius, double height,
-                          const std::vector<Contact>& before) {
-  std::vector<Contact> out;
+std::vector<ContactPoint> rims(const System& system, double radius, double height,
+                          const std::vector<ContactPoint>& before) {
+  std::vector<ContactPoint> out;
   for (int i = 0; i < static_cast<int>(system.trees.size()); ++i) {
     const Tree& tree = system.trees[i];
     Vector3 top = Vector3::Zero(), normal = Vector3::UnitZ();
@@ -30,7 +30,7 @@ std::vector<Contact> rims(const System& system, double radius, double height,
       const double angle = k * M_PI / 4;
       const Vector3 local(radius * std::cos(angle), radius * std::sin(angle), -height / 2);
       const Vector3 point = tree.position[0] + tree.rotation[0] * local;
-      Contact contact;
+      ContactPoint contact;
       contact.a.tree = i, contact.b.tree = i - 1;
       contact.normal = normal;
       contact.gap = normal.dot(point - top);
@@ -46,7 +46,7 @@ std::vector<Contact> rims(const System& system, double radius, double height,
 TEST(Shape, ATowerOfCylindersStands) {
   const double radius = 0.005, height = 0.01, mass = 1e-3;
   System system;
-  system.rest.sleeps = false;
+  system.sleeping.enabled = false;
   for (int i = 0; i < 20; ++i) {
     Link link;
     link.mass = mass;
@@ -55,7 +55,7 @@ TEST(Shape, ATowerOfCylindersStands) {
     system.trees.emplace_back(std::vector<Link>{link}, at(0, 0, height * (i + 0.5)));
     testing::weigh(system.trees.back());
   }
-  std::vector<Contact> contacts;
+  std::vector<ContactPoint> contacts;
   for (int i = 0; i < 1000; ++i) {
     contacts = rims(system, radius, height, contacts);
     ASSERT_EQ(system.step(0.01, contacts).not_converged, 0) << i;

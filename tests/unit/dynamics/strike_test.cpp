@@ -1,6 +1,5 @@
-// Small islands that strike with rolling friction: the two ends of a cylinder's line resist turning
-// by their normal impulses and by rolling friction, so that contacts contradict each other a
-// little.
+// Impacts of small islands with rolling friction. Normal impulses and rolling friction both resist
+// the rotation of a cylinder's line, so its contacts conflict a little.
 
 #include <gtest/gtest.h>
 
@@ -31,20 +30,20 @@ Tree striking_cube(double x, Draw& draw) {
   const Vector3 turning = 60 * draw.vector(), velocity = draw.vector();
   for (int k = 0; k < 3; ++k) tree.v[k] = turning[k], tree.v[3 + k] = velocity[k];
   tree.v[5] -= 1;  // falls
-  move(tree);
+  velocity_kinematics(tree);
   return tree;
 }
 
-Contact rolling_contact(int a, int b, const Vector3& point, const Vector3& normal, double rolling,
+ContactPoint rolling_contact(int a, int b, const Vector3& point, const Vector3& normal, double rolling,
                         Draw& draw) {
-  Contact out;
+  ContactPoint out;
   out.a.tree = a;
   out.b.tree = b;
   out.point = point;
   out.normal = normal;
   out.gap = 1e-6 * draw();
   out.friction = 0.25;
-  out.rolling = rolling;
+  out.rolling_friction = rolling;
   return out;
 }
 
@@ -53,7 +52,7 @@ TEST(Strike, OfALineConverges) {
   for (int i = 0; i < 1000; ++i) {
     System system;
     system.trees.push_back(striking_cube(0, draw));
-    std::vector<Contact> contacts;
+    std::vector<ContactPoint> contacts;
     for (const double side : {-half, half}) {
       contacts.push_back(rolling_contact(0, -1, {0, side, 0}, Vector3::UnitZ(), 2e-4, draw));
     }
@@ -66,7 +65,7 @@ TEST(Strike, OfTwoOnTheFloorConverges) {
   Draw draw;
   for (int i = 0; i < 300; ++i) {
     System system;
-    std::vector<Contact> contacts;
+    std::vector<ContactPoint> contacts;
     for (int body = 0; body < 2; ++body) {
       const double x = body == 0 ? -half : half;
       system.trees.push_back(striking_cube(x, draw));

@@ -22,7 +22,7 @@ struct Touching {
   std::vector<Vector3> half;      // of the box about each tree's last link [m]; 0: a point mass
   std::vector<double> friction;   // of each box; a contact has the product
   std::vector<Plane> planes;
-  std::vector<Contact> contacts;
+  std::vector<ContactPoint> contacts;
   std::vector<Servo> servos;
   std::vector<Limit> limits;
   double restitution = 0;
@@ -47,12 +47,12 @@ struct Touching {
     const Report report = system.step(length, contacts, servos, limits);
     worst.not_converged += report.not_converged;
     worst.most_iterations = std::max(worst.most_iterations, report.most_iterations);
-    worst.miss = std::max(worst.miss, report.miss);
+    worst.residual = std::max(worst.residual, report.residual);
     return report;
   }
 
   void find(double length) {
-    std::vector<Contact> old;
+    std::vector<ContactPoint> old;
     old.swap(contacts);
     for (int i = 0; i < static_cast<int>(half.size()); ++i) {
       for (const Plane& plane : planes) touch_plane(i, plane, length);
@@ -64,15 +64,15 @@ struct Touching {
   }
 
   /// Impulses of the last substep for points of the same pair nearby.
-  void remember(const std::vector<Contact>& old) {
+  void remember(const std::vector<ContactPoint>& old) {
     std::map<std::pair<int, int>, std::size_t> first;
     for (std::size_t k = old.size(); k-- > 0;) first[{old[k].a.tree, old[k].b.tree}] = k;
-    for (Contact& contact : contacts) {
+    for (ContactPoint& contact : contacts) {
       const auto found = first.find({contact.a.tree, contact.b.tree});
       if (found == first.end()) continue;
       double least = 25e-6;
       for (std::size_t k = found->second; k < old.size(); ++k) {
-        const Contact& other = old[k];
+        const ContactPoint& other = old[k];
         if (other.a.tree != contact.a.tree || other.b.tree != contact.b.tree) break;
         const double away = (other.point - contact.point).squaredNorm();
         if (other.normal.dot(contact.normal) > 0.9 && away < least) {
@@ -83,7 +83,7 @@ struct Touching {
     }
   }
 
-  /// How far tree i may come towards j (-1: the world) within a substep.
+  /// Largest approach of tree i to tree j (-1: the world) within a substep.
   double reach(int i, int j, double length) const {
     const auto linear = [&](int k) -> Vector3 {
       return k < 0 ? Vector3::Zero() : system.trees[k].velocity(last_link(k));
@@ -95,8 +95,8 @@ struct Touching {
            1.3 * length * ((linear(i) - linear(j)).norm() + turning(i) + turning(j));
   }
 
-  Contact contact(int a, int b, const Vector3& point, const Vector3& normal, double gap, double mu) {
-    Contact out;
+  ContactPoint contact(int a, int b, const Vector3& point, const Vector3& normal, double gap, double mu) {
+    ContactPoint out;
     out.a = {a, a < 0 ? 0 : last_link(a)};
     out.b = {b, b < 0 ? 0 : last_link(b)};
     out.point = point;

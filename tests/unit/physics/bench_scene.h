@@ -1,11 +1,11 @@
 #pragma once
-// Small worlds for physics tests, built without a scene file, moved by the solver that the tests
-// are compiled for: CMakeLists.txt makes a program for each.
+// Small worlds for physics tests, built without a scene file. CMakeLists.txt makes a program for
+// each solver.
 
 #include <string>
 #include <vector>
 
-#include "physics/most_contacts.h"
+#include "physics/contact_limits.h"
 #include "physics/world.h"
 #include "scene/scene.h"
 
@@ -39,7 +39,7 @@ inline scene::Physics with_gravity(double g) {
   return physics;
 }
 
-/// How far a body falls from rest [m]: exactly, or by semi-implicit Euler.
+/// Distance of a fall from rest [m]: exactly, or by semi-implicit Euler.
 /// @param g  [m/s^2]  @param h  length of a substep [s]
 inline double fall(double g, double h, int substeps) {
   const int twice = tested_solver == scene::Solver::newton ? substeps : substeps + 1;
@@ -104,7 +104,7 @@ inline scene::Magnet magnet(int link, const math::Vector3& offset, const math::V
   return magnet;
 }
 
-/// What is wrong with so many boxes in one place; empty: nothing.
+/// Error of a world with so many boxes in one place; empty: none.
 inline std::string fault_of_crowd(const scene::Physics& physics, int count) {
   World world(physics, 0.01);
   try {

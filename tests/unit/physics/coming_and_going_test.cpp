@@ -69,7 +69,7 @@ TEST(AddEntity, FallsWithoutAffectingDistantEntities) {
 }
 
 TEST(AddEntity, HardlyAffectsDistantContacts) {
-  // With sweeps the results are not bit-identical: Bullet solves small islands in batches that end
+  // With sweeps results are not bit-identical. Bullet solves small islands in batches that end
   // their sweeps together, and finds pairs in the order of a tree that all bodies share.
   const double bound = tested_solver == scene::Solver::sweeps ? 1e-5 : 0;
   World world(with_floor(9.8), 0.01), alone(with_floor(9.8), 0.01);

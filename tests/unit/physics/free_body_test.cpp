@@ -29,8 +29,8 @@ TEST(FreeFall, IsExactOrSemiImplicitEuler) {
 
 TEST(FreeFall, OfAPrototypeIsDampedByTheDialectsLaw) {
   // z after ticks 1, 2 and 3 of 0.1 s in ten substeps. Sweeps: dialect A.1, corrected clock.
-  // Newton: to the order of the step the solution of dv/dt = g - k v (1 + v), by the midpoint rule
-  // in fine steps.
+  // Newton: the solution of dv/dt = g - k v (1 + v), by the midpoint rule in fine steps, to the
+  // order of the step.
   const bool swept = tested_solver == scene::Solver::sweeps;
   const double dialect[] = {0.946196, 0.795227, 0.548602};
   double v = 0, fallen = 0;

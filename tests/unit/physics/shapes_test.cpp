@@ -1,4 +1,4 @@
-// How bodies of each shape rest, roll and turn.
+// Bodies of each shape at rest, rolling and turning.
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ TEST(Shape, AHullOfABoxFallsAndRestsAsTheBox) {
   EXPECT_LT(state.links[0].velocity.norm(), 1e-4);
 }
 
-/// Of a hull whose axes are turned against its link's.
+/// Tests of a hull whose axes are turned against its link's.
 TEST(Shape, ARampSlidesOnAFaceAndKeepsItsFrame) {
   World world(with_floor(9.8), 0.01);
   scene::Entity entity =

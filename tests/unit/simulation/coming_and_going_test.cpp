@@ -102,7 +102,7 @@ TEST(Move, APlaceIsFreeWhereNothingIsOverlapped) {
   }
 }
 
-/// What lies on another one overlaps it a little.
+/// A body that lies on another one overlaps it a little.
 TEST(Move, WhatRestsOnOthersMayStayAndComeBack) {
   World world({"", "", box("a", "0,0,0") + box("b", "0,0,0.1"), gravity + "<floor/>"});
   world.step(20);

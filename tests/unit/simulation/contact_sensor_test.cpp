@@ -1,4 +1,4 @@
-// What a contact sensor reads, against closed forms.
+// Readings of a contact sensor, against closed forms.
 
 #include <gtest/gtest.h>
 

@@ -77,7 +77,7 @@ std::vector<std::filesystem::path> scenes() {
 
 class Futures : public ::testing::TestWithParam<std::filesystem::path> {
  protected:
-  /// What there is to compare.
+  /// Values that are compared.
   struct Extent {
     std::uint64_t moments, after;  // [ticks]
     double latest;                 // moment [ticks]

@@ -1,4 +1,4 @@
-// What an inertial measurement unit reads, against closed forms.
+// Readings of an inertial measurement unit, against closed forms.
 
 #include <gtest/gtest.h>
 
@@ -29,8 +29,8 @@ const world::ImuReading& imu_reading(const Simulation& simulation) {
   return simulation.observations().imus.at(0);
 }
 
-/// The push of the ground on a robot at rest, in the frame of its first link [m/s^2]: contacts
-/// leave it tilted by some 1e-4 rad.
+/// Push of the ground on a robot at rest, in the frame of its first link [m/s^2]: contacts leave it
+/// tilted by some 1e-4 rad.
 math::Vector3 push_of_ground(const Simulation& simulation) {
   return simulation.state().links[0].pose.orientation.conjugate() * math::Vector3(0, 0, g);
 }

@@ -19,7 +19,7 @@ namespace {
 using math::Vector3;
 
 constexpr double length = 0.5, width = 0.1, mass = 0.3;  // of a rod [m], [kg]
-/// Of a rod about its upper end [kg m^2].
+/// Moment of inertia of a rod about its upper end [kg m^2].
 constexpr double inertia = mass * (length * length + width * width) / 12 + mass * length * length / 4;
 
 std::string rod_link(const std::string& id) {

@@ -1,4 +1,4 @@
-// What a snapshot must carry beyond a scene's own entities, snapshots as files, and bytes of others.
+// Snapshots: state beyond a scene's own entities, files, and bytes of others.
 
 #include <gtest/gtest.h>
 
@@ -187,8 +187,8 @@ TEST_P(Snapshots, CarryPushesThatAreTheSameAtEachTick) {
 INSTANTIATE_TEST_SUITE_P(Solvers, Snapshots, ::testing::Values("newton", "sweeps"),
                          [](const auto& solver) { return std::string(solver.param); });
 
-/// Past the checksum there are still the state's own checks: whatever the bytes are, the world is
-/// restored to some state or stays as it is, and goes on.
+/// The state's own checks hold past the checksum: with any bytes the world is restored to some
+/// state or stays as it is, and goes on.
 TEST(Snapshot, OfWrongStateLeavesTheWorldAsItIs) {
   Case world;
   world.live();
@@ -222,7 +222,7 @@ TEST(Snapshot, OfWrongStateLeavesTheWorldAsItIs) {
   EXPECT_GT(refused, 100);
 }
 
-/// Where a field begins in the state of a world that is as in the snapshot.
+/// Position of a field in the state of a world that is as in the snapshot.
 std::size_t place_of(const Simulation& world, const Snapshot& snapshot, const std::string& field) {
   Snapshot other = snapshot;
   for (std::size_t i = 0; i < other.state.size(); ++i) {
@@ -260,9 +260,9 @@ TEST(Snapshot, TakesNoMemoryForElementsThatAreNotThere) {
   const auto memory_for = [](std::uint64_t count) {
     std::vector<std::byte> bytes(sizeof count + 1000);
     std::memcpy(bytes.data(), &count, sizeof count);
-    std::vector<Act> read;
+    std::vector<WorldEdit> read;
     auto archive = math::Archive::reader(bytes);
-    EXPECT_THROW(archive.list("acts", read, [&](Act& each) { archive("xml", each.xml); }), math::ArchiveError);
+    EXPECT_THROW(archive.list("acts", read, [&](WorldEdit& each) { archive("xml", each.xml); }), math::ArchiveError);
     return read.capacity();
   };
   EXPECT_LE(memory_for(1000), 256u) << "each has eight bytes";

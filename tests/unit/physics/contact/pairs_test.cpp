@@ -118,20 +118,20 @@ void place(math::RandomStream& random, int i, Solid& a, Solid& b) {
   a.pose.setOrigin(origin + direction * (touching + share * std::min(a.smallest(), b.smallest())));
 }
 
-btScalar least(const Contacts& contacts) {
+btScalar least(const Manifold& contacts) {
   btScalar distance = BT_LARGE_FLOAT;
   for (int i = 0; i < contacts.count; ++i)
     distance = std::min(distance, contacts.points[i].distance);
   return distance;
 }
 
-// Those of the planes that clip stand beyond it by up to 2 % of the radius.
+// Corners of the clipping planes stand beyond the rim by up to 2 % of the radius.
 TEST(CylinderOn, TouchesNowhereBeyondTheSmallerRim) {
   const btTransform below = btTransform::getIdentity(), above(btQuaternion::getIdentity(), btVector3(0, 0, 0.1));
   const Cylinder large{0.15, 0.05}, small{0.1, 0.05};
   const Box slab{{0.3, 0.3, 0.05}};
   for (const auto& [lower, upper] : {std::pair<Shape, Shape>{large, small}, {small, large}, {slab, small}, {small, slab}}) {
-    const Contacts contacts = find(upper, above, lower, below, 1e-3, Support::face);
+    const Manifold contacts = find(upper, above, lower, below, 1e-3, Support::face);
     btScalar farthest = 0;
     for (int i = 0; i < contacts.count; ++i) farthest = std::max(farthest, std::hypot(contacts.points[i].on_b.x(), contacts.points[i].on_b.y()));
     EXPECT_GE(contacts.count, 4);
@@ -155,8 +155,8 @@ TEST_P(AllPairs, AgreeWithBruteForce) {
     SCOPED_TRACE("pose " + std::to_string(i));
     place(random, i, a, b);
     const Gap gap = true_gap(a, b);
-    const Contacts contacts = find(a.shape, a.pose, b.shape, b.pose, reach);
-    const Contacts swapped = find(b.shape, b.pose, a.shape, a.pose, reach);
+    const Manifold contacts = find(a.shape, a.pose, b.shape, b.pose, reach);
+    const Manifold swapped = find(b.shape, b.pose, a.shape, a.pose, reach);
     if (gap.distance > reach + tolerance) {
       EXPECT_EQ(contacts.count, 0);
       EXPECT_EQ(swapped.count, 0);
@@ -166,18 +166,18 @@ TEST_P(AllPairs, AgreeWithBruteForce) {
     ASSERT_GT(contacts.count, 0);
     ASSERT_GT(swapped.count, 0);
     EXPECT_NEAR(contacts.normal.length(), 1, 1e-9);
-    // Boxes separated corner to corner or corner to edge are compared along the best axis only: the
-    // distance is too small, which is safe, and one of its ends is not on a surface.
+    // Boxes that are separate corner to corner or corner to edge are compared along the best axis
+    // only. The distance is too small, which is safe, and one of its ends is not on a surface.
     const btScalar between = slab_gap(a, b, contacts.normal);
     const bool corners = pair.boxes && gap.distance > 0 && between < gap.distance - tolerance;
     const btScalar below = corners ? gap.distance / 2 : tolerance;
     EXPECT_GT(between, gap.distance - below - 1e-12) << "from B to A";
-    for (const Contacts* found : {&contacts, &swapped}) {
+    for (const Manifold* found : {&contacts, &swapped}) {
       EXPECT_LT(least(*found), gap.distance + tolerance + 1e-12);
       EXPECT_GT(least(*found), gap.distance - below - 1e-12);
     }
     for (int k = 0; k < contacts.count; ++k) {
-      const Point& point = contacts.points[k];
+      const ManifoldPoint& point = contacts.points[k];
       EXPECT_LE(point.distance, reach + 1e-12);
       if (corners) continue;
       EXPECT_NEAR(b.distance(point.on_b), 0, pair.surface * size);
@@ -192,7 +192,7 @@ TEST_P(AllPairs, AgreeWithBruteForce) {
 TEST(SphereCylinder, HasANormalWhereTheCentreIsOnTheSide) {
   for (int i = 0; i < 20000; ++i) {
     const btVector3 out(std::cos(i * 3e-4), std::sin(i * 3e-4), 0);
-    const Contacts found = find(ball, btTransform(btMatrix3x3::getIdentity(), 0.05 * out), Cylinder{0.05, 0.1},
+    const Manifold found = find(ball, btTransform(btMatrix3x3::getIdentity(), 0.05 * out), Cylinder{0.05, 0.1},
                                 btTransform::getIdentity(), 0.01);
     ASSERT_EQ(found.count, 1);
     ASSERT_NEAR(found.normal.dot(out), 1, 1e-12) << i;
@@ -210,8 +210,8 @@ TEST_P(AllPairs, FindTheSamePointsWhereOneIsUseful) {
   for (int i = 0; i < poses; ++i) {
     SCOPED_TRACE("pose " + std::to_string(i));
     place(random, i, a, b);
-    const Contacts all = find(a.shape, a.pose, b.shape, b.pose, reach, Support::face);
-    const Contacts near = find(a.shape, a.pose, b.shape, b.pose, reach, Support::face, useful);
+    const Manifold all = find(a.shape, a.pose, b.shape, b.pose, reach, Support::face);
+    const Manifold near = find(a.shape, a.pose, b.shape, b.pose, reach, Support::face, useful);
     if (all.count > 0 && near.count == 0) ++left_out;
     if (least(all) > useful) continue;
     ++compared;
@@ -231,8 +231,8 @@ TEST_P(AllPairs, FindTheSamePointsWhereOneIsUseful) {
 INSTANTIATE_TEST_SUITE_P(Contact, AllPairs, ::testing::ValuesIn(pairs),
                          [](const auto& pair) { return pair.param.name; });
 
-// Where its face is not parallel to the edge that carries it, its own edges cross that, one lower than the other: with the point of
-// the lower one alone it went deeper on both sides in turns.
+// Edges of a face that is not parallel to the supporting edge cross that edge at different heights.
+// With the point of the lower one alone it went deeper on both sides in turns.
 TEST(BoxBox, APlankOnAnEdgeTouchesItWithBothOfItsOwn) {
   const Box plank{{0.15, 0.04, 0.01}};
   const btVector3 edge(0, 0.04, 0.01);  // its middle, on the lower plank
@@ -241,7 +241,7 @@ TEST(BoxBox, APlankOnAnEdgeTouchesItWithBothOfItsOwn) {
       const btMatrix3x3 turned = btMatrix3x3(btQuaternion({1, 0, 0}, -lean)) * btMatrix3x3(btQuaternion({0, 1, 0}, roll)) *
                                  btMatrix3x3(btQuaternion({0, 0, 1}, std::numbers::pi / 2));
       const btTransform upper(turned, edge + turned.getColumn(2) * plank.half.z());
-      const Contacts found = find(plank, upper, plank, btTransform::getIdentity(), 0.005, Support::face, 0.005);
+      const Manifold found = find(plank, upper, plank, btTransform::getIdentity(), 0.005, Support::face, 0.005);
       btScalar left = 1, right = 1;
       for (int i = 0; i < found.count; ++i) {
         btScalar& side = found.points[i].on_b.x() < 0 ? left : right;

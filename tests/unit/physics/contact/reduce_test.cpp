@@ -19,7 +19,7 @@ btTransform at(btScalar x, btScalar y, btScalar z, const btVector3& axis = {0, 0
 }
 
 /// Twice the area that points of a contact span, as seen along z [m^2].
-btScalar area(const Contacts& contacts) {
+btScalar area(const Manifold& contacts) {
   btScalar twice = 0;
   for (int i = 0; i < contacts.count; ++i) {
     const btVector3& p = contacts.points[i].on_b;
@@ -32,9 +32,9 @@ btScalar area(const Contacts& contacts) {
 TEST(Reduce, KeepsTheDeepestAndAtMostFour) {
   math::RandomStream random(1, "reduce");
   for (int round = 0; round < 300; ++round) {
-    Contacts contacts;
+    Manifold contacts;
     contacts.normal = {0, 0, 1};
-    const int count = static_cast<int>(random.uniform(1, Contacts::capacity + 0.99));
+    const int count = static_cast<int>(random.uniform(1, Manifold::capacity + 0.99));
     btScalar deepest = 1;
     for (int i = 0; i < count; ++i) {
       const btScalar distance = random.uniform(-1e-3, 1e-3);
@@ -54,7 +54,7 @@ TEST(Reduce, IsStableUnderRounding) {
   // Twelve points on a regular outline at the same depth, from any of them on: every choice is a tie.
   const auto ring = [&](btScalar noise, int first = 0) {
     constexpr btScalar pressed_in = 1e-7;  // as far as loads press bodies in [m]
-    Contacts contacts;
+    Manifold contacts;
     contacts.normal = {0, 0, 1};
     for (int i = first; i < first + 12; ++i) {
       const double angle = i * std::numbers::pi / 6 + 0.05;
@@ -65,9 +65,9 @@ TEST(Reduce, IsStableUnderRounding) {
     reduce(contacts, at(0, 0, 0));
     return contacts;
   };
-  const Contacts exact = ring(0);
+  const Manifold exact = ring(0);
   for (int round = 0; round < 100; ++round) {
-    const Contacts noisy = ring(1e-13, round % 12);
+    const Manifold noisy = ring(1e-13, round % 12);
     ASSERT_EQ(noisy.count, exact.count);
     for (int i = 0; i < exact.count; ++i) {
       EXPECT_LT((noisy.points[i].on_b - exact.points[i].on_b).length(), 1e-9);
@@ -89,7 +89,7 @@ TEST(Faces, ShareAtLeastThreePointsThatSpanTheOverlap) {
   for (const Face& face : faces) {
     for (const btScalar gap : {-5e-4, -1e-9, 0.0, 1e-9, 5e-4}) {
       for (const btScalar turn : {0.0, 1e-9, 0.1, 0.7853981633974483}) {
-        Contacts contacts =
+        Manifold contacts =
             find(face.a, at(0, 0, 0.01 + gap, {0, 0, 1}, turn), face.b, at(0, 0, 0), 1e-3);
         reduce(contacts, at(0, 0, 0));
         SCOPED_TRACE(::testing::Message() << face.name << ", gap " << gap << ", turn " << turn);
@@ -108,11 +108,11 @@ TEST(Lines, ALyingCylinderTouchesAlongItsSide) {
   const btTransform lying = at(0, 0, 0.01, {1, 0, 0}, quarter);
   for (const Shape& below : {Shape(HalfSpace{}), Shape(cube), Shape(can)}) {
     const bool plane = std::holds_alternative<HalfSpace>(below);
-    const Contacts contacts = find(can, lying, below, at(0, 0, plane ? 0.005 : 0), 1e-3);
+    const Manifold contacts = find(can, lying, below, at(0, 0, plane ? 0.005 : 0), 1e-3);
     EXPECT_GE(contacts.count, 2);
     for (int i = 0; i < contacts.count; ++i) EXPECT_NEAR(contacts.points[i].distance, 0, 1e-9);
   }
-  const Contacts parallel = find(can, lying, can, at(0, 0, 0, {1, 0, 0}, quarter), 1e-3);
+  const Manifold parallel = find(can, lying, can, at(0, 0, 0, {1, 0, 0}, quarter), 1e-3);
   EXPECT_EQ(parallel.count, 2);
 }
 
@@ -127,7 +127,7 @@ TEST(Lines, ALyingCylinderTouchesAnEdgeThatIsJustBesideItsLine) {
         SCOPED_TRACE(::testing::Message() << "above " << above << ", beyond " << beyond << ", turn " << turn);
         btTransform pose = at(0.15 + beyond, 0.03, 0.05 + radius + above, {0, 0, 1}, turn);
         pose.setRotation(pose.getRotation() * btQuaternion(btVector3(1, 0, 0), quarter));
-        const Contacts contacts = find(log, pose, table, at(0, 0, 0), 1e-3, Support::face);
+        const Manifold contacts = find(log, pose, table, at(0, 0, 0), 1e-3, Support::face);
         EXPECT_EQ(contacts.count, 2);
         EXPECT_NEAR(contacts.normal.z(), 1, 1e-4);
         const btScalar off = std::abs(beyond) + 0.05 * turn;  // of one end
@@ -143,7 +143,7 @@ TEST(Lines, ALyingCylinderTouchesAnEdgeThatIsJustBesideItsLine) {
 TEST(Edges, OfCrossedBoxesTouchAtOnePoint) {
   const btScalar eighth = std::numbers::pi / 4;
   const btScalar edge = 0.005 * std::numbers::sqrt2;
-  const Contacts contacts = find(cube, at(0, 0, 2 * edge + 1e-4, {1, 0, 0}, eighth), cube,
+  const Manifold contacts = find(cube, at(0, 0, 2 * edge + 1e-4, {1, 0, 0}, eighth), cube,
                                  at(0, 0, 0, {0, 1, 0}, eighth), 1e-3);
   ASSERT_EQ(contacts.count, 1);
   EXPECT_NEAR(contacts.points[0].distance, 1e-4, 1e-9);
@@ -152,7 +152,7 @@ TEST(Edges, OfCrossedBoxesTouchAtOnePoint) {
 
 /// Two cards that lean on each other by 0.3 rad; their upper edges meet in the origin.
 /// @param up  how much higher the edge of A is [m]
-Contacts of_leaning_cards(btScalar up) {
+Manifold of_leaning_cards(btScalar up) {
   const Box card{{0.03, 0.0005, 0.04}};
   const btScalar lean = 0.3;
   const auto pose = [&](btScalar side, btScalar z) {
@@ -163,7 +163,7 @@ Contacts of_leaning_cards(btScalar up) {
 }
 
 TEST(Edges, ThatLieAlongEachOtherHaveANormalBetweenTheirFaces) {
-  const Contacts contacts = of_leaning_cards(0);
+  const Manifold contacts = of_leaning_cards(0);
   ASSERT_EQ(contacts.count, 2);
   EXPECT_NEAR((contacts.normal - btVector3(0, -1, 0)).length(), 0, 1e-9);
   for (int i = 0; i < 2; ++i) {
@@ -175,7 +175,7 @@ TEST(Edges, ThatLieAlongEachOtherHaveANormalBetweenTheirFaces) {
 TEST(Edges, ChangeFromTheNormalOfOneFaceToThatOfTheOtherWithoutAJump) {
   btScalar before = 0;
   for (int i = -100; i <= 100; ++i) {
-    const Contacts contacts = of_leaning_cards(i * 2e-8);
+    const Manifold contacts = of_leaning_cards(i * 2e-8);
     ASSERT_EQ(contacts.count, 2) << i;
     const btScalar tilt = std::atan2(contacts.normal.z(), -contacts.normal.y());
     if (i == -100) before = tilt;
@@ -190,7 +190,7 @@ TEST(Concentric, BodiesHaveAFinitePenetrationDepth) {
   const Shape shapes[] = {cube, can, Sphere{0.005}, Box{{0.05, 0.02, 0.01}}};
   for (const Shape& a : shapes) {
     for (const Shape& b : shapes) {
-      const Contacts contacts = find(a, at(0, 0, 0), b, at(0, 0, 0), 1e-3);
+      const Manifold contacts = find(a, at(0, 0, 0), b, at(0, 0, 0), 1e-3);
       ASSERT_GT(contacts.count, 0);
       EXPECT_NEAR(contacts.normal.length(), 1, 1e-9);
       for (int i = 0; i < contacts.count; ++i) {

@@ -33,7 +33,7 @@ struct Scene {
     archive("world", world);
   }
 
-  /// Of the pair of two colliders, where its numbers stand in the bytes.
+  /// Position of the pair of two colliders in the bytes.
   std::size_t place_of(Number a, Number b) const {
     for (const auto& [offset, path] : places) {
       if (path.find("/pairs/") == std::string::npos || !path.ends_with("/a")) continue;

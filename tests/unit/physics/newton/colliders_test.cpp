@@ -13,7 +13,7 @@ namespace {
 
 using namespace testing;
 
-/// Of boxes that stand in a row and come one after another.
+/// Depth of the tree for boxes in a row that come one after another.
 int depth_of_row(std::size_t count) {
   const scene::Physics physics = newton();
   Colliders colliders;
@@ -22,7 +22,7 @@ int depth_of_row(std::size_t count) {
     const Body body = make_body(entity, physics, i);
     colliders.add(body, entity, make_tree(body, entity, physics));
   }
-  return colliders.depth();
+  return colliders.tree_depth();
 }
 
 TEST(Colliders, InARowMakeNoListOfTheTree) {

@@ -1,4 +1,5 @@
-// What collides in flight: the same as seen from a train, in whatever order it is listed, with the spin that friction gives.
+// Collisions in flight: Galilean invariance, independence of the order of listing, and spin by
+// friction.
 
 #include <gtest/gtest.h>
 
@@ -88,7 +89,8 @@ TEST(NewtonCollision, GivesTheSpinOfFrictionInAnyOrder) {
   }
 }
 
-// The normal was that of up to a millimetre before the balls touch: up to 9 % off at 50 Hz, and 2 % from 200 Hz on.
+// The normal was that of up to a millimetre before the touch: up to 9 % off at 50 Hz, and 2 % from
+// 200 Hz on.
 TEST(NewtonCollision, GoesAlongTheLineOfCentres) {
   for (const double hz : long_runs::substep_rates()) {
     for (const double radius : {0.01, 0.05}) {
@@ -128,7 +130,7 @@ TEST(NewtonCollision, GoesThroughARowOfBalls) {
   }
 }
 
-// Of 5 m/s and 2 mm: fifty impacts in a substep of 20 ms. It went through the second wall.
+// Fifty impacts in a substep of 20 ms, at 5 m/s and 2 mm. The ball went through the second wall.
 TEST(NewtonCollision, GoesToAndFroBetweenTwoWalls) {
   for (const double hz : long_runs::substep_rates()) {
     for (const double room : {0.002, 0.01, 0.05}) {
@@ -180,8 +182,9 @@ TEST(NewtonCollision, OfAGasKeepsItsEnergy) {
   }
 }
 
-// A ball of 10 g on the floor is nipped by one of 10 kg: its friction is more than tan(12.3 degrees), so it rolls out below the other one. It went
-// by up to 11 m in a substep: the frictions on it, which normal impulses balance, were taken out of its way alone.
+// A ball of 10 g on the floor is nipped by one of 10 kg. Its friction is more than tan(12.3
+// degrees), so it rolls out below the other one. It went by up to 11 m in a substep, when its
+// frictions alone were taken out of its displacement.
 TEST(NewtonCollision, NipsALightBallWithoutThrowingIt) {
   for (const double hz : long_runs::substep_rates()) {
     scene::Physics physics = newton(true);
@@ -240,7 +243,7 @@ TEST(NewtonCollision, GivesOneWhatItTakesFromTheOther) {
   }
 }
 
-// Where an island took the substep in parts and two came apart in the last one, no contact told what had pushed them.
+// Contacts that came apart in the last part of a substep still report their impulse.
 TEST(NewtonCollision, TellsTheContactOfAllThatIsPushed) {
   constexpr double height = 0.12, hz = 100;
   int pushed = 0;

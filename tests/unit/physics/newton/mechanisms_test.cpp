@@ -133,7 +133,7 @@ TEST(NewtonLimit, StopsAHeavyFall) {
   }
 }
 
-// What Coriolis forces take to a limit within a substep, without impulse in the solution, went on by up to 0.04 rad.
+// A joint that Coriolis forces drive to its limit within a substep passed it by up to 0.04 rad.
 TEST(NewtonLimit, HoldsLinksThatAreThrownOnIt) {
   for (const double hz : long_runs::substep_rates({.most = 1000})) {
     World world(newton(), 1 / hz);
@@ -265,9 +265,9 @@ TEST(NewtonWheels, ShareTheirLoadsWhateverTheSubstep) {
   }
 }
 
-// Nearly straight, the ends of a wheel's line slide by some 1e-4 m/s: Newton's method went round there from what the last substep did not
-// leave, because points of what rolls were new ones wherever it moved by more than 5 mm. Then smooth balls carried all of the weight for
-// seconds. The wheels carry 4 of 6 points.
+// Wheels that drive nearly straight: the ends of a wheel's line slide by some 1e-4 m/s. Newton's
+// method cycled, because contact points of rolling bodies were new ones after 5 mm. Then smooth
+// balls carried all of the weight for seconds. The wheels carry 4 of 6 points.
 TEST(NewtonWheels, CarryTheirShareAlsoWhereTheyHardlySlide) {
   const Wheels size{0.03, 0.01, 0.12, 0.01, 0.065};
   for (const auto& [left, right] : {std::pair(20., 20.05), {36.8, 36.9}, {3., 3.3}}) {

@@ -14,7 +14,7 @@ namespace {
 
 using namespace testing;
 
-/// How far the lowest corner of a box is below z = 0 [m].
+/// Depth of the lowest corner of a box below z = 0 [m].
 /// @param pose  of the middle of its lower side
 double depth(const Pose& pose, const Vector3& size) {
   const double centre = (pose * Vector3(0, 0, size.z() / 2)).z();
@@ -26,7 +26,7 @@ math::Quaternion any_turn(math::RandomStream& random) {
   return out.normalized();
 }
 
-/// How far the deepest corner of boxes comes below z = 0 [m].
+/// Depth of the deepest corner of boxes below z = 0 [m].
 /// @param sizes  of the first of the world's bodies, which are boxes
 double worst_depth(World& world, const std::vector<Vector3>& sizes, int substeps) {
   double worst = 0;
@@ -50,8 +50,8 @@ TEST(NewtonPlanks, LieOnTheFloorWhereTheyFell) {
   EXPECT_LT(worst_depth(world, sizes, 300), 5e-4);
 }
 
-// Spun, its corners go ways of half a radian in a substep, about an axis that turns, too: where a straight way or a turn about an axis that stays
-// passed the floor, it was not there.
+// Corners of a spinning plank rotate by half a radian in a substep, about an axis that rotates,
+// too. Where a straight path or a fixed axis passed the floor, it was not there.
 TEST(NewtonPlanks, ThatAreSpunDoNotGoIntoTheFloor) {
   const Vector3 size(0.3, 0.08, 0.02);
   constexpr double mass = 0.3, h = 0.01;
@@ -134,7 +134,8 @@ TEST(NewtonPlanks, OfManySizesInAHeapDoNotGoIntoTheFloor) {
   }
 }
 
-// A heavy box overlaps a light one by 20 mm, which hovers 5 mm above the floor: 16 mm of that are undone, beyond the floor, which nothing approaches.
+// A heavy box overlaps a light one by 20 mm, which hovers 5 mm above the floor. 16 mm are resolved,
+// beyond the floor, which nothing approaches.
 TEST(NewtonPlanks, OneThatAnOverlapPushesDownDoesNotGoIntoTheFloor) {
   World world(newton(true), 0.01);
   const Vector3 size(0.3, 0.08, 0.02);

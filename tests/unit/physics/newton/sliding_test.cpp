@@ -99,7 +99,7 @@ TEST_P(NewtonAt, ATileFloorIsAsSmoothAsOne) {
   EXPECT_NEAR(way, expected, 0.002 * expected + 1.02 * a * seconds * h / 2);
 }
 
-/// What stands on a flat face: a box that is turned, a cylinder, a pyramid. All are 10 cm wide and high.
+/// Bodies on a flat face: a rotated box, a cylinder, a pyramid. All are 10 cm wide and high.
 std::vector<scene::Geometry> flat_shapes() {
   const std::vector<Vector3> corners{{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0.1, 0.1, 0}, {0.05, 0.05, 0.1}};
   return {cube, scene::Cylinder{0.05, 0.1}, std::get<scene::Hull>(scene::make_hull(corners))};
@@ -130,7 +130,7 @@ TEST_P(NewtonAt, TilesAreAsSmoothAsOneInEveryDirection) {
   }
 }
 
-/// Where a fast plank is after a while on a floor of tiles, or on a slab.
+/// Position of a fast plank after a while on a floor of tiles, or on a slab.
 Pose slid_plank(bool on_tiles, double h) {
   World world(newton(), h);
   world.add(loose({{-2, -1.7, 0}, about({0, 0, 1}, 70 * std::numbers::pi / 180)}, scene::Box{{0.9, 0.1, 0.02}}, 1, 0.2));

@@ -19,10 +19,10 @@ namespace {
 using namespace testing;
 
 /// Gives a part momenta in the first substep.
-class Twist final : public Plugin {
+class SetVelocity final : public Plugin {
  public:
   /// @param angular  [N m s];  @param linear  [N s]
-  Twist(std::size_t part, const Vector3& angular, const Vector3& linear)
+  SetVelocity(std::size_t part, const Vector3& angular, const Vector3& linear)
       : part_(part), angular_(angular), linear_(linear) {}
   void before_substep(std::span<Body> bodies, double substep) override {
     bodies[0].apply_torque(part_, to_bullet(Vector3(angular_ / substep)));
@@ -50,7 +50,7 @@ struct Spinning {
   }
   ~Spinning() { core.remove(bodies[0]); }
   void twist(std::size_t part, const Vector3& angular, const Vector3& linear = {0, 0, 0}) {
-    plugins.add(std::make_unique<Twist>(part, angular, linear));
+    plugins.add(std::make_unique<SetVelocity>(part, angular, linear));
   }
   void step() {
     plugins.before_substep(bodies, h);
@@ -59,7 +59,7 @@ struct Spinning {
   }
   Pose pose(std::size_t part) const { return from_bullet(bodies[0].transform(part)); }
   Vector3 spin(std::size_t part) const {
-    std::vector<Motion> motions;
+    std::vector<Twist> motions;
     bodies[0].motions(motions);
     return from_bullet(motions[part].angular_velocity);
   }
@@ -169,8 +169,8 @@ TEST(NewtonSpin, OfAGyroscopeGetsBetterWithShorterSubsteps) {
   EXPECT_LT(precession_error(5e-4), precession_error(0.02) + 1e-6);
 }
 
-/// What is round about the axis that it turns about lands on a smooth floor in the second substep: it
-/// stops at its radius, and goes on turning.
+/// A body that spins about its axis of symmetry lands on a smooth floor in the second substep: it
+/// stops at its radius, and goes on spinning.
 void expect_to_land_turning(const scene::Geometry& round, const math::Quaternion& lying, double speed,
                             double rate) {
   const double h = 0.01, radius = 0.1;
@@ -218,8 +218,8 @@ TEST_P(NewtonSpin, ABallOnATwentiethOfADegreeRolls) {
   EXPECT_NEAR(way, expected, 0.001 * expected + 1.02 * expected * 2 * h / seconds / 2);
 }
 
-/// What a spinning body gains at most, of its energy when it begins to spin, while it falls on the floor and goes
-/// on there.
+/// Largest gain of a spinning body, over its energy at the beginning, while it falls on the floor
+/// and goes on there.
 /// @param momentum  [N m s]
 double gain_on_floor(const scene::Geometry& geometry, double mass, const Vector3& momentum, double h) {
   World world(newton(true), h);
@@ -265,7 +265,7 @@ double lost_lean(double h) {
     const Vector3 omega = turning + spin * axis, parallel = omega.dot(axis) * axis;
     return Motion{mass * omega.cross(arm), across * (omega - parallel) + along * parallel};
   };
-  // Of the torque that it takes and that of the floor's force, which is linear in the spin:
+  // Torques of the top and of the floor's force, which is linear in the spin:
   const auto missing = [&](double spin) {
     const Motion motion = motion_of(spin);
     const Vector3 force = turning.cross(motion.momentum) + mass * earth * up;
@@ -290,9 +290,10 @@ TEST(NewtonSpin, OfACoinThatRollsInACircleKeepsItsLean) {
   }
 }
 
-/// The most that a top on its tip leans on a smooth floor [rad]: begun with a spin about its own axis alone, it nutates from
-/// where it begins to where the energy of its precession is what it lost in height.
-/// @param spin  about its axis [rad/s];  @param axial, across  moments of inertia about its centre of mass [kg m^2]
+/// Largest lean of a top on its tip on a smooth floor [rad]. With a spin about its own axis alone
+/// it nutates between its initial lean and that where its precession has the lost height's energy.
+/// @param spin  about its axis [rad/s];  @param axial, across  moments of inertia about its centre
+///              of mass [kg m^2]
 double farthest_lean(double lean, double spin, double mass, double arm, double axial, double across) {
   const double momentum = axial * spin, start = std::cos(lean);
   double low = lean, high = EIGEN_PI / 2;  // p^2 (cos start - cos x) = 2 I m g l sin^2 x

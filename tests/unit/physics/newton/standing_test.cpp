@@ -1,4 +1,4 @@
-// What stands stays: towers, mass ratios, planks, card houses with solver="newton".
+// Bodies at rest stay: towers, mass ratios, planks, card houses with solver="newton".
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 using namespace testing;
 
-/// How far the top moves in a minute at 100 Hz [m].
+/// Drift of the top in a minute at 100 Hz [m].
 double tower_drift(int count, const scene::Geometry& geometry, double height, double mass) {
   World world(newton(true), 0.01);
   for (int i = 0; i < count; ++i) world.add(loose(at(0, 0, i * height), geometry, mass));
@@ -116,7 +116,8 @@ scene::Geometry pebble() {
   return std::get<scene::Hull>(scene::make_hull(corners));
 }
 
-// Of its corners within reach of the floor, those that are higher displaced those that carry it: it trembled, and never slept.
+// Higher corners within reach of the floor displaced the supporting ones: it vibrated, and never
+// slept.
 TEST(NewtonHull, OfManyCornersComesToRestOnTheFloor) {
   for (const double hz : long_runs::some_of({50.0, 100.0, 500.0})) {
     for (const double angle : {0.1, 0.8}) {
@@ -270,7 +271,7 @@ TEST(NewtonCylinder, TipsOverEachPointOfItsRimAlike) {
   }
 }
 
-/// How far one of two cards moves in 2 s that lean on each other, without anything to hold them but friction [m].
+/// Drift in 2 s of one of two cards that lean on each other, held by friction alone [m].
 double slip_of_cards(double lean, double friction, double hz) {
   const double length = 0.08, thick = 0.001, width = 0.06;
   scene::Physics physics = newton(true);
@@ -341,7 +342,8 @@ TEST(NewtonPile, DoesNotDependOnWhatIsFarAway) {
   EXPECT_EQ(pile(false), pile(true));
 }
 
-// A plate on a slide that touches the walls on both sides cannot come nearer to them: it stood still, held by the friction of 4e13 N.
+// A plate on a slide that touches the walls on both sides cannot come nearer to them: it stood
+// still, held by the friction of 4e13 N.
 TEST(NewtonPress, FitsItsBoxExactlyAndMoves) {
   const double size = 0.02, width = 3 * size, gap = 0.01;
   World world(newton(true), 0.01);
@@ -381,7 +383,7 @@ TEST(NewtonPress, StopsAtAWallThatIsNearlyAlongItsWay) {
   }
 }
 
-// What overlaps across the ways of both is not undone, and holds neither.
+// Overlaps across the paths of both bodies are not resolved, and hold neither.
 TEST(NewtonPress, TwoSlidesThatOverlapAcrossTheirWaysMove) {
   World world(newton(), 0.01);
   for (const double side : {-1.0, 1.0}) {

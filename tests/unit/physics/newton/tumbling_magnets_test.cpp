@@ -19,7 +19,7 @@ using namespace testing;
 // Cubes of 10 mm of N42: remanence 1.3 T, 7 500 kg/m^3.
 constexpr double side = 0.01, mass = 7.5e-3, remanence = 1.3;
 const double moment = remanence * side * side * side / magnetism::vacuum_permeability;
-/// Of two that touch, one behind the other [J].
+/// Bond energy of two that touch, one behind the other [J].
 const double bond = 2 * magnetism::magnetic_constant * moment * moment / (side * side * side);
 
 scene::Physics floating() {
@@ -124,8 +124,9 @@ scene::Entity repelling(double x) {
   return entity;
 }
 
-// It comes into the reach of what divides a substep, and leaves it, at each swing: speeds of whole substeps are those of half a
-// substep before, and without a change from one to the other each swing had more energy, at all rates.
+// A compass swings into and out of the range of divided substeps. Velocities of whole substeps are
+// those of half a substep before: without a shift between both each swing gained energy, at all
+// rates.
 TEST(MagnetOnARail, SwingsBetweenTwoOthersWithoutGain) {
   for (const double hz : long_runs::some_of({1000, 2000})) {
     World world(floating(), 1 / hz);
@@ -194,14 +195,15 @@ TEST(TumblingMagnets, ACloudFallsTogetherWithoutGainingEnergy) {
 }
 
 TEST(TumblingMagnets, HeapsThatRollGainNoEnergy) {
-  // What is pushed out of an overlap gains energy from the magnets: a micrometre is 3e-4 of a bond.
+  // Resolving an overlap gains energy from the magnets: a micrometre is 3e-4 of a bond.
   const double h = 1e-3;
   World world(floating(), h);
   scatter(world, long_runs::is_slow ? 10 : 30, 2);
   EXPECT_LT(growth(world, 0.1, h), 1e-3);
 }
 
-// Each body has so many others at some distance that their small errors add up: 1e-3 to 3e-3 of a bond were gained, at any rate.
+// Many distant neighbours of each body add small errors: 1e-3 to 3e-3 of a bond were gained, at any
+// rate.
 TEST(TumblingMagnets, FiftyOnAGridGainNoEnergyAsTheyTurnToEachOther) {
   for (const double hz : long_runs::some_of({1000, 500, 2000, 5000, 10'000})) {
     World world(floating(), 1 / hz);

@@ -1,4 +1,4 @@
-// What lies on a turning table, what rolls on it, and what its walls and slots carry round.
+// Bodies on a turntable: lying, rolling, and carried round by its walls and slots.
 
 #include <gtest/gtest.h>
 
@@ -73,7 +73,8 @@ void fix(scene::Entity& entity, std::size_t parent, std::size_t child, const Pos
   entity.joints.push_back(next);
 }
 
-// The wall went round and the ball straight on, so that it stood in the wall by 1.27 r (w h)^2 / 2 for good, and was through it from w h = 0.4 on.
+// The wall rotated and the ball moved straight. So it stood in the wall by 1.27 r (w h)^2 / 2 for
+// good, and was through it from w h = 0.4 on.
 TEST(NewtonTurntable, CarriesABallAlongItsWall) {
   const double turning = 10, radius = 0.05, from = 0.45, clearance = 1e-3;
   for (const double hz : long_runs::some_of({25, 50, 100, 200, 500, 1000})) {
