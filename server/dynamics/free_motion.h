@@ -5,6 +5,9 @@
 
 namespace ziggurat::dynamics {
 
+/// Evaluations of the equations of motion in a step of a tree that is no single body.
+inline constexpr int evaluations_per_step = 6;
+
 /// Integrates a tree without contacts and limits, under constant external wrenches and servo
 /// forces. Leaves its kinematics valid.
 ///

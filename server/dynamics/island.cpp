@@ -233,6 +233,15 @@ int parts_for_rotation(std::span<const RotationUntilImpact> swings, std::span<co
   return static_cast<int>(std::ceil(std::min(angle / most, 1e6)));
 }
 
+/// Integrates a tree in free motion, and reports how often its equations of motion were evaluated.
+void integrate_and_report(Tree& tree, int index, Workspace& work, double time_step, const PrescribedJoints& drive, Report& report) {
+  const int steps = integrate_free_motion(tree, work, time_step, drive);
+  const int evaluations = tree.is_single_body ? 0 : evaluations_per_step * steps;
+  if (evaluations <= report.most_evaluations) return;
+  report.most_evaluations = evaluations;
+  report.most_evaluated_tree = index;
+}
+
 }  // namespace
 
 /// Whether a joint of the island, or of a tree of it, is beyond a limit.
@@ -257,7 +266,7 @@ bool System::integrate_free_island(int first_tree, int last_tree, int first_item
   if (violates_limit(first_item, last_item)) return false;
   const auto island = std::span(tree_order_).subspan(first_tree, last_tree - first_tree);
   if (first_item < last_item) save_states(trees, island, saved_state_);
-  for (const int tree : island) integrate_free_motion(trees[tree], work_, time_step_);
+  for (const int tree : island) integrate_and_report(trees[tree], tree, work_, time_step_, {}, report_);
   if (violates_limit(first_item, last_item)) {
     restore_states(trees, island, saved_state_);
     return false;
@@ -307,7 +316,8 @@ bool System::integrate_free_trees(int first_tree, int last_tree, int first_item,
     const std::span<const int> tree(&tree_order_[first_tree + i], 1);
     if (is_free_[i]) {
       save_states(trees, tree, saved_state_);
-      integrate_free_motion(trees[tree[0]], work_, time_step_, prescribed_joints_of(problem_, i, prescribed_joints_));
+      integrate_and_report(trees[tree[0]], tree[0], work_, time_step_,
+                           prescribed_joints_of(problem_, i, prescribed_joints_), report_);
       is_free_[i] = !violates_limit(first_item, last_item, tree[0]);
       if (!is_free_[i]) restore_states(trees, tree, saved_state_);
     }

@@ -25,6 +25,8 @@ struct Report {
   int most_sweeps = 0;      ///< over the contacts of an island
   double residual = 0;          ///< worst residual of the contact law [m/s] or [rad/s]
   int awake = 0;            ///< trees that moved
+  int most_evaluations = 0;     ///< of the equations of motion of a tree in free motion
+  int most_evaluated_tree = -1;  ///< the first tree with so many
 };
 
 /// A tree on a fixed base that rotates far until its next impact.

@@ -111,6 +111,13 @@ bool wake_all_except(dynamics::System& system, const TreeSet& those) {
   return woke;
 }
 
+/// Counts a substep that trees took in many parts; of the first such trees it keeps the one of most links.
+void count_divided(const dynamics::System& system, std::span<const int> trees, int parts, Convergence& convergence) {
+  if (parts < many_parts || convergence.divided++ > 0) return;
+  const auto links = [&](int tree) { return system.trees[tree].links.size(); };
+  convergence.divided_entity = static_cast<std::size_t>(*std::ranges::max_element(trees, {}, links));
+}
+
 }  // namespace
 
 /// Sets the system's options for a part, and collects its servos and limits.
@@ -187,6 +194,7 @@ void NewtonCore::step(const SubstepPart& part) {
   convergence_.islands += report.islands;
   convergence_.not_converged += report.not_converged;
   convergence_.worst = std::max(convergence_.worst, report.residual);
+  if (!part.is_part) count_divided(system_, std::span(&report.most_evaluated_tree, 1), report.most_evaluations, convergence_);
 }
 
 void NewtonCore::substep(std::span<Body> bodies, double time_step, int splits, Plugin* stiff) {
@@ -293,10 +301,7 @@ void NewtonCore::step_divided_islands(std::span<Body> bodies, const SubstepPart&
   std::swap(islands_to_subdivide_, system_.islands_to_subdivide);
   for (const auto& [parts, first, last] : islands_to_subdivide_.islands) {
     const std::span<const int> trees = std::span(islands_to_subdivide_.trees).subspan(first, last - first);
-    if (parts >= many_parts && convergence_.divided++ == 0) {
-      const auto links = [&](int tree) { return system_.trees[tree].links.size(); };
-      convergence_.divided_entity = static_cast<std::size_t>(*std::ranges::max_element(trees, {}, links));
-    }
+    count_divided(system_, trees, parts, convergence_);
     set_active(active_, trees, true, system_.trees.size());
     step_in_parts(bodies, whole, parts);
   }

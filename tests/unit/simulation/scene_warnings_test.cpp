@@ -130,5 +130,38 @@ TEST(SceneWarnings, PacketsOfOtherSizesAreANotice) {
   EXPECT_TRUE(notices(talker("a", "0", "rab", "10") + talker("b", "1", "through", "2")).empty());
 }
 
+/// A chain of twenty balls of 10 g on spherical joints with a last link of this mass [kg], which leans by 20 degrees.
+std::string chain(const std::string& last_mass) {
+  std::string links = R"(<link id="base" geometry="box" size=".1,.1,.02" mass="1"/>)", joints;
+  for (int i = 0; i <= 20; ++i) {
+    const std::string id = std::to_string(i), parent = i == 0 ? "base" : std::to_string(i - 1);
+    links += "<link id=\"" + id + R"(" geometry="sphere" radius=".02" mass=")" + (i < 20 ? ".01" : last_mass) + R"(" position="0,0,)" +
+             std::to_string(-0.06 * (i + 1)) + R"(" orientation="0,0,0"/>)";
+    joints += "<joint id=\"j" + id + R"(" type="spherical"><parent link=")" + parent + R"(" position="0,0,)" + (i == 0 ? "0" : "-.03") +
+              R"("/><child link=")" + id + R"(" position="0,0,)" + (i == 0 ? ".06" : ".03") + R"("/></joint>)";
+  }
+  return R"(<prototype id="chain" movable="false"><body position="0,0,3" orientation="0,20,0"/><links ref="base">)" + links +
+         "</links><joints>" + joints + "</joints></prototype>";
+}
+
+Simulation with_short_substeps(const std::string& arena) {
+  std::string text = SmallScene{"", "", arena, R"(<gravity g="9.8"/>)"}.str();
+  const std::string usual = R"(iterations="2")";
+  text.replace(text.find(usual), usual.size(), R"(iterations="50")");
+  return Simulation(scene::read_text(text, "small.argos").scene, {1});
+}
+
+TEST(SlowNotice, NamesWhatIsDividedAHundredTimesAndWhy) {
+  Simulation world = with_short_substeps(body("falls", "3,0,9") + chain("100"));
+  int ticks = 0;
+  for (; ticks < 50 && !slow_notice(world); ++ticks) world.step();
+  EXPECT_EQ(slow_notice(world).value_or(""),
+            "'chain' makes the run slow: its substeps of 0.002 s are divided into 100 parts and more, because it is pulled harder, or "
+            "turns faster, than they can follow; make the masses that hang on its joints lighter, or its links heavier");
+  Simulation light = with_short_substeps(chain(".01"));
+  testing::run(light, ticks);
+  EXPECT_EQ(slow_notice(light), std::nullopt);
+}
+
 }  // namespace
 }  // namespace ziggurat::simulation
