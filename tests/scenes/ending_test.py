@@ -112,7 +112,7 @@ class Signals(SceneTest):
 
     def test_messages_to_a_pipe_that_is_not_read(self):
         recording = self.folder / "r.mcap"
-        self.run_scene("--ticks", 20000, "--record", recording, "--quiet")
+        self.run_scene("--ticks", 1000, "--record", recording, "--quiet")
         for number in (signal.SIGINT, signal.SIGTERM):
             for words, code in ((("top", "tcp://127.0.0.1:1"), 128 + number),
                                 (("export", recording, "--jsonl", self.folder / "x.jsonl"), -number)):
