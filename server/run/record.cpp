@@ -139,7 +139,7 @@ void check_names(const recorder::Start& start) {
 
 recorder::Start start_of(const Options& options, const supervision::World& world,
                          const ReadFiles& files, std::uint64_t last_tick,
-                         const std::vector<std::size_t>& idle, const Past* past,
+                         const std::vector<std::size_t>& idle, const Fork* fork,
                          reports::Console& console) {
   recorder::Start start;
   start.scene = world.path;
@@ -159,7 +159,7 @@ recorder::Start start_of(const Options& options, const supervision::World& world
   start.build = this_build();
   start.arguments = options.arguments;
   start.files = files.all();
-  past ? past->describe(world, start) : add_scripts(world, start, console);
+  fork ? fork->describe(world, start) : add_scripts(world, start, console);
   check_names(start);
   return start;
 }
@@ -186,7 +186,7 @@ std::vector<std::string> ReadFiles::names() const {
 
 RecordedRun::RecordedRun(const Options& options, supervision::World& world, const ReadFiles& files,
                          std::uint64_t last_tick, const std::vector<std::size_t>& idle,
-                         const Past* past, reports::Console& console)
+                         const Fork* fork, reports::Console& console)
     : world_(world),
       console_(console),
       last_tick_(last_tick),
@@ -194,7 +194,7 @@ RecordedRun::RecordedRun(const Options& options, supervision::World& world, cons
       recorder_({options.record,
                  options.record_compression,
                  {wish_of(options.record_topics), options.record_every}},
-                begin(start_of(options, world, files, last_tick, idle, past, console))) {}
+                begin(start_of(options, world, files, last_tick, idle, fork, console))) {}
 
 recorder::Start RecordedRun::begin(recorder::Start start) {
   note(start.files);
@@ -280,11 +280,11 @@ void RecordedRun::act(const supervision::Act& done) {
 
 std::unique_ptr<RecordedRun> start_recording(const Options& options, supervision::World& world,
                                              const ReadFiles& files, std::uint64_t last_tick,
-                                             const std::vector<std::size_t>& idle, const Past* past,
+                                             const std::vector<std::size_t>& idle, const Fork* fork,
                                              reports::Console& console) {
   if (options.record.empty()) return nullptr;
   check_topics(options.record_topics, world, console);
-  return std::make_unique<RecordedRun>(options, world, files, last_tick, idle, past, console);
+  return std::make_unique<RecordedRun>(options, world, files, last_tick, idle, fork, console);
 }
 
 }  // namespace ziggurat::run

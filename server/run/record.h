@@ -11,8 +11,8 @@
 
 #include "recorder/recorder.h"
 #include "reports/console.h"
+#include "run/fork.h"
 #include "run/options.h"
-#include "run/past.h"
 #include "scene/files.h"
 #include "supervision/act.h"
 #include "supervision/world.h"
@@ -39,9 +39,9 @@ class RecordedRun {
   /// @param last_tick  0: until stopped
   /// @param idle       robots without controller: into Layout::robots
   /// @throws recording::WriteError
-  /// @param past       of a fork, whose world is where it begins; null: the run begins at tick 0
+  /// @param fork       its world is where the run begins; null: the run begins at tick 0
   RecordedRun(const Options& options, supervision::World& world, const ReadFiles& files,
-              std::uint64_t last_tick, const std::vector<std::size_t>& idle, const Past* past,
+              std::uint64_t last_tick, const std::vector<std::size_t>& idle, const Fork* fork,
               reports::Console& console);
 
   bool wants_contacts() const { return recorder_.wants("/contacts"); }
@@ -82,7 +82,7 @@ class RecordedRun {
 /// Null if the options ask for no recording.
 std::unique_ptr<RecordedRun> start_recording(const Options& options, supervision::World& world,
                                              const ReadFiles& files, std::uint64_t last_tick,
-                                             const std::vector<std::size_t>& idle, const Past* past,
+                                             const std::vector<std::size_t>& idle, const Fork* fork,
                                              reports::Console& console);
 
 }  // namespace ziggurat::run

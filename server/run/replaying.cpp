@@ -124,10 +124,10 @@ void Replaying::show_poses() {
 
 Showing::Run Replaying::shown() {
   Showing::Run watched{world_, schedule_, file_.run().last_tick(), {}, {}, {}, {}, {}, {}};
-  watched.connect = [this](supervision::LocalCalls calls) { steering_.connect(std::move(calls)); };
+  watched.connect = [this](supervision::LocalCalls calls) { viewer_controls_.connect(std::move(calls)); };
   watched.changes = [this] { return replay_.changes(); };
-  watched.is_paused = [this] { return steering_.is_paused(); };
-  watched.paused_for = [this] { return steering_.paused_for(); };
+  watched.is_paused = [this] { return viewer_controls_.is_paused(); };
+  watched.paused_for = [this] { return viewer_controls_.paused_for(); };
   watched.status = [this] { return status(); };
   watched.controllers = [] { return std::vector<network::Performance::Controller>(); };
   return watched;
@@ -138,7 +138,7 @@ wire::Status Replaying::status() const {
   status.tick = world_.simulation.state().tick;
   status.time_ns = world_.simulation.state().time_ns;
   status.phase =
-      steering_.is_paused() ? wire::Status::Phase::paused : wire::Status::Phase::running;
+      viewer_controls_.is_paused() ? wire::Status::Phase::paused : wire::Status::Phase::running;
   status.seed = world_.seed;
   status.scene = world_.path;
   status.scene_hash = world_.scene_hash;
@@ -183,7 +183,7 @@ int Replaying::execute() {
     case End::stopped:
       break;
   }
-  return steering_.is_over() ? reports::exit_code::finished : reports::exit_code::interrupted;
+  return viewer_controls_.is_over() ? reports::exit_code::finished : reports::exit_code::interrupted;
 }
 
 /// From the first recorded state to the last one, or to the first that differs.
@@ -200,11 +200,11 @@ Replaying::End Replaying::repeat() {
     }
     ++same_;
     const v1::Inputs& inputs = replay_.inputs();
-    if (same_ == 1 || inputs.epoch() != epoch) schedule_.begin(inputs.tick(), steering_.paused_for());
+    if (same_ == 1 || inputs.epoch() != epoch) schedule_.begin(inputs.tick(), viewer_controls_.paused_for());
     if (showing_ && inputs.epoch() != epoch) showing_->restarted();
     if (inputs.epoch() != epoch) summary_.metrics.clear();
     epoch = inputs.epoch();
-    steering_.stepped(inputs.tick());
+    viewer_controls_.stepped(inputs.tick());
     recorders_.tick(simulation);
     if (showing_) showing_->tick({});
     if (progress_.needs_update()) progress_.show(same_ - 1, "");
@@ -239,7 +239,7 @@ std::vector<world::Metric> Replaying::take_metrics() {
 void Replaying::serve() {
   if (!showing_) return;
   showing_->serve();
-  steering_.serve(world_.simulation.state().tick);
+  viewer_controls_.serve(world_.simulation.state().tick);
   showing_->update();
 }
 
@@ -249,10 +249,10 @@ bool Replaying::may_step(clock::time_point now, int& timeout_ms) {
   if (showing_ && now < waits_for_viewer_until_) {
     if (!showing_->is_watched()) return false;
     waits_for_viewer_until_ = {};
-    schedule_.begin(world_.simulation.state().tick, steering_.paused_for());
+    schedule_.begin(world_.simulation.state().tick, viewer_controls_.paused_for());
   }
-  if (steering_.is_paused()) return false;
-  const auto moment = schedule_.end_of(world_.simulation.state().tick, steering_.paused_for());
+  if (viewer_controls_.is_paused()) return false;
+  const auto moment = schedule_.end_of(world_.simulation.state().tick, viewer_controls_.paused_for());
   if (now >= moment) return true;
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(moment - now).count();
   timeout_ms = static_cast<int>(std::min<std::int64_t>(left, longest_sleep_ms));
@@ -266,7 +266,7 @@ bool Replaying::wait() {
   for (;;) {
     if (signals_.take().interruptions > 0) return false;
     serve();
-    if (steering_.is_over()) return false;
+    if (viewer_controls_.is_over()) return false;
     int timeout_ms = 0;
     if (may_step(clock::now(), timeout_ms)) return true;
     console_.offer();

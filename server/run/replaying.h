@@ -18,7 +18,7 @@
 #include "run/recorders.h"
 #include "run/schedule.h"
 #include "run/showing.h"
-#include "run/steering.h"
+#include "run/viewer_controls.h"
 #include "supervision/world.h"
 
 namespace ziggurat::run {
@@ -66,7 +66,7 @@ class Replaying {
   replay::States states_;
   replay::Replay replay_;
   Schedule schedule_;
-  Steering steering_;
+  ViewerControls viewer_controls_;
   const std::unique_ptr<Showing> showing_;  ///< null: not shown
   reports::Progress progress_;
   reports::Summary summary_;

@@ -15,9 +15,9 @@
 #include "processes/signals.h"
 #include "reports/console.h"
 #include "reports/summary.h"
+#include "run/fork.h"
 #include "run/local_endpoints.h"
 #include "run/options.h"
-#include "run/past.h"
 #include "run/phase_timer.h"
 #include "run/radio_watch.h"
 #include "run/record.h"
@@ -73,7 +73,7 @@ class Run {
   void print_notices();
 
   // Running.
-  std::optional<Ending> relive();
+  std::optional<Ending> replay_to_begin();
   Ending run_to_end();
   Ending run_world();
   std::optional<Ending> collect();
@@ -93,7 +93,7 @@ class Run {
   const Service service_;
   processes::Signals& signals_;
   reports::Console console_;
-  const std::unique_ptr<Past> past_;  ///< null: the run begins at tick 0
+  const std::unique_ptr<Fork> fork_;  ///< null: the run begins at tick 0
   const std::string path_;  ///< of the scene file
   ReadFiles files_;  ///< of the scene
   LocalEndpoints local_;

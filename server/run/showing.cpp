@@ -66,7 +66,7 @@ void Showing::connect_callers() {
                     [this](const network::Call& call) {
                       const auto found = unanswered_.find(call.request.id);
                       return found != unanswered_.end() &&
-                             server_.desk().is_there(found->second.viewer);
+                             server_.requests().is_connected(found->second.viewer);
                     },
                     [this](const network::Call& call, std::uint64_t tick) {
                       const auto found = unanswered_.extract(call.request.id);
@@ -80,7 +80,7 @@ void Showing::connect_callers() {
 
 std::vector<network::Call> Showing::take_calls() {
   std::erase_if(unanswered_,
-                [&](const auto& entry) { return !server_.desk().is_there(entry.second.viewer); });
+                [&](const auto& entry) { return !server_.requests().is_connected(entry.second.viewer); });
   std::vector<network::Call> calls;
   for (view::Call& call : std::exchange(calls_, {})) {
     network::Call& taken = calls.emplace_back();
@@ -143,12 +143,12 @@ void Showing::log(channels::Severity severity, std::string_view name, std::strin
 }
 
 void Showing::serve() {
-  if (!server_.desk().has_news()) return;
-  view::Desk::News news = server_.desk().take();
-  wanted_ = std::move(news.wanted);
-  kinds_ = news.kinds;
-  for (const view::Parameter& wish : news.wishes) apply(wish);
-  for (view::Call& call : news.calls) {
+  if (!server_.requests().has_changes()) return;
+  view::ViewerRequests::Changes changes = server_.requests().take();
+  wanted_ = std::move(changes.wanted);
+  kinds_ = changes.kinds;
+  for (const view::Parameter& parameter : changes.parameters) apply(parameter);
+  for (view::Call& call : changes.calls) {
     if (call.speed) {
       set_speed(*call.speed);
       server_.answer(call, run_.world.simulation.state().tick);
@@ -162,16 +162,16 @@ void Showing::serve() {
       calls_.push_back(std::move(call));
     }
   }
-  fresh_.insert(fresh_.end(), news.fresh.begin(), news.fresh.end());
+  fresh_.insert(fresh_.end(), changes.fresh.begin(), changes.fresh.end());
 }
 
-void Showing::apply(const view::Parameter& wish) {
-  if (wish.name == "real_time_factor") return set_speed(std::get<double>(wish.value));
-  if (wish.name == "frames_per_second") {
-    frames_per_second_ = std::get<double>(wish.value);
+void Showing::apply(const view::Parameter& parameter) {
+  if (parameter.name == "real_time_factor") return set_speed(std::get<double>(parameter.value));
+  if (parameter.name == "frames_per_second") {
+    frames_per_second_ = std::get<double>(parameter.value);
     return;
   }
-  (wish.name == "draw_labels" ? layers_.labels : layers_.frusta) = std::get<bool>(wish.value);
+  (parameter.name == "draw_labels" ? layers_.labels : layers_.frusta) = std::get<bool>(parameter.value);
   server_.set_layers(layers_);
   show(wanted_, true);
 }

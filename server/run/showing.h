@@ -52,8 +52,8 @@ class Showing {
   std::string viewer_address() const { return server_.viewer_address(); }
 
   /// Readable when a viewer wants something.
-  int descriptor() { return server_.desk().descriptor(); }
-  bool has_viewers() { return server_.desk().has_viewers(); }
+  int descriptor() { return server_.requests().descriptor(); }
+  bool has_viewers() { return server_.requests().has_viewers(); }
   bool is_watched() { return !wanted_.empty(); }  ///< a viewer has subscribed to something
 
   /// A tick was published. Not all of them are shown: so many in a second of wall time at most.
@@ -79,7 +79,7 @@ class Showing {
  private:
   void connect_callers();
   std::vector<network::Call> take_calls();
-  void apply(const view::Parameter& wish);
+  void apply(const view::Parameter& parameter);
   void set_speed(double factor);
   void populate();
   /// @param all  latched messages and commands, too

@@ -19,21 +19,21 @@ bool is_kept(channels::Kind kind) {
 }
 
 /// Names of parameters that viewers may set, and their values; what is wrong with a value.
-std::string check(const Parameter& wish) {
-  const auto* number = std::get_if<double>(&wish.value);
-  if (wish.name == "real_time_factor") {
+std::string check(const Parameter& parameter) {
+  const auto* number = std::get_if<double>(&parameter.value);
+  if (parameter.name == "real_time_factor") {
     const bool is_valid = number && (*number == 0 || (*number >= 1e-6 && *number <= 1e6));
     return is_valid ? "" : "real_time_factor must be 1e-6 to 1e6, or 0 for as fast as it goes";
   }
-  if (wish.name == "frames_per_second") {
+  if (parameter.name == "frames_per_second") {
     const bool is_valid = number && *number >= 1 && *number <= 1000;
     return is_valid ? "" : "frames_per_second must be 1 to 1000";
   }
-  if (wish.name == "draw_labels" || wish.name == "draw_frusta") {
-    const bool is_valid = std::holds_alternative<bool>(wish.value);
-    return is_valid ? "" : wish.name + " must be true or false";
+  if (parameter.name == "draw_labels" || parameter.name == "draw_frusta") {
+    const bool is_valid = std::holds_alternative<bool>(parameter.value);
+    return is_valid ? "" : parameter.name + " must be true or false";
   }
-  return fmt::format("The parameter \"{}\" can't be set.", wish.name.substr(0, 64));
+  return fmt::format("The parameter \"{}\" can't be set.", parameter.name.substr(0, 64));
 }
 
 /// Those of the names; all if there is none.
@@ -55,8 +55,8 @@ void tell_time(std::int64_t time_ns, Viewer& viewer, std::vector<Item>& to) {
 
 }  // namespace
 
-Hub::Hub(Introduction introduction, std::vector<Parameter> parameters, Desk& desk)
-    : introduction_(std::move(introduction)), parameters_(std::move(parameters)), desk_(desk) {}
+Hub::Hub(Introduction introduction, std::vector<Parameter> parameters, ViewerRequests& requests)
+    : introduction_(std::move(introduction)), parameters_(std::move(parameters)), requests_(requests) {}
 
 Viewer& Hub::add(bool may_steer) {
   auto viewer = std::make_unique<Viewer>();
@@ -68,7 +68,7 @@ Viewer& Hub::add(bool may_steer) {
   introduction.may_steer = may_steer;
   send(added, server_info(introduction));
   if (may_steer) send(added, advertise_services());
-  desk_.viewer_came(added.id);
+  requests_.add_viewer(added.id);
   return added;
 }
 
@@ -77,7 +77,7 @@ void Hub::remove(std::uint64_t id) {
   if (!viewer) return;
   for (const auto& [subscription, channel] : viewer->channels) --subscribers_[channel];
   viewers_.erase(id);
-  desk_.viewer_left(id);
+  requests_.remove_viewer(id);
   count_subscribers({});
 }
 
@@ -158,7 +158,7 @@ void Hub::count_subscribers(std::vector<std::uint32_t> fresh) {
     wanted.push_back(id);
     if (const auto* found = channel(id)) kinds.set(channels::index_of(found->kind));
   }
-  desk_.set_wanted(std::move(wanted), std::move(fresh), kinds);
+  requests_.set_wanted(std::move(wanted), std::move(fresh), kinds);
 }
 
 void Hub::handle(Viewer& viewer, const GetParameters& message) {
@@ -166,19 +166,19 @@ void Hub::handle(Viewer& viewer, const GetParameters& message) {
 }
 
 /// What is wrong with it; empty: it holds now.
-std::string Hub::set(const Parameter& wish) {
-  if (std::string why = check(wish); !why.empty()) return why;
-  desk_.add_wish(wish);
-  set_parameter(wish);
+std::string Hub::set(const Parameter& parameter) {
+  if (std::string why = check(parameter); !why.empty()) return why;
+  requests_.add_parameter(parameter);
+  set_parameter(parameter);
   return {};
 }
 
 void Hub::handle(Viewer& viewer, const SetParameters& message) {
   std::vector<std::string> names;
-  for (const Parameter& wish : message.parameters) {
-    names.push_back(wish.name);
+  for (const Parameter& parameter : message.parameters) {
+    names.push_back(parameter.name);
     const std::string why =
-        viewer.may_steer ? set(wish) : "Parameters are set with the token in the address only.";
+        viewer.may_steer ? set(parameter) : "Parameters are set with the token in the address only.";
     if (!why.empty()) send(viewer, warning(why));
   }
   if (!names.empty()) send(viewer, parameter_values(values_of(names, parameters_), message.id));
@@ -218,7 +218,7 @@ void Hub::handle(Viewer& viewer, const CallService& message) {
   }
   ++viewer.unanswered;
   std::get<Call>(call).viewer = viewer.id;
-  desk_.add_call(std::move(std::get<Call>(call)));
+  requests_.add_call(std::move(std::get<Call>(call)));
 }
 
 void Hub::set_channels(std::vector<channels::Channel> list) {

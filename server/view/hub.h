@@ -13,10 +13,10 @@
 
 #include "channels/channel.h"
 #include "channels/message.h"
-#include "view/desk.h"
 #include "view/known_channels.h"
 #include "view/messages.h"
 #include "view/output.h"
+#include "view/viewer_requests.h"
 
 namespace ziggurat::view {
 
@@ -42,8 +42,8 @@ class Hub {
   static constexpr std::size_t largest_queued = std::size_t{64} << 10;  ///< a call behind others [bytes]
 
   /// @param parameters  at the start
-  /// @param desk  must outlive this
-  Hub(Introduction introduction, std::vector<Parameter> parameters, Desk& desk);
+  /// @param requests  must outlive this
+  Hub(Introduction introduction, std::vector<Parameter> parameters, ViewerRequests& requests);
 
   Viewer& add(bool may_steer);
   void remove(std::uint64_t viewer);
@@ -78,14 +78,14 @@ class Hub {
   void handle(Viewer& viewer, const CallService& message);
   void handle(Viewer& viewer, const Wrong& message);
   void send(Viewer& viewer, Item item);
-  std::string set(const Parameter& wish);
+  std::string set(const Parameter& parameter);
   const channels::Channel* channel(std::uint32_t id) const;
   void count_subscribers(std::vector<std::uint32_t> fresh);
   Item graph() const;
 
   Introduction introduction_;
   std::vector<Parameter> parameters_;
-  Desk& desk_;
+  ViewerRequests& requests_;
   std::uint64_t next_viewer_ = 1;
   std::map<std::uint64_t, std::unique_ptr<Viewer>> viewers_;
   std::vector<channels::Channel> channels_;

@@ -269,7 +269,7 @@ Rules rules_of(const Settings& settings) {
 struct Server::State {
   explicit State(const Settings& settings)
       : shared{rules_of(settings), Page(settings.folder), settings.silence,
-               Hub({settings.version, settings.scene, random_token()}, settings.parameters, desk)},
+               Hub({settings.version, settings.scene, random_token()}, settings.parameters, requests)},
         listening(listen(io, settings.address,
                          [this](http::Tcp::socket socket) { take(std::move(socket)); })),
         pause(io),
@@ -362,7 +362,7 @@ struct Server::State {
                        shared.rules.token);
   }
 
-  Desk desk;
+  ViewerRequests requests;
   Shared shared;
   http::Service service = service_of(shared);
   std::list<std::weak_ptr<http::Exchange>> exchanges;  // the oldest first
@@ -393,7 +393,7 @@ Server::~Server() {
 
 std::string Server::page_address() const { return state_->address("http"); }
 std::string Server::viewer_address() const { return state_->address("ws"); }
-Desk& Server::desk() { return state_->desk; }
+ViewerRequests& Server::requests() { return state_->requests; }
 
 void Server::populate(const channels::Population& population) {
   state_->feed.populate(population);

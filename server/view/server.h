@@ -12,8 +12,8 @@
 #include "channels/message.h"
 #include "http/address.h"
 #include "view/access.h"
-#include "view/desk.h"
 #include "view/feed.h"
+#include "view/viewer_requests.h"
 
 namespace ziggurat::view {
 
@@ -45,7 +45,7 @@ class Server {
   std::string viewer_address() const;
 
   /// What viewers want.
-  Desk& desk();
+  ViewerRequests& requests();
 
   // Each of these returns at once.
 

@@ -68,13 +68,13 @@ class Play {
   }
 
   void answer(bool is_done) {
-    const view::Desk::News news = desk_.take();
+    const view::ViewerRequests::Changes news = requests_.take();
     require(std::ranges::is_sorted(news.wanted));
     for (const view::Call& call : news.calls) {
       require(call.viewer != ids_[0]);
       hub_.answer(call, is_done, "{}");
     }
-    for (const view::Parameter& wish : news.wishes) hub_.set_parameter(wish);
+    for (const view::Parameter& parameter : news.parameters) hub_.set_parameter(parameter);
   }
 
   void read() {
@@ -85,8 +85,8 @@ class Play {
     });
   }
 
-  view::Desk desk_;
-  view::Hub hub_{{"1", "s", "id", false}, {{"real_time_factor", 1.0}, {"phase", std::string("x")}}, desk_};
+  view::ViewerRequests requests_;
+  view::Hub hub_{{"1", "s", "id", false}, {{"real_time_factor", 1.0}, {"phase", std::string("x")}}, requests_};
   std::vector<std::uint64_t> ids_;
   std::int64_t time_ = 0;
 };

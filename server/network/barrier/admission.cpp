@@ -12,7 +12,7 @@
 #include "network/barrier/directing.h"
 #include "network/barrier/exchange.h"
 #include "network/barrier/granting.h"
-#include "network/barrier/talk.h"
+#include "network/barrier/peer_messages.h"
 #include "network/barrier/timing.h"
 #include "wire/command_limits.h"
 #include "wire/direction.h"

@@ -10,7 +10,7 @@
 #include "network/barrier/exchange.h"
 #include "network/barrier/granting.h"
 #include "network/barrier/measuring.h"
-#include "network/barrier/talk.h"
+#include "network/barrier/peer_messages.h"
 #include "network/barrier/timing.h"
 #include "network/glob.h"
 #include "wire/fault.h"

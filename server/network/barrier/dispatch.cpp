@@ -8,7 +8,7 @@
 #include "network/barrier/departure.h"
 #include "network/barrier/directing.h"
 #include "network/barrier/exchange.h"
-#include "network/barrier/talk.h"
+#include "network/barrier/peer_messages.h"
 #include "wire/fault.h"
 
 namespace ziggurat::network {

@@ -5,10 +5,10 @@
 #include "network/barrier/departure.h"
 #include "network/barrier/directing.h"
 #include "network/barrier/measuring.h"
-#include "network/barrier/talk.h"
+#include "network/barrier/peer_messages.h"
 #include "network/barrier/timing.h"
 #include "wire/fault.h"
-#include "wire/zero.h"
+#include "wire/reset_commands.h"
 
 namespace ziggurat::network {
 
@@ -155,7 +155,7 @@ bool handle_command(Barrier& barrier, Session& session, world::Commands* command
 void zero_missing(Barrier& barrier, world::Commands& commands) {
   for (std::size_t robot = 0; robot < barrier.seats.size(); ++robot) {
     if (!barrier.seats[robot].has_left && !barrier.deadlines.is_zeroed(robot)) continue;
-    wire::zero(barrier.run->layout, robot, commands);
+    wire::reset_commands(barrier.run->layout, robot, commands);
     barrier.deadlines.clear_zero(robot);
   }
 }

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "network/barrier/departure.h"
-#include "network/barrier/talk.h"
+#include "network/barrier/peer_messages.h"
 #include "network/keys.h"
 #include "network/selection.h"
 #include "wire/fault.h"

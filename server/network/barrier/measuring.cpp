@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "network/barrier/talk.h"
+#include "network/barrier/peer_messages.h"
 
 namespace ziggurat::network {
 namespace {

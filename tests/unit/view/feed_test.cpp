@@ -71,8 +71,8 @@ struct Watched {
   }
 
   ShownWorld world;
-  Desk desk;
-  Hub hub{{"1", "s", "id", false}, {}, desk};
+  ViewerRequests requests;
+  Hub hub{{"1", "s", "id", false}, {}, requests};
   Viewer& viewer = hub.add(false);
   Feed feed;
   std::vector<std::uint32_t> ids;

@@ -10,7 +10,7 @@
 
 namespace ziggurat::run {
 
-class Steering {
+class ViewerControls {
  public:
   void connect(supervision::LocalCalls calls) { calls_ = std::move(calls); }
 

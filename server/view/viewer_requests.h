@@ -14,48 +14,48 @@
 
 namespace ziggurat::view {
 
-class Desk {
+class ViewerRequests {
  public:
   /// @throws std::system_error
-  Desk();
+  ViewerRequests();
 
   // On the thread that serves viewers.
 
-  void viewer_came(std::uint64_t viewer);
-  void viewer_left(std::uint64_t viewer);
+  void add_viewer(std::uint64_t viewer);
+  void remove_viewer(std::uint64_t viewer);
   /// @param wanted  ids of channels that any viewer subscribes to, ascending
   /// @param fresh  of these: without subscriber before
   /// @param kinds  of those that are wanted
   void set_wanted(std::vector<std::uint32_t> wanted, std::vector<std::uint32_t> fresh,
                   channels::Kinds kinds);
   void add_call(Call call);
-  void add_wish(Parameter wish);
+  void add_parameter(Parameter parameter);
 
   // On the thread of the run.
 
   /// Readable when there is something new that was not taken.
   int descriptor() const { return wake_.number(); }
   bool has_viewers() const { return viewer_count_ > 0; }
-  bool has_news() const { return has_news_; }
+  bool has_changes() const { return has_changes_; }
 
-  struct News {
+  struct Changes {
     std::vector<std::uint32_t> wanted;  ///< all of now
     std::vector<std::uint32_t> fresh;   ///< since the last call
     channels::Kinds kinds;              ///< of those that are wanted now
     std::vector<Call> calls;
-    std::vector<Parameter> wishes;
+    std::vector<Parameter> parameters;
   };
-  News take();
-  bool is_there(std::uint64_t viewer) const;
+  Changes take();
+  bool is_connected(std::uint64_t viewer) const;
 
  private:
   void wake();
 
   posix::Descriptor wake_;
   std::atomic<std::size_t> viewer_count_ = 0;
-  std::atomic<bool> has_news_ = false;
+  std::atomic<bool> has_changes_ = false;
   mutable std::mutex mutex_;  // of all below
-  News news_;
+  Changes changes_;
   std::set<std::uint64_t> viewers_;
 };
 

@@ -1,10 +1,10 @@
-#include "run/steering.h"
+#include "run/viewer_controls.h"
 
 #include <utility>
 
 namespace ziggurat::run {
 
-void Steering::serve(std::uint64_t tick) {
+void ViewerControls::serve(std::uint64_t tick) {
   if (!calls_.take) return;
   if (stepping_ && !calls_.can_hear(*stepping_)) {
     stepping_.reset();
@@ -13,12 +13,12 @@ void Steering::serve(std::uint64_t tick) {
   for (const network::Call& call : calls_.take()) handle(call, tick);
 }
 
-void Steering::set_paused(bool is_paused) {
+void ViewerControls::set_paused(bool is_paused) {
   is_paused_ = is_paused;
   paused_.update(is_paused);
 }
 
-void Steering::handle(const network::Call& call, std::uint64_t tick) {
+void ViewerControls::handle(const network::Call& call, std::uint64_t tick) {
   using Kind = wire::Request::Kind;
   switch (call.request.kind) {
     case Kind::pause:
@@ -42,7 +42,7 @@ void Steering::handle(const network::Call& call, std::uint64_t tick) {
   }
 }
 
-void Steering::stepped(std::uint64_t tick) {
+void ViewerControls::stepped(std::uint64_t tick) {
   if (!stepping_ || --steps_left_ > 0) return;
   set_paused(true);
   calls_.done(*std::exchange(stepping_, std::nullopt), tick);

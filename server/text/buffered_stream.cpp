@@ -1,4 +1,4 @@
-#include "text/outlet.h"
+#include "text/buffered_stream.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 
 namespace ziggurat::text {
 
-Outlet::Outlet(int descriptor, std::size_t most) : descriptor_(descriptor), most_(most) {
+BufferedStream::BufferedStream(int descriptor, std::size_t most) : descriptor_(descriptor), most_(most) {
   struct stat status {};
   const bool is_known = ::fstat(descriptor, &status) == 0;
   is_file_ = !is_known || S_ISREG(status.st_mode);
@@ -24,11 +24,11 @@ Outlet::Outlet(int descriptor, std::size_t most) : descriptor_(descriptor), most
   own_ = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
 }
 
-Outlet::~Outlet() {
+BufferedStream::~BufferedStream() {
   if (own_ >= 0) ::close(own_);
 }
 
-void Outlet::add(std::string_view text) {
+void BufferedStream::add(std::string_view text) {
   if (waiting_.size() - begin_ + text.size() > most_) {
     ++dropped_;
   } else {
@@ -36,10 +36,10 @@ void Outlet::add(std::string_view text) {
   }
 }
 
-void Outlet::add_always(std::string_view text) { waiting_ += text; }
+void BufferedStream::add_always(std::string_view text) { waiting_ += text; }
 
 /// @returns an error number; EAGAIN if the reader does not take anything now
-int Outlet::write_once(int wait_ms) {
+int BufferedStream::write_once(int wait_ms) {
   const bool can_block = own_ < 0 && !is_file_;
   pollfd ready{own_ >= 0 ? own_ : descriptor_, POLLOUT, 0};
   if ((wait_ms != 0 || can_block) && ::poll(&ready, 1, wait_ms) == 0) return EAGAIN;
@@ -52,7 +52,7 @@ int Outlet::write_once(int wait_ms) {
   return 0;
 }
 
-int Outlet::write() {
+int BufferedStream::write() {
   while (!is_empty()) {
     const int error = write_once(0);
     if (error == EAGAIN) break;
@@ -65,7 +65,7 @@ int Outlet::write() {
   return 0;
 }
 
-int Outlet::finish(std::chrono::milliseconds most) {
+int BufferedStream::finish(std::chrono::milliseconds most) {
   const auto end = std::chrono::steady_clock::now() + most;
   while (!is_empty()) {
     const auto rest =
@@ -77,6 +77,6 @@ int Outlet::finish(std::chrono::milliseconds most) {
   return write();
 }
 
-std::uint64_t Outlet::take_dropped() { return std::exchange(dropped_, 0); }
+std::uint64_t BufferedStream::take_dropped() { return std::exchange(dropped_, 0); }
 
 }  // namespace ziggurat::text

@@ -16,14 +16,14 @@
 #include "processes/signals.h"
 #include "replay/recording_file.h"
 #include "reports/console.h"
-#include "run/retelling.h"
+#include "run/controller_replay.h"
 #include "run/watch.h"
 #include "supervision/supervision.h"
 #include "supervision/world.h"
 
 namespace ziggurat::run {
 
-struct RehearsalOptions {
+struct ControllerCheckOptions {
   std::string recording;  ///< path
   bool quiet = false;
   std::vector<std::pair<std::string, std::string>> controllers;  ///< id, command of the user
@@ -36,10 +36,10 @@ struct RehearsalOptions {
   std::size_t most_told = 1;                 ///< differences that are printed
 };
 
-class Rehearsal {
+class ControllerCheck {
  public:
   /// Starts the controllers. @throws replay::RecordingError and what main() turns into a message
-  Rehearsal(const RehearsalOptions& options, processes::Signals& signals);
+  ControllerCheck(const ControllerCheckOptions& options, processes::Signals& signals);
 
   /// Prints the verdict. @returns an exit code
   int execute();
@@ -53,12 +53,12 @@ class Rehearsal {
   network::Config config() const;
   processes::Controllers start();
   std::vector<std::size_t> robots_without_controller() const;
-  bool is_rehearsed(std::size_t robot) const;
+  bool is_checked(std::size_t robot) const;
 
   std::optional<Ending> repeat();
   int tell(const std::optional<Ending>& ending);
 
-  const RehearsalOptions& options_;
+  const ControllerCheckOptions& options_;
   processes::Signals& signals_;
   reports::Console console_;
   const replay::RecordingFile file_;
@@ -72,7 +72,7 @@ class Rehearsal {
   supervision::Population population_;
   supervision::Supervision supervision_;
   Watch watch_;
-  std::optional<Retelling> retelling_;
+  std::optional<ControllerReplay> controller_replay_;
   std::size_t told_ = 0;
 };
 

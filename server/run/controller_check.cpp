@@ -1,4 +1,4 @@
-#include "run/rehearsal.h"
+#include "run/controller_check.h"
 
 #include <fmt/format.h>
 
@@ -30,7 +30,7 @@ std::size_t robot_named(const world::Layout& layout, const std::string& id) {
 
 }  // namespace
 
-Rehearsal::Rehearsal(const RehearsalOptions& options, processes::Signals& signals)
+ControllerCheck::ControllerCheck(const ControllerCheckOptions& options, processes::Signals& signals)
     : options_(options),
       signals_(signals),
       console_({options.quiet, false}),
@@ -47,7 +47,7 @@ Rehearsal::Rehearsal(const RehearsalOptions& options, processes::Signals& signal
              signals, console_, nullptr, [](auto...) {}) {}
 
 /// The commands of the recording are replaced by the user's own: none of them is left by itself.
-supervision::World Rehearsal::build_world() {
+supervision::World ControllerCheck::build_world() {
   if (options_.until) check_until(file_, *options_.until);
   const v1::RunStart& run = file_.run();
   scene::OpenScene opened = replay::read_scene(run, file_.files());
@@ -75,7 +75,7 @@ supervision::World Rehearsal::build_world() {
 }
 
 /// The controller of the robot that is tried.
-std::size_t Rehearsal::tried_controller(const scene::Scene& scene) const {
+std::size_t ControllerCheck::tried_controller(const scene::Scene& scene) const {
   for (const scene::Entity& entity : scene.entities) {
     if (entity.id == *options_.robot && entity.controller) return *entity.controller;
   }
@@ -89,7 +89,7 @@ std::size_t Rehearsal::tried_controller(const scene::Scene& scene) const {
 }
 
 /// Per robot at tick 0: its embedded script as a file; the user's own for the one that is tried.
-std::vector<std::string> Rehearsal::embed_scripts() {
+std::vector<std::string> ControllerCheck::embed_scripts() {
   begin_as_recorded(file_, world_);  // before anything is told who is in the world
   const std::string below = folder_.path() + "/files";
   write_below(below, file_.files());
@@ -110,7 +110,7 @@ std::vector<std::string> Rehearsal::embed_scripts() {
   return scripts;
 }
 
-bool Rehearsal::is_rehearsed(std::size_t robot) const {
+bool ControllerCheck::is_checked(std::size_t robot) const {
   const world::RobotLayout& layout = world_.simulation.layout().robots[robot];
   if (options_.robot && layout.id != *options_.robot) return false;
   const scene::Controller& controller = world_.scene.controllers[layout.controller];
@@ -119,24 +119,24 @@ bool Rehearsal::is_rehearsed(std::size_t robot) const {
 }
 
 /// Nothing but the controllers' own time ends a wait: deadlines would change commands.
-network::Config Rehearsal::config() const {
+network::Config ControllerCheck::config() const {
   network::Config config;
   config.private_endpoint = "ipc://" + folder_.path() + "/run";
   config.deadlines.assign(world_.scene.controllers.size(), {scene::DeadlinePolicy{}, true});
   return config;
 }
 
-std::vector<std::size_t> Rehearsal::robots_without_controller() const {
+std::vector<std::size_t> ControllerCheck::robots_without_controller() const {
   std::vector<std::size_t> robots;
   for (std::size_t r = 0; r < world_.simulation.layout().robots.size(); ++r) {
     const auto& recorded = file_.run().robots_without_controller();
     const bool had_none = std::ranges::find(recorded, r) != recorded.end();
-    if (had_none || !is_rehearsed(r)) robots.push_back(r);
+    if (had_none || !is_checked(r)) robots.push_back(r);
   }
   return robots;
 }
 
-processes::Controllers Rehearsal::start() {
+processes::Controllers ControllerCheck::start() {
   const auto without = robots_without_controller();
   const world::Layout& layout = world_.simulation.layout();
   if (without.size() == layout.robots.size()) {
@@ -164,7 +164,7 @@ processes::Controllers Rehearsal::start() {
   return {world_.scene, layout, scripts, settings};
 }
 
-int Rehearsal::execute() {
+int ControllerCheck::execute() {
   std::optional<Ending> ending;
   try {
     ending = repeat();
@@ -181,7 +181,7 @@ int Rehearsal::execute() {
 }
 
 /// Nothing: the recording was repeated to its end.
-std::optional<Rehearsal::Ending> Rehearsal::repeat() {
+std::optional<ControllerCheck::Ending> ControllerCheck::repeat() {
   const auto script_of = [this](const world::RobotLayout& robot) -> std::optional<std::string> {
     if (options_.robot) return std::nullopt;
     const std::string script = script_below(folder_.path() + "/files", file_.files(), world_.scene,
@@ -194,30 +194,30 @@ std::optional<Rehearsal::Ending> Rehearsal::repeat() {
     console_.result(fmt::format("tick {}: '{}': {} is {} in the recording, {} now", tick, robot,
                                 found.device, found.recorded, found.now));
   };
-  retelling_.emplace(file_, world_, world_, std::function<void()>(), Retelling::Parties{server_, controllers_, watch_}, gone_,
+  controller_replay_.emplace(file_, world_, world_, std::function<void()>(), ControllerReplay::Parties{server_, controllers_, watch_}, gone_,
                      script_of, tell);
-  return retelling_->tell([this](std::uint64_t tick) { return options_.until && tick > *options_.until; });
+  return controller_replay_->tell([this](std::uint64_t tick) { return options_.until && tick > *options_.until; });
 }
 
-int Rehearsal::tell(const std::optional<Ending>& ending) {
+int ControllerCheck::tell(const std::optional<Ending>& ending) {
   if (const auto missing = file_.shortcoming(); !missing.empty()) console_.warning(missing);
   if (!watch_.vanished().empty()) console_.fault(watch_.vanished());
   const auto failures = watch_.reported().failures();
-  for (const auto& [robot, difference] : retelling_->differences()) {
+  for (const auto& [robot, difference] : controller_replay_->differences()) {
     console_.report(fmt::format("'{}': {} of {} ticks differ, the first is {}", robot,
-                                difference.ticks, retelling_->ticks(), difference.first_tick));
+                                difference.ticks, controller_replay_->ticks(), difference.first_tick));
   }
   if (ending == Ending::interrupted || ending == Ending::forced) {
     return reports::exit_code::interrupted;
   }
   if (ending || !failures.empty()) return reports::exit_code::controller_failed;
-  if (!retelling_->differences().empty()) return reports::exit_code::differs;
-  if (retelling_->ticks() == 0) {
+  if (!controller_replay_->differences().empty()) return reports::exit_code::differs;
+  if (controller_replay_->ticks() == 0) {
     console_.fault("nothing was compared: in the recorded run no such robot with a controller was stepped");
     return reports::exit_code::fault;
   }
   console_.result(fmt::format("identical: the commands of {} ticks are as recorded",
-                              retelling_->ticks()));
+                              controller_replay_->ticks()));
   return reports::exit_code::finished;
 }
 

@@ -1,4 +1,4 @@
-#include "wire/zero.h"
+#include "wire/reset_commands.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace ziggurat::wire {
 
-void zero(const world::Layout& layout, std::size_t robot, world::Commands& commands) {
+void reset_commands(const world::Layout& layout, std::size_t robot, world::Commands& commands) {
   world::for_each_channel(world::commanded, [&](auto i) {
     const auto& channel = std::get<i>(world::commanded);
     if (channel.released == world::Released::kept) return;

@@ -12,7 +12,7 @@ namespace ziggurat::wire {
 /// Joint targets, currents of magnets, speeds of wheels and turrets and data of range and bearing
 /// become 0. LEDs, tags and a turret's mode stay as they are.
 /// @param robot  into the layout's robots
-void zero(const world::Layout& layout, std::size_t robot, world::Commands& commands);
+void reset_commands(const world::Layout& layout, std::size_t robot, world::Commands& commands);
 
 /// Takes back what the robots of a session have sent by radio at this tick.
 void forget_radio_messages(const Roster& roster, world::RadioMessages& messages);

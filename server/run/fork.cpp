@@ -1,4 +1,4 @@
-#include "run/past.h"
+#include "run/fork.h"
 
 #include <fmt/format.h>
 
@@ -49,9 +49,9 @@ bool have_same_layout(const world::Layout& a, const world::Layout& b) {
 
 }  // namespace
 
-Past::Past(const Options& options)
+Fork::Fork(const Options& options)
     : options_(options),
-      fork_(*options.fork),
+      fork_options_(*options.fork),
       file_(checked_recording(options)),
       files_(file_.files()),
       seed_(seed_of(options, file_.run())) {
@@ -59,7 +59,7 @@ Past::Past(const Options& options)
 }
 
 /// The only embedded file whose path ends so. @throws text::UsageError
-std::string Past::embedded_script(const std::string& name) const {
+std::string Fork::embedded_script(const std::string& name) const {
   std::vector<std::string> all, found;
   for (const auto& [path, bytes] : files_.all()) {
     if (!path.ends_with(".lua")) continue;
@@ -73,8 +73,8 @@ std::string Past::embedded_script(const std::string& name) const {
                                      fmt::join(all, ", ")));
 }
 
-void Past::use_own_scripts() {
-  for (const auto& [name, path] : fork_.scripts) {
+void Fork::use_own_scripts() {
+  for (const auto& [name, path] : fork_options_.scripts) {
     if (const auto fault = processes::compile_error(path)) throw text::UsageError("--script: " + *fault);
     std::ifstream file(path, std::ios::binary);
     std::string bytes{std::istreambuf_iterator<char>(file), {}};
@@ -82,33 +82,33 @@ void Past::use_own_scripts() {
   }
 }
 
-std::optional<std::uint64_t> Past::last_tick() const {
+std::optional<std::uint64_t> Fork::last_tick() const {
   const std::uint64_t tick = file_.run().last_tick();
   return tick == 0 ? std::nullopt : std::optional(tick);
 }
 
-bool Past::changes_world() const {
+bool Fork::changes_world() const {
   const scene::Variation& variation = options_.scene_file.variation;
   return !variation.settings.empty() || !variation.parameters.empty() ||
          seed_ != file_.run().seed();
 }
 
 /// Those of the user; no command of the recording starts by itself.
-void Past::set_commands(scene::Scene& scene) const {
+void Fork::set_commands(scene::Scene& scene) const {
   const auto& recorded = file_.run().controllers();
   for (scene::Controller& controller : scene.controllers) {
     const auto found =
         std::ranges::find(recorded, controller.id, [](const auto& each) { return each.id(); });
-    const bool is_trusted = fork_.trusts_commands && found != recorded.end();
+    const bool is_trusted = fork_options_.trusts_commands && found != recorded.end();
     controller.command = is_trusted ? found->command() : std::string();
   }
   for (scene::Director& director : scene.directors) {
-    if (!fork_.trusts_commands) director.command.clear();
+    if (!fork_options_.trusts_commands) director.command.clear();
   }
   for (const auto& [id, command] : options_.controllers) set_command(scene, id, command);
 }
 
-supervision::World Past::build(const simulation::TellStep& tell) const {
+supervision::World Fork::build(const simulation::TellStep& tell) const {
   const v1::RunStart& run = file_.run();
   scene::OpenScene opened = replay::read_scene(run, files_, options_.scene_file.variation);
   set_commands(opened.scene);
@@ -117,28 +117,28 @@ supervision::World Past::build(const simulation::TellStep& tell) const {
 }
 
 /// Puts the world of the fork into the recorded state.
-void Past::branch(supervision::World& world) const {
+void Fork::branch(supervision::World& world) const {
   world.branch(recorded_->simulation.snapshot(), options_.seed ? seed_ : recorded_->seed);
 }
 
-void Past::prepare(supervision::World& world) {
+void Fork::prepare(supervision::World& world) {
   const v1::RunStart& run = file_.run();
   const bool has_other_values = changes_world();
   if (has_other_values) {
     recorded_.reset(new supervision::World{run.scene(), replay::read_scene(run, file_.files()),
                                            run.seed(), {}, run.scene_hash()});
   }
-  supervision::World& past = recorded_ ? *recorded_ : world;
-  begin_as_recorded(file_, past);
+  supervision::World& recorded_world = recorded_ ? *recorded_ : world;
+  begin_as_recorded(file_, recorded_world);
   if (!has_other_values) return;
   const auto refuse = [](const std::string& why) {
     throw replay::RecordingError("--set, --param, --seed: the fork cannot go on from recorded states: " +
                                  why);
   };
-  if (past.scene.experiment.ticks_per_second != world.scene.experiment.ticks_per_second) {
+  if (recorded_world.scene.experiment.ticks_per_second != world.scene.experiment.ticks_per_second) {
     refuse("ticks_per_second must stay as it is");
   }
-  if (!have_same_layout(past.simulation.layout(), world.simulation.layout())) {
+  if (!have_same_layout(recorded_world.simulation.layout(), world.simulation.layout())) {
     refuse("it must have the same entities with the same links");
   }
   try {
@@ -148,7 +148,7 @@ void Past::prepare(supervision::World& world) {
   }
 }
 
-std::vector<std::string> Past::write_scripts(const supervision::World& world,
+std::vector<std::string> Fork::write_scripts(const supervision::World& world,
                                              const std::string& folder) const {
   write_below(folder, files_);
   const auto& robots = world.simulation.layout().robots;
@@ -159,7 +159,7 @@ std::vector<std::string> Past::write_scripts(const supervision::World& world,
   return scripts;
 }
 
-std::vector<scene::Director> Past::directors(const supervision::World& world,
+std::vector<scene::Director> Fork::directors(const supervision::World& world,
                                              const std::string& folder) const {
   std::vector<scene::Director> directors = world.scene.directors;
   for (scene::Director& director : directors) {
@@ -174,7 +174,7 @@ std::vector<scene::Director> Past::directors(const supervision::World& world,
   return directors;
 }
 
-std::vector<std::size_t> Past::idle_robots(const supervision::World& world,
+std::vector<std::size_t> Fork::idle_robots(const supervision::World& world,
                                            const std::vector<std::string>& scripts) const {
   const auto& recorded = file_.run().robots_without_controller();
   const auto& robots = world.simulation.layout().robots;
@@ -199,10 +199,10 @@ std::vector<std::size_t> Past::idle_robots(const supervision::World& world,
   return idle;
 }
 
-std::optional<Ending> Past::relive(supervision::World& world, const Retelling::Parties& parties,
+std::optional<Ending> Fork::replay_to_begin(supervision::World& world, const ControllerReplay::Parties& parties,
                                    const std::vector<std::size_t>& idle, const std::string& folder,
                                    processes::Signals& signals, reports::Console& console) {
-  supervision::World& past = recorded_ ? *recorded_ : world;
+  supervision::World& recorded_world = recorded_ ? *recorded_ : world;
   std::vector<bool> gone(world.simulation.layout().robots.size());
   for (const std::size_t robot : idle) gone[robot] = true;
   const auto script_of = [&](const world::RobotLayout& robot) -> std::optional<std::string> {
@@ -214,8 +214,8 @@ std::optional<Ending> Past::relive(supervision::World& world, const Retelling::P
   const auto follow = [&] {
     if (recorded_) branch(world);
   };
-  Retelling retelling(file_, past, world, follow, parties, std::move(gone), script_of, {});
-  const auto is_there = [this](std::uint64_t tick) { return tick == fork_.at; };
+  ControllerReplay controller_replay(file_, recorded_world, world, follow, parties, std::move(gone), script_of, {});
+  const auto is_there = [this](std::uint64_t tick) { return tick == fork_options_.at; };
   using clock = std::chrono::steady_clock;
   auto last_look = clock::now();
   const auto meanwhile = [&] {  // clients are heard while nothing is asked of them
@@ -224,50 +224,50 @@ std::optional<Ending> Past::relive(supervision::World& world, const Retelling::P
     last_look = clock::now();
     return signals.take().interruptions == 0;
   };
-  if (fork_.fresh) {
-    if (!retelling.skip(is_there, meanwhile)) return Ending::interrupted;
-  } else if (const auto ending = retelling.tell(is_there)) {
+  if (fork_options_.fresh) {
+    if (!controller_replay.skip(is_there, meanwhile)) return Ending::interrupted;
+  } else if (const auto ending = controller_replay.tell(is_there)) {
     return ending;
   }
-  if (retelling.has_ended()) {
+  if (controller_replay.has_ended()) {
     if (file_.states() == 0) {
       throw text::UsageError("the recording holds no tick: the run ended before its first");
     }
     throw text::UsageError(fmt::format("--at {}: the recording has no such tick, it ends at tick {}",
-                                       fork_.at, past.simulation.state().tick));
+                                       fork_options_.at, recorded_world.simulation.state().tick));
   }
   follow();
-  if (const world::Commands* commanded = retelling.commanded()) {
+  if (const world::Commands* commanded = controller_replay.commanded()) {
     world.simulation.commands() = *commanded;  // values stay until a controller changes them
     world.simulation.commands().radio_messages.clear();
     world.simulation.commands().pushes.clear();
   }
-  if (!fork_.fresh) report(retelling, console);
+  if (!fork_options_.fresh) report(controller_replay, console);
   return std::nullopt;
 }
 
-void Past::report(const Retelling& retelling, reports::Console& console) const {
-  const auto& differences = retelling.differences();
+void Fork::report(const ControllerReplay& controller_replay, reports::Console& console) const {
+  const auto& differences = controller_replay.differences();
   if (differences.empty()) {
     return console.notice(fmt::format(
-        "up to tick {} the controllers command what they did in the recording", fork_.at));
+        "up to tick {} the controllers command what they did in the recording", fork_options_.at));
   }
   constexpr std::size_t most = 5;
   std::vector<std::string> robots;
   for (const auto& [robot, difference] : differences) {
     if (robots.size() == most) break;
     robots.push_back(fmt::format("'{}' from tick {} on, in {} of {} ticks", robot,
-                                 difference.first_tick, difference.ticks, retelling.ticks()));
+                                 difference.first_tick, difference.ticks, controller_replay.ticks()));
   }
   if (differences.size() > most) {
     robots.push_back(fmt::format("and {} more robots", differences.size() - most));
   }
   console.notice(fmt::format(
-      "up to tick {} the controllers command otherwise than in the recording, whose commands were applied: {}", fork_.at,
+      "up to tick {} the controllers command otherwise than in the recording, whose commands were applied: {}", fork_options_.at,
       fmt::join(robots, "; ")));
 }
 
-void Past::describe(const supervision::World& world, recorder::Start& start) const {
+void Fork::describe(const supervision::World& world, recorder::Start& start) const {
   const v1::RunStart& run = file_.run();
   start.lenient = run.lenient();
   start.clock = run.clock();

@@ -1,6 +1,6 @@
 // Writing to a reader that stops: it takes no time, and what is lost is counted.
 
-#include "text/outlet.h"
+#include "text/buffered_stream.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -29,17 +29,17 @@ struct Pipe {
   int from = -1, to = -1;
 };
 
-TEST(Outlet, WritesToAReaderThatStopsWithoutWaiting) {
+TEST(BufferedStream, WritesToAReaderThatStopsWithoutWaiting) {
   const Pipe pipe;
-  Outlet outlet(pipe.to, 1'000'000);
+  BufferedStream stream(pipe.to, 1'000'000);
   const std::string line(99, 'x');
   for (int i = 0; i < 100'000; ++i) {
-    outlet.add(line + "\n");
-    ASSERT_EQ(outlet.write(), 0);
+    stream.add(line + "\n");
+    ASSERT_EQ(stream.write(), 0);
   }
-  EXPECT_FALSE(outlet.is_empty());
+  EXPECT_FALSE(stream.is_empty());
   EXPECT_EQ(::fcntl(pipe.to, F_GETFL) & O_NONBLOCK, 0) << "other programs share the descriptor";
-  outlet.add_always("end\n");
+  stream.add_always("end\n");
   std::size_t read = 0;
   std::string last;
   std::thread reader([&] {
@@ -52,31 +52,31 @@ TEST(Outlet, WritesToAReaderThatStopsWithoutWaiting) {
       last = last.substr(last.size() - std::min<std::size_t>(last.size(), 8));
     }
   });
-  EXPECT_EQ(outlet.finish(), 0);
+  EXPECT_EQ(stream.finish(), 0);
   reader.join();
-  const std::uint64_t dropped = outlet.take_dropped();
+  const std::uint64_t dropped = stream.take_dropped();
   EXPECT_GT(dropped, 80'000U);
   EXPECT_EQ(read, (100'000 - dropped) * 100 + 4) << "what was not dropped is there";
-  EXPECT_EQ(outlet.take_dropped(), 0U);
+  EXPECT_EQ(stream.take_dropped(), 0U);
 }
 
-TEST(Outlet, SixteenMebibytesWait) {
+TEST(BufferedStream, SixteenMebibytesWait) {
   const Pipe pipe;
-  Outlet outlet(pipe.to);
+  BufferedStream stream(pipe.to);
   const std::string part(std::size_t{1} << 20, 'x');
-  for (int i = 0; i < 16; ++i) outlet.add(part);
-  EXPECT_EQ(outlet.take_dropped(), 0U);
-  outlet.add("x");
-  EXPECT_EQ(outlet.take_dropped(), 1U);
+  for (int i = 0; i < 16; ++i) stream.add(part);
+  EXPECT_EQ(stream.take_dropped(), 0U);
+  stream.add("x");
+  EXPECT_EQ(stream.take_dropped(), 1U);
 }
 
-TEST(Outlet, TellsThatTheReaderIsGone) {
+TEST(BufferedStream, TellsThatTheReaderIsGone) {
   std::signal(SIGPIPE, SIG_IGN);
   Pipe pipe;
-  Outlet outlet(pipe.to);
+  BufferedStream stream(pipe.to);
   ::close(pipe.from);
-  outlet.add("text");
-  EXPECT_EQ(outlet.write(), EPIPE);
+  stream.add("text");
+  EXPECT_EQ(stream.write(), EPIPE);
   pipe.from = ::open("/dev/null", O_RDONLY);
 }
 

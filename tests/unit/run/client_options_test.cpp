@@ -1,4 +1,4 @@
-#include "run/askers.h"
+#include "run/client_options.h"
 
 #include <gtest/gtest.h>
 
@@ -9,14 +9,14 @@
 namespace ziggurat::run {
 namespace {
 
-struct AskersTest : testing::Test {
-  AskersTest() {
+struct ClientOptionsTest : testing::Test {
+  ClientOptionsTest() {
     scene.controllers.emplace_back().lua = true;
     config.deadlines.resize(1);
   }
   std::string refused() const {
     try {
-      check_askers(options, askers_of(options, scene, is_serve, with_controllers), config);
+      check_client_options(options, expected_clients(options, scene, is_serve, with_controllers), config);
     } catch (const text::UsageError& error) {
       return std::string(error.what()).substr(0, std::string(error.what()).find(' '));
     }
@@ -29,7 +29,7 @@ struct AskersTest : testing::Test {
   bool is_serve = false, with_controllers = true;
 };
 
-TEST_F(AskersTest, WhatOnlyClientsAskForIsRefusedWithoutAny) {
+TEST_F(ClientOptionsTest, WhatOnlyClientsAskForIsRefusedWithoutAny) {
   for (const bool is_of_directors : {false, true}) {
     options = {};
     options.snapshot_folder = is_of_directors ? "" : "x";
@@ -55,7 +55,7 @@ TEST_F(AskersTest, WhatOnlyClientsAskForIsRefusedWithoutAny) {
   }
 }
 
-TEST_F(AskersTest, RobotsAreSpawnedByDirectorsAndViewersToo) {
+TEST_F(ClientOptionsTest, RobotsAreSpawnedByDirectorsAndViewersToo) {
   options.spawned_script_folders = {"x"};
   EXPECT_EQ(refused(), "--allow-spawned-scripts");
   options.view = "";
@@ -65,7 +65,7 @@ TEST_F(AskersTest, RobotsAreSpawnedByDirectorsAndViewersToo) {
   EXPECT_EQ(refused(), "");
 }
 
-TEST_F(AskersTest, DropsAreAllowedWhereADeadlineDrops) {
+TEST_F(ClientOptionsTest, DropsAreAllowedWhereADeadlineDrops) {
   options.allow_drops = true;
   EXPECT_EQ(refused(), "--allow-drops");
   config.deadlines[0].policy = {scene::DeadlineAction::hold, 50, 0};

@@ -1,4 +1,4 @@
-#include "run/retelling.h"
+#include "run/controller_replay.h"
 
 #include <fmt/format.h>
 
@@ -13,38 +13,38 @@ namespace ziggurat::run {
 
 using reports::Ending;
 
-Retelling::Retelling(const replay::RecordingFile& file, supervision::World& past,
-                     const supervision::World& present, std::function<void()> follow,
+ControllerReplay::ControllerReplay(const replay::RecordingFile& file, supervision::World& recorded,
+                     const supervision::World& told, std::function<void()> follow,
                      const Parties& parties, std::vector<bool> gone, ScriptOf script_of,
                      TellDifference tell_difference)
     : file_(file),
-      past_(past),
-      present_(present),
+      recorded_(recorded),
+      told_world_(told),
       follow_(std::move(follow)),
       parties_(parties),
       gone_(std::move(gone)),
       script_of_(std::move(script_of)),
       tell_difference_(std::move(tell_difference)),
       states_(file_),
-      replay_({past_.scene, past_.additions, past_.simulation, past_.seed}, file_.files().opener(),
+      replay_({recorded_.scene, recorded_.additions, recorded_.simulation, recorded_.seed}, file_.files().opener(),
               [this] { return states_.next(); }) {
   replay_.tell([this](const v1::Act& act) { take(act); });
-  replay_.open_snapshots_by(embedded_snapshots(file_, past_));
+  replay_.open_snapshots_by(embedded_snapshots(file_, recorded_));
 }
 
 /// To the next state, which must be as recorded.
-bool Retelling::advance() {
+bool ControllerReplay::advance() {
   if (!replay_.advance()) {
     has_ended_ = true;
     return false;
   }
   if (replay_.is_same()) return true;
   throw replay::RecordingError("what controllers are given would differ: " +
-                               explain_difference(file_, states_, replay_, past_));
+                               explain_difference(file_, states_, replay_, recorded_));
 }
 
-std::optional<Ending> Retelling::tell(const std::function<bool(std::uint64_t)>& is_end) {
-  simulation::Simulation& simulation = past_.simulation;
+std::optional<Ending> ControllerReplay::tell(const std::function<bool(std::uint64_t)>& is_end) {
+  simulation::Simulation& simulation = recorded_.simulation;
   while (advance()) {
     const std::uint64_t tick = simulation.state().tick;
     if (is_end(tick)) break;
@@ -67,9 +67,9 @@ std::optional<Ending> Retelling::tell(const std::function<bool(std::uint64_t)>& 
 }
 
 /// What directors have shown on devices that no controller sets.
-void Retelling::take_shown() {
-  const world::Layout& layout = past_.simulation.layout();
-  const world::Commands& shown = past_.simulation.commands();
+void ControllerReplay::take_shown() {
+  const world::Layout& layout = recorded_.simulation.layout();
+  const world::Commands& shown = recorded_.simulation.commands();
   auto robot = layout.robots.begin();  // they ascend by entity
   for (std::size_t entity = 0; entity < layout.entities.size(); ++entity) {
     if (robot != layout.robots.end() && robot->entity < entity) ++robot;
@@ -87,11 +87,11 @@ void Retelling::take_shown() {
   }
 }
 
-bool Retelling::skip(const std::function<bool(std::uint64_t)>& is_end,
+bool ControllerReplay::skip(const std::function<bool(std::uint64_t)>& is_end,
                      const std::function<bool()>& meanwhile) {
   is_told_ = false;
   while (advance()) {
-    if (is_end(past_.simulation.state().tick)) break;
+    if (is_end(recorded_.simulation.state().tick)) break;
     replay_.act();
     if (!meanwhile()) return false;
   }
@@ -99,14 +99,14 @@ bool Retelling::skip(const std::function<bool(std::uint64_t)>& is_end,
 }
 
 /// All robots have a controller, which begins with this world.
-std::optional<Ending> Retelling::restart() {
+std::optional<Ending> ControllerReplay::restart() {
   is_restarted_ = false;
-  answered_ = past_.simulation.commands();
+  answered_ = recorded_.simulation.commands();
   answered_.radio_messages.clear();
   return parties_.watch.gather();
 }
 
-void Retelling::take(const v1::Act& act) {
+void ControllerReplay::take(const v1::Act& act) {
   const bool changes_population =
       act.has_reset() || act.has_restore() || act.has_spawn() || act.has_remove();
   if (follow_ && changes_population) follow_();
@@ -117,33 +117,33 @@ void Retelling::take(const v1::Act& act) {
 }
 
 /// Controllers that were told nothing yet are not told of a reset either.
-void Retelling::take_reset() {
-  answered_ = past_.simulation.commands();
+void ControllerReplay::take_reset() {
+  answered_ = recorded_.simulation.commands();
   answered_.radio_messages.clear();
-  const std::size_t robots = present_.simulation.layout().robots.size();
+  const std::size_t robots = told_world_.simulation.layout().robots.size();
   const bool has_fewer = robots < gone_.size();
   gone_.resize(robots);
   if (!is_told_ && !has_fewer) return;
-  parties_.server.restart({past_.seed});
+  parties_.server.restart({recorded_.seed});
   parties_.controllers.forget_robots(robots);
   parties_.watch.forget_spawned();
   is_restarted_ = true;
 }
 
 /// Of controllers that were given nothing yet, as the server does it with those that connect later.
-void Retelling::take_restore(const std::string& snapshot) {
+void ControllerReplay::take_restore(const std::string& snapshot) {
   if (has_told_) {
     throw replay::RecordingError(fmt::format(
         "the run went back to the snapshot '{}', and controllers that are started now cannot; "
         "--fresh of 'ziggurat fork' starts them later",
         snapshot));
   }
-  simulation::Simulation& simulation = past_.simulation;
+  simulation::Simulation& simulation = recorded_.simulation;
   const std::size_t robots = replay_.common_robots();
   answered_ = simulation.commands();
   answered_.radio_messages.clear();
   parties_.server.restart(
-      {past_.seed, {}, {{snapshot, simulation.state().tick, &answered_, robots}}});
+      {recorded_.seed, {}, {{snapshot, simulation.state().tick, &answered_, robots}}});
   parties_.controllers.forget_robots(robots);
   parties_.watch.forget_spawned();
   gone_.resize(robots);
@@ -155,14 +155,14 @@ void Retelling::take_restore(const std::string& snapshot) {
   add_robots();
 }
 
-bool Retelling::is_absent(std::size_t robot) const {
-  const simulation::Simulation& simulation = past_.simulation;
+bool ControllerReplay::is_absent(std::size_t robot) const {
+  const simulation::Simulation& simulation = recorded_.simulation;
   return simulation.state().is_absent(simulation.layout().robots[robot].entity);
 }
 
 /// The places of what was spawned begin with the values of the world.
-void Retelling::take_spawn() {
-  const world::Commands& now = past_.simulation.commands();
+void ControllerReplay::take_spawn() {
+  const world::Commands& now = recorded_.simulation.commands();
   world::for_each_channel(world::commanded, [&](auto i) {
     constexpr auto& channel = std::get<i>(world::commanded);
     auto& values = answered_.*channel.values;
@@ -173,8 +173,8 @@ void Retelling::take_spawn() {
 }
 
 /// Those that the layout has behind the known ones.
-void Retelling::add_robots() {
-  const world::Layout& layout = present_.simulation.layout();
+void ControllerReplay::add_robots() {
+  const world::Layout& layout = told_world_.simulation.layout();
   const std::size_t first = gone_.size();
   if (layout.robots.size() == first) return;
   std::vector<std::string> scripts;
@@ -183,7 +183,7 @@ void Retelling::add_robots() {
     gone_.push_back(!script || is_absent(robot));
     scripts.push_back(script.value_or(""));
   }
-  const simulation::Simulation& simulation = past_.simulation;
+  const simulation::Simulation& simulation = recorded_.simulation;
   parties_.server.add_robots(scripts, simulation.observations(), simulation.state().tag_payloads);
   for (std::size_t robot = first; robot < layout.robots.size(); ++robot) {
     if (gone_[robot]) {
@@ -194,8 +194,8 @@ void Retelling::add_robots() {
   }
 }
 
-void Retelling::remove_robot(const std::string& entity) {
-  const world::Layout& layout = present_.simulation.layout();
+void ControllerReplay::remove_robot(const std::string& entity) {
+  const world::Layout& layout = told_world_.simulation.layout();
   for (std::size_t r = 0; r < layout.robots.size(); ++r) {
     if (layout.entities[layout.robots[r].entity].id != entity || gone_[r]) continue;
     gone_[r] = true;
@@ -204,15 +204,15 @@ void Retelling::remove_robot(const std::string& entity) {
   }
 }
 
-void Retelling::compare() {
-  const world::Layout& layout = past_.simulation.layout();
+void ControllerReplay::compare() {
+  const world::Layout& layout = recorded_.simulation.layout();
   const std::uint64_t tick = replay_.inputs().tick();
   bool has_compared = false;
   for (std::size_t r = 0; r < layout.robots.size(); ++r) {
-    if (gone_[r] || past_.simulation.state().is_absent(layout.robots[r].entity)) continue;
+    if (gone_[r] || recorded_.simulation.state().is_absent(layout.robots[r].entity)) continue;
     has_compared = true;
     const auto found =
-        replay::first_difference(layout, r, past_.simulation.commands(), answered_);
+        replay::first_difference(layout, r, recorded_.simulation.commands(), answered_);
     if (!found) continue;
     const std::string& id = layout.robots[r].id;
     ++differences_.try_emplace(id, Difference{tick, 0}).first->second.ticks;

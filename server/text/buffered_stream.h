@@ -10,14 +10,14 @@
 
 namespace ziggurat::text {
 
-class Outlet {
+class BufferedStream {
  public:
   /// @param descriptor  open for writing; it stays open, and its flags as they are
   /// @param most        bytes that may wait
-  explicit Outlet(int descriptor, std::size_t most = std::size_t{16} << 20);
-  ~Outlet();
-  Outlet(const Outlet&) = delete;
-  Outlet& operator=(const Outlet&) = delete;
+  explicit BufferedStream(int descriptor, std::size_t most = std::size_t{16} << 20);
+  ~BufferedStream();
+  BufferedStream(const BufferedStream&) = delete;
+  BufferedStream& operator=(const BufferedStream&) = delete;
 
   /// What is to be written, in order. It is dropped if too much waits already.
   void add(std::string_view text);

@@ -11,16 +11,16 @@
 #include "recorder/start.h"
 #include "replay/recording_file.h"
 #include "reports/console.h"
+#include "run/controller_replay.h"
 #include "run/options.h"
-#include "run/retelling.h"
 #include "supervision/world.h"
 
 namespace ziggurat::run {
 
-class Past {
+class Fork {
  public:
   /// Opens the recording. @throws replay::RecordingError, text::UsageError; all of options.fork is needed
-  explicit Past(const Options& options);
+  explicit Fork(const Options& options);
 
   const std::string& scene_path() const { return file_.run().scene(); }
   /// When the recorded run was to end; none: when it was stopped.
@@ -48,7 +48,7 @@ class Past {
   /// @param idle    robots without controller
   /// @param folder  of write_scripts()
   /// @return  nothing, or what ended the run on the way
-  std::optional<reports::Ending> relive(supervision::World& world, const Retelling::Parties& parties,
+  std::optional<reports::Ending> replay_to_begin(supervision::World& world, const ControllerReplay::Parties& parties,
                                         const std::vector<std::size_t>& idle,
                                         const std::string& folder, processes::Signals& signals,
                                         reports::Console& console);
@@ -63,10 +63,10 @@ class Past {
   void use_own_scripts();
   std::string embedded_script(const std::string& name) const;
   void set_commands(scene::Scene& scene) const;
-  void report(const Retelling& retelling, reports::Console& console) const;
+  void report(const ControllerReplay& controller_replay, reports::Console& console) const;
 
   const Options& options_;
-  const ForkOptions& fork_;
+  const ForkOptions& fork_options_;
   const replay::RecordingFile file_;
   replay::EmbeddedFiles files_;  ///< of the recording, with the user's own scripts
   std::uint64_t seed_;           ///< of the fork

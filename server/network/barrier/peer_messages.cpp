@@ -1,4 +1,4 @@
-#include "network/barrier/talk.h"
+#include "network/barrier/peer_messages.h"
 
 #include <fmt/format.h>
 

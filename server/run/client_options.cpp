@@ -1,4 +1,4 @@
-#include "run/askers.h"
+#include "run/client_options.h"
 
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ bool drops(const network::Config::Deadline& deadline) {
 
 }  // namespace
 
-Askers askers_of(const Options& options, const scene::Scene& scene, bool is_serve, bool with_controllers) {
+ExpectedClients expected_clients(const Options& options, const scene::Scene& scene, bool is_serve, bool with_controllers) {
   const auto has_command = [](const scene::Director& director) { return !director.command.empty(); };
   const bool starts_programs = !std::ranges::all_of(scene.controllers, processes::runs_script) ||
                                std::ranges::any_of(scene.directors, has_command) ||
@@ -31,12 +31,12 @@ Askers askers_of(const Options& options, const scene::Scene& scene, bool is_serv
           with_controllers && !scene.directors.empty()};
 }
 
-void check_askers(const Options& options, const Askers& askers, const network::Config& config) {
-  if (askers.clients) return;
+void check_client_options(const Options& options, const ExpectedClients& clients, const network::Config& config) {
+  if (clients.can_connect) return;
   constexpr const char* none = "the run has no endpoint and starts Lua scripts at most, so that no client can connect";
   if (!options.snapshot_folder.empty()) refuse_option("--snapshot-folder", none, "--endpoint URL");
   if (options.allows_directors) refuse_option("--allow-director", none, "--endpoint URL");
-  if (!options.spawned_script_folders.empty() && !askers.directors && !options.view) {
+  if (!options.spawned_script_folders.empty() && !clients.has_directors && !options.view) {
     refuse_option("--allow-spawned-scripts", "neither a client nor a director or viewer can spawn robots in this run",
                   "--endpoint URL or --view");
   }

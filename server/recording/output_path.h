@@ -13,10 +13,10 @@ namespace ziggurat::recording {
 
 /// Walks to where a path leads, from folder to folder and along links, and looks at who has put each of them there. What was
 /// looked at stays open, so that it is not exchanged before the file is opened.
-class Place {
+class OutputPath {
  public:
   /// See error() and planted() before the rest is used.
-  explicit Place(const std::string& path);
+  explicit OutputPath(const std::string& path);
 
   int error() const { return error_; }  ///< of the system: a folder is not there, or can't be entered
   /// What another user has put on the way or at its end where all can write, or below a folder that is there so.
@@ -36,19 +36,19 @@ class Place {
     bool is_planted = false;  ///< by another user, in a folder that all can write, or below one that is planted
   };
 
-  void push(const std::string& path);
-  void begin_at(const char* folder);
+  void push_names(const std::string& path);
+  void start_at(const char* folder);
   void enter(posix::Descriptor opened, bool is_planted);
   void step();
-  static bool is_of_another(const Folder& around, uid_t owner);
-  void tell(const Folder& around, mode_t mode, bool is_last);
+  static bool is_foreign(const Folder& parent, uid_t owner);
+  void reject(const Folder& parent, mode_t mode, bool is_last);
   void follow(const posix::Descriptor& link, bool is_last);
 
   std::vector<Folder> folders_;    // from the first on
-  std::vector<std::string> rest_;  // names that are still to come, the next one last
+  std::vector<std::string> remaining_;  // names that are still to come, the next one last
   std::string name_;
   bool is_of_proc_ = false;
-  int links_ = 0, error_ = 0;
+  int followed_links_ = 0, error_ = 0;
   std::optional<std::string> planted_;
 };
 

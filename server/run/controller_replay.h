@@ -19,7 +19,7 @@
 
 namespace ziggurat::run {
 
-class Retelling {
+class ControllerReplay {
  public:
   /// Of the commands of one robot.
   struct Difference {
@@ -37,13 +37,12 @@ class Retelling {
   };
 
   /// All that is given must outlive this, but for the functions.
-  /// @param past     of the recording's scene and seed, at its begin; the recorded run is repeated in it
-  /// @param present  the world that the controllers were told of: the same one, or one of a scene with
-  ///                 other values
-  /// @param follow   gives the present world the population of the past one; empty: it is the same
-  /// @param gone     robots that no controller has
-  Retelling(const replay::RecordingFile& file, supervision::World& past,
-            const supervision::World& present, std::function<void()> follow, const Parties& parties,
+  /// @param recorded  world of the recording's scene and seed, at its begin; the recorded run is repeated in it
+  /// @param told      world that the controllers were told of: the same one, or one of a scene with other values
+  /// @param follow    gives the told world the population of the recorded one; empty: it is the same
+  /// @param gone      robots that no controller has
+  ControllerReplay(const replay::RecordingFile& file, supervision::World& recorded,
+            const supervision::World& told, std::function<void()> follow, const Parties& parties,
             std::vector<bool> gone, ScriptOf script_of, TellDifference tell_difference);
 
   /// To the state for which `is_end(tick)` holds, which controllers are not given, or to the end of the
@@ -78,8 +77,8 @@ class Retelling {
   void take_shown();
 
   const replay::RecordingFile& file_;
-  supervision::World& past_;
-  const supervision::World& present_;
+  supervision::World& recorded_;
+  const supervision::World& told_world_;
   const std::function<void()> follow_;
   Parties parties_;
   std::vector<bool> gone_;
