@@ -155,7 +155,7 @@ class Server {
   Report take_report();
 
  private:
-  friend class DirectorsDesk;
+  friend class ServerDirectors;
   friend void keep_alive(Server& server);
   friend Need need_of(const Server& server, const std::vector<std::string>& ids);
   struct State;
@@ -170,10 +170,10 @@ void keep_alive(Server& server);
 Need need_of(const Server& server, const std::vector<std::string>& ids);
 
 /// The directors of a server.
-class DirectorsDesk {
+class ServerDirectors {
  public:
   /// @param server  must outlive this
-  explicit DirectorsDesk(Server& server) : state_(*server.state_) {}
+  explicit ServerDirectors(Server& server) : state_(*server.state_) {}
 
   /// Told of each Direction that arrives, before it is taken: what is wrong with it in the present world.
   void check_by(std::function<std::optional<wire::Fault>(const wire::Direction&)> check);

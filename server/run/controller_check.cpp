@@ -194,7 +194,7 @@ std::optional<ControllerCheck::Ending> ControllerCheck::repeat() {
     console_.result(fmt::format("tick {}: '{}': {} is {} in the recording, {} now", tick, robot,
                                 found.device, found.recorded, found.now));
   };
-  controller_replay_.emplace(file_, world_, world_, std::function<void()>(), ControllerReplay::Parties{server_, controllers_, watch_}, gone_,
+  controller_replay_.emplace(file_, world_, world_, std::function<void()>(), ControllerReplay::Services{server_, controllers_, watch_}, gone_,
                      script_of, tell);
   return controller_replay_->tell([this](std::uint64_t tick) { return options_.until && tick > *options_.until; });
 }

@@ -15,13 +15,13 @@ using reports::Ending;
 
 ControllerReplay::ControllerReplay(const replay::RecordingFile& file, supervision::World& recorded,
                      const supervision::World& told, std::function<void()> follow,
-                     const Parties& parties, std::vector<bool> gone, ScriptOf script_of,
+                     const Services& services, std::vector<bool> gone, ScriptOf script_of,
                      TellDifference tell_difference)
     : file_(file),
       recorded_(recorded),
       told_world_(told),
       follow_(std::move(follow)),
-      parties_(parties),
+      services_(services),
       gone_(std::move(gone)),
       script_of_(std::move(script_of)),
       tell_difference_(std::move(tell_difference)),
@@ -53,13 +53,13 @@ std::optional<Ending> ControllerReplay::tell(const std::function<bool(std::uint6
     }
     const wire::Truth truth{simulation.layout(), simulation.entities(), simulation.state(),
                             simulation.observations(), simulation.contacts()};
-    parties_.server.publish(simulation.observations(), simulation.state().tag_payloads, &truth);
+    services_.server.publish(simulation.observations(), simulation.state().tag_payloads, &truth);
     has_told_ = true;
     answered_.radio_messages.clear();
-    if (const auto ending = parties_.watch.collect(answered_, tick)) return ending;
+    if (const auto ending = services_.watch.collect(answered_, tick)) return ending;
     const bool has_commands = replay_.inputs().has_commands();
     replay_.act();
-    simulation.list_contacts(network::DirectorsDesk(parties_.server).wants_contacts());
+    simulation.list_contacts(network::ServerDirectors(services_.server).wants_contacts());
     if (has_commands) compare();
   }
   if (!is_restarted_) take_shown();
@@ -103,7 +103,7 @@ std::optional<Ending> ControllerReplay::restart() {
   is_restarted_ = false;
   answered_ = recorded_.simulation.commands();
   answered_.radio_messages.clear();
-  return parties_.watch.gather();
+  return services_.watch.gather();
 }
 
 void ControllerReplay::take(const v1::Act& act) {
@@ -124,9 +124,9 @@ void ControllerReplay::take_reset() {
   const bool has_fewer = robots < gone_.size();
   gone_.resize(robots);
   if (!is_told_ && !has_fewer) return;
-  parties_.server.restart({recorded_.seed});
-  parties_.controllers.forget_robots(robots);
-  parties_.watch.forget_spawned();
+  services_.server.restart({recorded_.seed});
+  services_.controllers.forget_robots(robots);
+  services_.watch.forget_spawned();
   is_restarted_ = true;
 }
 
@@ -142,15 +142,15 @@ void ControllerReplay::take_restore(const std::string& snapshot) {
   const std::size_t robots = replay_.common_robots();
   answered_ = simulation.commands();
   answered_.radio_messages.clear();
-  parties_.server.restart(
+  services_.server.restart(
       {recorded_.seed, {}, {{snapshot, simulation.state().tick, &answered_, robots}}});
-  parties_.controllers.forget_robots(robots);
-  parties_.watch.forget_spawned();
+  services_.controllers.forget_robots(robots);
+  services_.watch.forget_spawned();
   gone_.resize(robots);
   for (std::size_t r = 0; r < robots; ++r) {
     if (!is_absent(r)) continue;
     gone_[r] = true;
-    parties_.server.remove_robots(std::array{r});
+    services_.server.remove_robots(std::array{r});
   }
   add_robots();
 }
@@ -184,12 +184,12 @@ void ControllerReplay::add_robots() {
     scripts.push_back(script.value_or(""));
   }
   const simulation::Simulation& simulation = recorded_.simulation;
-  parties_.server.add_robots(scripts, simulation.observations(), simulation.state().tag_payloads);
+  services_.server.add_robots(scripts, simulation.observations(), simulation.state().tag_payloads);
   for (std::size_t robot = first; robot < layout.robots.size(); ++robot) {
     if (gone_[robot]) {
-      parties_.server.remove_robots(std::array{robot});
+      services_.server.remove_robots(std::array{robot});
     } else if (!scripts[robot - first].empty()) {
-      parties_.controllers.start_spawned(robot, layout);
+      services_.controllers.start_spawned(robot, layout);
     }
   }
 }
@@ -199,7 +199,7 @@ void ControllerReplay::remove_robot(const std::string& entity) {
   for (std::size_t r = 0; r < layout.robots.size(); ++r) {
     if (layout.entities[layout.robots[r].entity].id != entity || gone_[r]) continue;
     gone_[r] = true;
-    parties_.server.remove_robots(std::array{r},
+    services_.server.remove_robots(std::array{r},
                                   fmt::format("'{}' was removed from the world.", entity));
   }
 }

@@ -30,7 +30,7 @@ class ControllerReplay {
   using ScriptOf = std::function<std::optional<std::string>(const world::RobotLayout& robot)>;
   using TellDifference = std::function<void(std::uint64_t tick, const std::string& robot,
                                             const replay::CommandDifference& difference)>;
-  struct Parties {
+  struct Services {
     network::Server& server;
     processes::Controllers& controllers;
     Watch& watch;
@@ -42,7 +42,7 @@ class ControllerReplay {
   /// @param follow    gives the told world the population of the recorded one; empty: it is the same
   /// @param gone      robots that no controller has
   ControllerReplay(const replay::RecordingFile& file, supervision::World& recorded,
-            const supervision::World& told, std::function<void()> follow, const Parties& parties,
+            const supervision::World& told, std::function<void()> follow, const Services& services,
             std::vector<bool> gone, ScriptOf script_of, TellDifference tell_difference);
 
   /// To the state for which `is_end(tick)` holds, which controllers are not given, or to the end of the
@@ -80,7 +80,7 @@ class ControllerReplay {
   supervision::World& recorded_;
   const supervision::World& told_world_;
   const std::function<void()> follow_;
-  Parties parties_;
+  Services services_;
   std::vector<bool> gone_;
   const ScriptOf script_of_;
   const TellDifference tell_difference_;

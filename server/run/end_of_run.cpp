@@ -18,14 +18,14 @@ using Membership = network::RobotStatus::Membership;
 constexpr milliseconds between_looks{20};  // at what arrives
 
 /// How long controllers may take to end.
-struct Patience {
+struct GracePeriods {
   milliseconds answer;  ///< of controllers that the run has not started, to the message that the run is over
   milliseconds leave;   ///< the same of those that it has started
   int exit_ms;          ///< after that, or after all have left, and again after SIGTERM
 };
-constexpr Patience usual{milliseconds{2000}, milliseconds{4000}, 1000};
+constexpr GracePeriods usual{milliseconds{2000}, milliseconds{4000}, 1000};
 // Together with what else is to be done, less than Signals::patience.
-constexpr Patience interrupted{milliseconds{400}, milliseconds{400}, 100};
+constexpr GracePeriods interrupted{milliseconds{400}, milliseconds{400}, 100};
 
 /// What is lost with a Lua process that is ended: it has said nothing of what its robots did at the end.
 std::string what_is_lost(const processes::ControllerProcess& slow, std::optional<std::size_t> busy, const world::Layout& layout) {
@@ -66,14 +66,14 @@ network::Report report_on_slow(const processes::ControllerProcess& slow, bool ha
 
 void Watch::end_run(const wire::End& end) {
   const bool is_planned = end.reason != wire::EndReason::interrupted;
-  const Patience patience = is_planned ? usual : interrupted;
+  const GracePeriods grace = is_planned ? usual : interrupted;
   server_.finish(end);
   const std::array descriptors{signals_.descriptor()};
   const auto begin = clock::now();
-  for (auto waited = clock::duration::zero(); waited < patience.leave; waited = clock::now() - begin) {
+  for (auto waited = clock::duration::zero(); waited < grace.leave; waited = clock::now() - begin) {
     const auto outcome = server_.drain({between_looks, descriptors});
     take_report();
-    if (outcome == network::Outcome::complete || (waited >= patience.answer && !controllers_.are_running())) break;
+    if (outcome == network::Outcome::complete || (waited >= grace.answer && !controllers_.are_running())) break;
     if (signals_.take().interruptions > 0) {
       controllers_.kill();
       break;
@@ -85,7 +85,7 @@ void Watch::end_run(const wire::End& end) {
     take_report();
     return signals_.take().interruptions > 0;
   };
-  controllers_.end(patience.exit_ms, is_interrupted, [&](const processes::ControllerProcess& slow) {
+  controllers_.end(grace.exit_ms, is_interrupted, [&](const processes::ControllerProcess& slow) {
     if (!is_planned) return;
     const auto status = server_.status();
     const bool has_session = std::ranges::any_of(

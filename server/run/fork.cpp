@@ -199,7 +199,7 @@ std::vector<std::size_t> Fork::idle_robots(const supervision::World& world,
   return idle;
 }
 
-std::optional<Ending> Fork::replay_to_begin(supervision::World& world, const ControllerReplay::Parties& parties,
+std::optional<Ending> Fork::replay_to_begin(supervision::World& world, const ControllerReplay::Services& services,
                                    const std::vector<std::size_t>& idle, const std::string& folder,
                                    processes::Signals& signals, reports::Console& console) {
   supervision::World& recorded_world = recorded_ ? *recorded_ : world;
@@ -214,13 +214,13 @@ std::optional<Ending> Fork::replay_to_begin(supervision::World& world, const Con
   const auto follow = [&] {
     if (recorded_) branch(world);
   };
-  ControllerReplay controller_replay(file_, recorded_world, world, follow, parties, std::move(gone), script_of, {});
+  ControllerReplay controller_replay(file_, recorded_world, world, follow, services, std::move(gone), script_of, {});
   const auto is_there = [this](std::uint64_t tick) { return tick == fork_options_.at; };
   using clock = std::chrono::steady_clock;
   auto last_look = clock::now();
   const auto meanwhile = [&] {  // clients are heard while nothing is asked of them
     if (clock::now() - last_look < std::chrono::milliseconds(200)) return true;
-    parties.server.gather({std::chrono::milliseconds(0), {}});
+    services.server.gather({std::chrono::milliseconds(0), {}});
     last_look = clock::now();
     return signals.take().interruptions == 0;
   };

@@ -48,7 +48,7 @@ class Fork {
   /// @param idle    robots without controller
   /// @param folder  of write_scripts()
   /// @return  nothing, or what ended the run on the way
-  std::optional<reports::Ending> replay_to_begin(supervision::World& world, const ControllerReplay::Parties& parties,
+  std::optional<reports::Ending> replay_to_begin(supervision::World& world, const ControllerReplay::Services& services,
                                         const std::vector<std::size_t>& idle,
                                         const std::string& folder, processes::Signals& signals,
                                         reports::Console& console);

@@ -241,33 +241,33 @@ void RecordedRun::add_script(const std::string& script, std::vector<recorder::Em
   }
 }
 
-void RecordedRun::act(const supervision::Act& done) {
+void RecordedRun::record(const supervision::WorldChange& change) {
   recorder::Recorder& to = recorder_;
   std::visit(
-      [&](const auto& act) {
-        using Type = std::decay_t<decltype(act)>;
+      [&](const auto& made) {
+        using Type = std::decay_t<decltype(made)>;
         if constexpr (std::is_same_v<Type, supervision::Moved>) {
-          to.moved(act.entity, act.pose);
+          to.moved(made.entity, made.pose);
         } else if constexpr (std::is_same_v<Type, supervision::JointSet>) {
-          to.joint_set(act.entity, act.joint, act.position, act.velocity);
+          to.joint_set(made.entity, made.joint, made.position, made.velocity);
         } else if constexpr (std::is_same_v<Type, supervision::Spawned>) {
           std::vector<recorder::EmbeddedFile> files;
-          for (const auto& [name, text] : act.files) files.push_back({name, text});
-          add_script(act.script, files);
+          for (const auto& [name, text] : made.files) files.push_back({name, text});
+          add_script(made.script, files);
           note(files);
-          to.spawned(act.xml, std::move(files));
+          to.spawned(made.xml, std::move(files));
           is_population_new_ = true;
         } else if constexpr (std::is_same_v<Type, supervision::Removed>) {
-          to.removed(act.entity);
+          to.removed(made.entity);
           is_population_new_ = true;
         } else if constexpr (std::is_same_v<Type, supervision::WasReset>) {
-          to.reset(act.seed);
+          to.reset(made.seed);
           is_population_new_ = true;
         } else if constexpr (std::is_same_v<Type, supervision::Restored>) {
-          to.restored(act.snapshot, act.bytes);
+          to.restored(made.snapshot, made.bytes);
           is_population_new_ = true;
-        } else if constexpr (std::is_same_v<Type, supervision::Kept>) {
-          to.kept(act.snapshot);
+        } else if constexpr (std::is_same_v<Type, supervision::SnapshotTaken>) {
+          to.kept(made.snapshot);
         } else if constexpr (std::is_same_v<Type, supervision::Paused>) {
           to.set_paused(true);
         } else {
@@ -275,7 +275,7 @@ void RecordedRun::act(const supervision::Act& done) {
           to.set_paused(false);
         }
       },
-      done);
+      change);
 }
 
 std::unique_ptr<RecordedRun> start_recording(const Options& options, supervision::World& world,

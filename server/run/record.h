@@ -14,8 +14,8 @@
 #include "run/fork.h"
 #include "run/options.h"
 #include "scene/files.h"
-#include "supervision/act.h"
 #include "supervision/world.h"
+#include "supervision/world_change.h"
 
 namespace ziggurat::run {
 
@@ -48,7 +48,7 @@ class RecordedRun {
   /// A tick was published. If the recording can't be written any more, a message is printed, once.
   /// @throws recording::WriteError instead, if the run is to end then
   void tick();
-  void act(const supervision::Act& act);
+  void record(const supervision::WorldChange& change);
   void log(channels::Severity severity, std::string_view name, std::string_view text) {
     recorder_.log(severity, name, text);
   }

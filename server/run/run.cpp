@@ -97,8 +97,8 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
                if (recorded_) recorded_->log(severity, name, text);
              }),
       waits_for_viewer_(showing_ && !options.paused) {
-  callers_.tell_acts([this](const supervision::Act& act) {
-    if (recorded_) recorded_->act(act);
+  callers_.on_world_change([this](const supervision::WorldChange& change) {
+    if (recorded_) recorded_->record(change);
   });
   print_notices();
   summary_.scene = path_;
@@ -144,14 +144,14 @@ std::unique_ptr<supervision::World> Run::load_world() {
   Background<supervision::World> loading([this](const Tell& tell) { return read_world(tell); });
   const std::array descriptors{signals_.descriptor(), loading.descriptor()};
   for (;;) {
-    const auto news = loading.news();
-    if (news.is_done) {
+    const auto status = loading.status();
+    if (status.is_done) {
       auto world = loading.take();
       fork_ ? fork_->prepare(*world) : check_outputs(options_, world->scene, files_.names());
       if (service_ == Service::serve) tell_how_to_connect(options_, server_.endpoints().front(), *world, console_);
       return world;
     }
-    server_.attend({news.progress, news.message}, {std::chrono::milliseconds{-1}, descriptors});
+    server_.attend({status.progress, status.message}, {std::chrono::milliseconds{-1}, descriptors});
     if (signals_.take().interruptions == 0) continue;
     listening_.reset();  // tells clients that wait
     local_.release();

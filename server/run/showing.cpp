@@ -82,7 +82,7 @@ std::vector<network::Call> Showing::take_calls() {
   std::erase_if(unanswered_,
                 [&](const auto& entry) { return !server_.requests().is_connected(entry.second.viewer); });
   std::vector<network::Call> calls;
-  for (view::Call& call : std::exchange(calls_, {})) {
+  for (view::ViewerCall& call : std::exchange(calls_, {})) {
     network::Call& taken = calls.emplace_back();
     taken.peer = fmt::format("viewer {}", call.viewer);
     taken.request = call.request;
@@ -148,7 +148,7 @@ void Showing::serve() {
   wanted_ = std::move(changes.wanted);
   kinds_ = changes.kinds;
   for (const view::Parameter& parameter : changes.parameters) apply(parameter);
-  for (view::Call& call : changes.calls) {
+  for (view::ViewerCall& call : changes.calls) {
     if (call.speed) {
       set_speed(*call.speed);
       server_.answer(call, run_.world.simulation.state().tick);

@@ -18,7 +18,7 @@
 #include "supervision/callers.h"
 #include "supervision/tick_budget.h"
 #include "supervision/world.h"
-#include "view/server.h"
+#include "view/viewer_server.h"
 
 namespace ziggurat::run {
 
@@ -89,13 +89,13 @@ class Showing {
   channels::Moment moment() const;
 
   const Run run_;
-  view::Server server_;
+  view::ViewerServer server_;
   channels::Layers layers_;
   std::vector<std::uint32_t> wanted_;               ///< ids of channels, ascending
   channels::Kinds kinds_;                           ///< of these
   std::vector<std::uint32_t> fresh_;                ///< of these: not shown since a viewer subscribed
-  std::vector<view::Call> calls_;                   ///< not taken yet
-  std::map<std::uint64_t, view::Call> unanswered_;  ///< by Request::id
+  std::vector<view::ViewerCall> calls_;                   ///< not taken yet
+  std::map<std::uint64_t, view::ViewerCall> unanswered_;  ///< by Request::id
   std::uint64_t next_call_ = 1, seen_changes_ = 0;
   channels::PhaseTimes phases_;
   double frames_per_second_ = 60;

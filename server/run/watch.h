@@ -103,7 +103,7 @@ class Watch {
 
   const supervision::World& world_;
   network::Server& server_;
-  network::DirectorsDesk directors_;
+  network::ServerDirectors directors_;
   processes::Controllers& controllers_;
   supervision::Supervision& supervision_;
   processes::Signals& signals_;

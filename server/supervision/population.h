@@ -15,9 +15,9 @@
 #include "processes/spawned_scripts.h"
 #include "reports/console.h"
 #include "scene/additions.h"
-#include "supervision/act.h"
 #include "supervision/callers.h"
 #include "supervision/world.h"
+#include "supervision/world_change.h"
 
 namespace ziggurat::supervision {
 
@@ -51,7 +51,7 @@ class Population {
   struct Candidate {
     scene::Addition addition;
     processes::SpawnedScript script;
-    Spawned act;
+    Spawned spawned;
   };
   /// Reads an element. @param is_taken  whether an id is that of an entity that will be there then
   std::variant<Candidate, wire::Fault> read(const std::string& xml,

@@ -25,7 +25,7 @@ std::vector<std::string> clients_without_restore(network::Server& server) {
     if (!robot.can_restore && !is_known) clients.push_back(robot.holder);
   }
   for (const network::DirectorStatus& director :
-       network::DirectorsDesk(server).status()) {
+       network::ServerDirectors(server).status()) {
     if (!director.can_restore) clients.push_back(director.client);
   }
   return clients;
@@ -48,7 +48,7 @@ std::string list_of(const std::vector<std::string>& clients) {
 Reply Supervision::snapshot(const network::Call& call) {
   if (resetting_) return Reply::later;
   if (auto fault = snapshots_.keep(call.request.text, world_)) return fail(call, std::move(*fault));
-  callers_.tell(Kept{call.request.text});
+  callers_.tell(SnapshotTaken{call.request.text});
   return done(call);
 }
 

@@ -217,8 +217,8 @@ void Hub::handle(Viewer& viewer, const CallService& message) {
     return refuse(fmt::format("{} calls wait for their answers already.", most_unanswered));
   }
   ++viewer.unanswered;
-  std::get<Call>(call).viewer = viewer.id;
-  requests_.add_call(std::move(std::get<Call>(call)));
+  std::get<ViewerCall>(call).viewer = viewer.id;
+  requests_.add_call(std::move(std::get<ViewerCall>(call)));
 }
 
 void Hub::set_channels(std::vector<channels::Channel> list) {
@@ -278,7 +278,7 @@ void Hub::set_parameter(const Parameter& parameter) {
   }
 }
 
-void Hub::answer(const Call& call, bool is_done, const std::string& text) {
+void Hub::answer(const ViewerCall& call, bool is_done, const std::string& text) {
   Viewer* viewer = find(call.viewer);
   if (!viewer) return;
   --viewer->unanswered;

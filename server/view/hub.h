@@ -60,7 +60,7 @@ class Hub {
   void show(std::int64_t time_ns, std::span<const channels::Message> messages);
   void set_parameter(const Parameter& parameter);
   /// @param text  JSON of an answer, or a sentence why it was refused
-  void answer(const Call& call, bool is_done, const std::string& text);
+  void answer(const ViewerCall& call, bool is_done, const std::string& text);
 
   /// Calls visit(viewer) for each.
   template <class Visit>

@@ -57,7 +57,7 @@ Incoming read_text(std::string_view text);
 Incoming read_binary(std::string_view bytes);
 
 /// A call of a service, or what is wrong with it as a sentence.
-std::variant<Call, std::string> read_call(const CallService& call);
+std::variant<ViewerCall, std::string> read_call(const CallService& call);
 
 // --- to viewers -----------------------------------------------------------------------------------
 

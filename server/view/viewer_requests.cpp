@@ -41,7 +41,7 @@ void ViewerRequests::set_wanted(std::vector<std::uint32_t> wanted, std::vector<s
   wake();
 }
 
-void ViewerRequests::add_call(Call call) {
+void ViewerRequests::add_call(ViewerCall call) {
   const std::lock_guard lock(mutex_);
   changes_.calls.push_back(std::move(call));
   wake();

@@ -28,7 +28,7 @@ class ViewerRequests {
   /// @param kinds  of those that are wanted
   void set_wanted(std::vector<std::uint32_t> wanted, std::vector<std::uint32_t> fresh,
                   channels::Kinds kinds);
-  void add_call(Call call);
+  void add_call(ViewerCall call);
   void add_parameter(Parameter parameter);
 
   // On the thread of the run.
@@ -42,7 +42,7 @@ class ViewerRequests {
     std::vector<std::uint32_t> wanted;  ///< all of now
     std::vector<std::uint32_t> fresh;   ///< since the last call
     channels::Kinds kinds;              ///< of those that are wanted now
-    std::vector<Call> calls;
+    std::vector<ViewerCall> calls;
     std::vector<Parameter> parameters;
   };
   Changes take();

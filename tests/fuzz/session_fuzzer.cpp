@@ -40,7 +40,7 @@ void Play::move_on() {
   }
   if (phase_ == Phase::between) {
     ++tick_;
-  } else if (phase_ != Phase::gathering || !barrier_.seats.all_taken()) {
+  } else if (phase_ != Phase::gathering || !barrier_.ownership.all_taken()) {
     return;
   }
   phase_ = Phase::collecting;
@@ -197,7 +197,7 @@ void Play::check() {
     is_awaited |= robot.awaited;
     require(robot.membership != Membership::held || !robot.holder.empty());
   }
-  require(barrier_.seats.all_taken() == !is_free);
+  require(barrier_.ownership.all_taken() == !is_free);
   if (barrier_.gate.is_complete()) require(!is_paused_ && !owes && !is_awaited);
   if (barrier_.gate.is_standing()) require(is_paused_);
   for (const double target : commands_.joint_targets) require(target == 0 || target == 1);

@@ -15,7 +15,7 @@
 #include "network/barrier/exchange.h"
 #include "network/barrier/overview.h"
 #include "network/barrier/population.h"
-#include "network/barrier/timing.h"
+#include "network/barrier/timeouts.h"
 #include "network/small_run.h"
 #include "ziggurat/v1/protocol.pb.h"
 

@@ -70,7 +70,7 @@ class Play {
   void answer(bool is_done) {
     const view::ViewerRequests::Changes news = requests_.take();
     require(std::ranges::is_sorted(news.wanted));
-    for (const view::Call& call : news.calls) {
+    for (const view::ViewerCall& call : news.calls) {
       require(call.viewer != ids_[0]);
       hub_.answer(call, is_done, "{}");
     }

@@ -10,19 +10,19 @@
 #include <string>
 #include <vector>
 
+#include "network/answer_times.h"
 #include "network/barrier/calls.h"
 #include "network/barrier/connections.h"
 #include "network/barrier/deadlines.h"
 #include "network/barrier/directors.h"
 #include "network/barrier/journal.h"
 #include "network/barrier/metrics.h"
-#include "network/barrier/seats.h"
+#include "network/barrier/ownership.h"
 #include "network/barrier/sessions.h"
 #include "network/barrier/tick_gate.h"
 #include "network/config.h"
 #include "network/limits.h"
 #include "network/link.h"
-#include "network/answer_times.h"
 #include "network/reactions.h"
 #include "network/report.h"
 #include "wire/inbox.h"
@@ -67,10 +67,10 @@ struct Barrier {
 
   Connections connections;
   Sessions sessions;
-  Seats seats;
+  Ownership ownership;
   Deadlines deadlines;
   Directors directors;
-  TickGate gate{seats, directors.seats};
+  TickGate gate{ownership, directors.ownership};
   Calls calls;
   Journal journal;
   Metrics metrics;

@@ -10,7 +10,7 @@
 
 #include "network/barrier/deadlines.h"
 #include "network/barrier/metrics.h"
-#include "network/barrier/seats.h"
+#include "network/barrier/ownership.h"
 #include "network/config.h"
 #include "network/report.h"
 #include "scene/scene.h"
@@ -26,7 +26,7 @@ using CheckDirection = std::function<std::optional<wire::Fault>(const wire::Dire
 /// the order in which they came.
 struct Directors {
   std::vector<scene::Director> all;
-  Seats seats;
+  Ownership ownership;
   Deadlines deadlines;  ///< each director is a controller of its own
   Metrics metrics;
   std::vector<std::optional<wire::Direction>> answers;  ///< to the tick in hand; none yet, or missed

@@ -39,8 +39,8 @@ bool handle_request(Barrier& barrier, Session& session) {
     answer_fault(barrier, session.connection, &session, std::move(*fault), id);
     return false;
   }
-  session.contact.faults = 0;
-  return session.role == wire::Role::director && session.turn.owes;
+  session.liveness.faults = 0;
+  return session.role == wire::Role::director && session.pending_answer.is_owed;
 }
 
 std::size_t size_of(const Received& received) { return received.bytes.size() + received.skipped; }
@@ -103,8 +103,8 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
   Connection& connection = barrier.connections.receive_from(id, barrier.now);
   Session* session = barrier.sessions.find(connection.session);
   if (session != nullptr) {
-    session->contact.last_received = barrier.now;
-    session->contact.heartbeats = 0;
+    session->liveness.last_received = barrier.now;
+    session->liveness.heartbeats = 0;
   }
   const auto encoding =
       received.is_single_frame ? wire::encoding_of(received.bytes) : received.several_frames;

@@ -26,12 +26,12 @@ Delivery send(Barrier& barrier, const std::string& connection) {
 }
 
 Delivery send(Barrier& barrier, Session& session) {
-  session.contact.last_sent = barrier.now;
+  session.liveness.last_sent = barrier.now;
   return send(barrier, session.connection);
 }
 
 std::string_view lost_by(Delivery delivery, const Session& session) {
-  const bool may_miss = delivery == Delivery::congested && session.turn.patience;
+  const bool may_miss = delivery == Delivery::congested && session.pending_answer.deadline;
   if (delivery == Delivery::sent || may_miss) return {};
   return "its connection is gone, or it does not read";
 }
@@ -45,11 +45,11 @@ void note(Barrier& barrier, const Session* session, std::string_view sentence) {
 void answer_fault(Barrier& barrier, const std::string& connection, Session* session,
                   wire::Fault fault, std::optional<std::uint64_t> request) {
   fault.tick = tick_of(barrier);
-  const bool is_last = session != nullptr && ++session->contact.faults > barrier.config.max_faults;
+  const bool is_last = session != nullptr && ++session->liveness.faults > barrier.config.max_faults;
   if (is_last) {
     fault.code = ErrorCode::too_many;
     fault.message = fmt::format("{} bad messages in a row; the last one: {}",
-                                session->contact.faults, fault.message);
+                                session->liveness.faults, fault.message);
   }
   if (session == nullptr || is_last) fault.severity = wire::Severity::fatal;
   if (request && !is_last) {

@@ -1,5 +1,5 @@
 #pragma once
-// Who sits where: which session has which robot.
+// Ownership of robots: the session that each robot has.
 
 #include <chrono>
 #include <cstddef>
@@ -9,9 +9,9 @@
 
 namespace ziggurat::network {
 
-class Seats {
+class Ownership {
  public:
-  struct Seat {
+  struct Entry {
     SessionId holder = SessionId::none;    ///< drives the robot; none: the robot is free
     SessionId claimant = SessionId::none;  ///< free: the lost session that may resume
     bool has_left = false;                 ///< the barrier, for good
@@ -27,10 +27,10 @@ class Seats {
   /// One more robot, which is free.
   void add(Time now, bool is_skipped);
   /// Forgets robots behind the first `count`, which must have left.
-  void shrink(std::size_t count) { seats_.resize(count); }
+  void shrink(std::size_t count) { entries_.resize(count); }
 
-  const Seat& operator[](std::size_t robot) const { return seats_[robot]; }
-  std::size_t size() const { return seats_.size(); }
+  const Entry& operator[](std::size_t robot) const { return entries_[robot]; }
+  std::size_t size() const { return entries_.size(); }
 
   /// @param robot  free, and has not left
   void take(std::size_t robot, SessionId session, Time now);
@@ -41,7 +41,7 @@ class Seats {
   /// @param waited    by the tick in hand for its session
   void release(std::size_t robot, SessionId claimant, Time since, bool is_skipped,
                std::chrono::nanoseconds waited);
-  void drop_claim(std::size_t robot) { seats_[robot].claimant = SessionId::none; }
+  void drop_claim(std::size_t robot) { entries_[robot].claimant = SessionId::none; }
   /// Takes the robot out of the barrier for good. No effect if it has left.
   void leave(std::size_t robot);
   /// The tick in hand goes on without the robot, which is free.
@@ -55,9 +55,9 @@ class Seats {
   bool is_awaited() const { return free_ != skipped_; }  ///< the tick waits for a free robot
 
  private:
-  void wait_over(Seat& seat, Time now);
+  void wait_over(Entry& entry, Time now);
 
-  std::vector<Seat> seats_;  // per robot of the layout
+  std::vector<Entry> entries_;  // per robot of the layout
   Time begun_;               // the tick in hand, as far as deadlines are concerned
   bool has_changes_ = false;  // of who has which robot, in the tick in hand
   std::size_t free_ = 0;     // robots without holder that have not left

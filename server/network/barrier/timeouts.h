@@ -23,6 +23,6 @@ void expect_answer(Barrier& barrier, std::size_t robot);
 void expect_answer(Barrier& barrier, const Session& session);
 /// Robots or policies of the session have changed, and with them its deadline: the longest of its
 /// robots, as it answers for all at once.
-void update_patience(Barrier& barrier, Session& session);
+void update_deadline(Barrier& barrier, Session& session);
 
 }  // namespace ziggurat::network

@@ -27,18 +27,18 @@ struct Settings {
   std::vector<Parameter> parameters;
 };
 
-class Server {
+class ViewerServer {
  public:
   static constexpr std::size_t most_viewers = 64;
   static constexpr std::size_t most_lookers = 48;  ///< of them, without token
   static constexpr std::size_t most_connections = 128;  ///< the oldest that is no viewer makes place
 
   /// Listens at once. @throws text::UsageError; std::runtime_error if it can't listen
-  explicit Server(const Settings& settings);
+  explicit ViewerServer(const Settings& settings);
   /// Viewers are told that the server goes away.
-  ~Server();
-  Server(const Server&) = delete;
-  Server& operator=(const Server&) = delete;
+  ~ViewerServer();
+  ViewerServer(const ViewerServer&) = delete;
+  ViewerServer& operator=(const ViewerServer&) = delete;
 
   /// With the token: "http://127.0.0.1:8765/?token=…", "ws://…".
   std::string page_address() const;
@@ -57,8 +57,8 @@ class Server {
   void show_event(channels::Message message);
 
   void set_parameter(Parameter parameter);
-  void answer(const Call& call, std::uint64_t tick);
-  void refuse(const Call& call, const std::string& why);
+  void answer(const ViewerCall& call, std::uint64_t tick);
+  void refuse(const ViewerCall& call, const std::string& why);
 
  private:
   struct State;

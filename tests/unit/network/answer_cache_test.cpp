@@ -1,14 +1,14 @@
 // Answers to questions are computed once while nothing changes.
 
-#include "network/answers.h"
+#include "network/answer_cache.h"
 
 #include <gtest/gtest.h>
 
 namespace ziggurat::network {
 namespace {
 
-struct AnswersTest : ::testing::Test {
-  void ask(std::vector<std::string> entities, const Answers::Version& version) {
+struct AnswerCacheTest : ::testing::Test {
+  void ask(std::vector<std::string> entities, const AnswerCache::Version& version) {
     wire::Request request;
     request.kind = wire::Request::Kind::read;
     request.entities = std::move(entities);
@@ -17,11 +17,11 @@ struct AnswersTest : ::testing::Test {
       ++computed;
     });
   }
-  Answers answers;
+  AnswerCache answers;
   int computed = 0;
 };
 
-TEST_F(AnswersTest, AreComputedOnceWhileNothingChanges) {
+TEST_F(AnswerCacheTest, AreComputedOnceWhileNothingChanges) {
   for (int i = 0; i < 1000; ++i) ask({"*"}, {7, 3});
   // A busy machine may take more than the 100 ms for which an answer holds.
   EXPECT_LE(computed, 100);
@@ -33,7 +33,7 @@ TEST_F(AnswersTest, AreComputedOnceWhileNothingChanges) {
   EXPECT_EQ(computed, before + 2) << "another question";
 }
 
-TEST_F(AnswersTest, OfFewQuestionsAreKept) {
+TEST_F(AnswerCacheTest, OfFewQuestionsAreKept) {
   for (int i = 0; i < 20; ++i) ask({std::to_string(i)}, {1, 1});
   EXPECT_EQ(computed, 20);
   ask({"0"}, {1, 1});

@@ -14,7 +14,7 @@
 
 namespace ziggurat::network {
 
-class Answers {
+class AnswerCache {
  public:
   using Write = std::function<void(wire::Outbox&)>;
 
@@ -28,13 +28,13 @@ class Answers {
   wire::Answer& find(const wire::Request& request, const Version& version, const Write& write);
 
  private:
-  struct Kept {
+  struct Entry {
     wire::Request::Kind kind;
     std::vector<std::string> entities;
     wire::Answer answer;
   };
 
-  std::vector<Kept> kept_;
+  std::vector<Entry> entries_;
   Version version_;
   std::chrono::steady_clock::time_point made_{};  // the first of them
   wire::Outbox outbox_;

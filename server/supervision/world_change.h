@@ -40,13 +40,13 @@ struct Restored {
   std::vector<std::byte> bytes;  ///< of its file; empty: it was kept in this run
 };
 /// The world was kept under a name.
-struct Kept {
+struct SnapshotTaken {
   std::string snapshot;
 };
 struct Paused {};
 struct Resumed {};
 
-using Act = std::variant<Moved, JointSet, Spawned, Removed, WasReset, Restored, Kept, Paused, Resumed>;
-using TellAct = std::function<void(const Act&)>;
+using WorldChange = std::variant<Moved, JointSet, Spawned, Removed, WasReset, Restored, SnapshotTaken, Paused, Resumed>;
+using TellWorldChange = std::function<void(const WorldChange&)>;
 
 }  // namespace ziggurat::supervision

@@ -1,6 +1,6 @@
 // The port itself, seen by a client that speaks bytes only.
 
-#include "view/server.h"
+#include "view/viewer_server.h"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
@@ -60,23 +60,23 @@ class RawViewer {
   int socket_ = -1;
 };
 
-TEST(Server, AViewerThatAnswersNoPingIsDisconnected) {
+TEST(ViewerServer, AViewerThatAnswersNoPingIsDisconnected) {
   Settings settings;
   settings.address = http::Address{"127.0.0.1", 0};
   settings.silence = 400ms;
-  Server server(settings);
+  ViewerServer server(settings);
   RawViewer silent(server.page_address());
   EXPECT_TRUE(silent.is_closed_within(5s, false));
   RawViewer alive(server.page_address());
   EXPECT_FALSE(alive.is_closed_within(1500ms, true));
 }
 
-TEST(Server, AnOpenAddressNeedsATokenOfTheUserOrConsent) {
+TEST(ViewerServer, AnOpenAddressNeedsATokenOfTheUserOrConsent) {
   for (const char* host : {"0.0.0.0", "::", "*"}) {
     Settings settings;
     settings.address = http::Address{host, 0};
     try {
-      const Server server(settings);
+      const ViewerServer server(settings);
       FAIL() << host << " is open";
     } catch (const text::UsageError& error) {
       EXPECT_NE(std::string(error.what()).find("--view-token"), std::string::npos) << error.what();
@@ -85,15 +85,15 @@ TEST(Server, AnOpenAddressNeedsATokenOfTheUserOrConsent) {
   Settings settings;
   settings.address = http::Address{"0.0.0.0", 0};
   settings.token = "0123456789abcdef";
-  EXPECT_NO_THROW(Server{settings});
+  EXPECT_NO_THROW(ViewerServer{settings});
   settings.token.clear();
   settings.insecure = true;
-  EXPECT_NO_THROW(Server{settings});
+  EXPECT_NO_THROW(ViewerServer{settings});
 }
 
-TEST(Server, TakesAnotherPortIfTheUsualOneIsTaken) {
+TEST(ViewerServer, TakesAnotherPortIfTheUsualOneIsTaken) {
   const Settings settings;
-  const Server first(settings), second(settings);
+  const ViewerServer first(settings), second(settings);
   EXPECT_NE(first.page_address(), second.page_address());
   EXPECT_NE(second.page_address().find("http://127.0.0.1:"), std::string::npos);
   EXPECT_EQ(second.page_address().find(":8765/"), std::string::npos);

@@ -1,4 +1,4 @@
-#include "network/answers.h"
+#include "network/answer_cache.h"
 
 #include <algorithm>
 
@@ -11,23 +11,23 @@ constexpr std::chrono::milliseconds longest_age_of_commands{10};
 
 }  // namespace
 
-wire::Answer& Answers::find(const wire::Request& request, const Version& version,
+wire::Answer& AnswerCache::find(const wire::Request& request, const Version& version,
                             const Write& write) {
   const auto now = std::chrono::steady_clock::now();
   const auto most = version.commands == version_.commands ? longest_age : longest_age_of_commands;
   if (version.changes != version_.changes || now - made_ > most) {
-    kept_.clear();
+    entries_.clear();
     version_ = version;
     made_ = now;
   }
-  const auto found = std::ranges::find_if(kept_, [&](const Kept& each) {
+  const auto found = std::ranges::find_if(entries_, [&](const Entry& each) {
     return each.kind == request.kind && each.entities == request.entities;
   });
-  if (found != kept_.end()) return found->answer;
+  if (found != entries_.end()) return found->answer;
   write(outbox_);
-  if (kept_.size() == most_kept) kept_.erase(kept_.begin());
-  kept_.push_back({request.kind, request.entities, wire::Answer(outbox_.message())});
-  return kept_.back().answer;
+  if (entries_.size() == most_kept) entries_.erase(entries_.begin());
+  entries_.push_back({request.kind, request.entities, wire::Answer(outbox_.message())});
+  return entries_.back().answer;
 }
 
 }  // namespace ziggurat::network

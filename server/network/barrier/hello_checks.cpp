@@ -1,4 +1,4 @@
-#include "network/barrier/granting.h"
+#include "network/barrier/hello_checks.h"
 
 #include <fmt/format.h>
 
@@ -57,7 +57,7 @@ std::variant<std::vector<std::size_t>, wire::Refusal> allowed_robots(
                           fmt::format("The key of this connection may not drive robot '{}'.", id));
     }
     has_any = true;
-    if (by_id || !barrier.seats[robot].has_left) robots.push_back(robot);
+    if (by_id || !barrier.ownership[robot].has_left) robots.push_back(robot);
   }
   if (!has_any) {
     return make_refusal(ErrorCode::forbidden, "robots",
@@ -72,17 +72,17 @@ std::variant<std::vector<std::size_t>, wire::Refusal> allowed_robots(
 /// Why a robot can't be taken, if it can't.
 std::optional<wire::Refusal> check_robot(Barrier& barrier, std::size_t robot, bool is_takeover) {
   const std::string& id = barrier.run->layout.robots[robot].id;
-  if (barrier.seats[robot].has_left) {
+  if (barrier.ownership[robot].has_left) {
     return refuse_robot(id, ErrorCode::not_yours,
                         fmt::format("Robot '{}' has left the run for good.", id));
   }
   if (is_takeover) return std::nullopt;
-  Session* holder = barrier.sessions.find(barrier.seats[robot].holder);
+  Session* holder = barrier.sessions.find(barrier.ownership[robot].holder);
   if (holder != nullptr && is_reachable(barrier, *holder)) {
     return refuse_taken(id, *holder,
                         fmt::format("Robot '{}' is driven by {}.", id, holder->client));
   }
-  const Session* claimant = barrier.sessions.find(barrier.seats[robot].claimant);
+  const Session* claimant = barrier.sessions.find(barrier.ownership[robot].claimant);
   if (claimant == nullptr || barrier.now >= claimant->lease_end) return std::nullopt;
   const std::chrono::duration<double> rest = claimant->lease_end - barrier.now;
   return refuse_taken(id, *claimant,

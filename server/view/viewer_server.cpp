@@ -1,5 +1,5 @@
 // Boost.Beast is in this source only: it takes the compiler long.
-#include "view/server.h"
+#include "view/viewer_server.h"
 
 #include <fmt/format.h>
 
@@ -142,7 +142,7 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
 
  private:
   void opened(bool may_steer) {
-    const std::size_t most = may_steer ? Server::most_viewers : Server::most_lookers;
+    const std::size_t most = may_steer ? ViewerServer::most_viewers : ViewerServer::most_lookers;
     if (shared_.is_closing || shared_.hub.size() >= most) {
       shared_.refused.push_back(weak_from_this());
       return socket_.async_close(websocket::close_code::try_again_later,
@@ -192,10 +192,10 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
 
 // --- the port -------------------------------------------------------------------------------------
 
-Asker asker_of(const http::Request& request) {
-  Asker asker{http::view_of(request[Field::host]), std::nullopt, http::view_of(request.target())};
-  if (request.count(Field::origin) > 0) asker.origin = http::view_of(request[Field::origin]);
-  return asker;
+RequestHead head_of(const http::Request& request) {
+  RequestHead head{http::view_of(request[Field::host]), std::nullopt, http::view_of(request.target())};
+  if (request.count(Field::origin) > 0) head.origin = http::view_of(request[Field::origin]);
+  return head;
 }
 
 /// Why a handshake is refused, if it is.
@@ -203,11 +203,11 @@ std::optional<http::Answer> refusal_of(const Rules& rules, const http::Request& 
   const auto refuse = [](unsigned status, const char* why) {
     return http::Answer{status, http::Answer().type, {}, why};
   };
-  const Asker asker = asker_of(request);
-  if (access_of(rules, asker) == Access::refused) {
+  const RequestHead head = head_of(request);
+  if (permission_of(rules, head) == Permission::refused) {
     return refuse(403, "403: open the address with ?token= that the program printed.\n");
   }
-  if (asker.target.substr(0, asker.target.find('?')) != "/") {
+  if (head.target.substr(0, head.target.find('?')) != "/") {
     return refuse(404, "404: viewers connect to / only.\n");
   }
   if (protocol_in(http::view_of(request[Field::sec_websocket_protocol])).empty()) {
@@ -233,7 +233,7 @@ http::Service service_of(Shared& shared) {
     return refusal_of(shared.rules, request);
   };
   service.upgrade = [&shared](http::Stream stream, const http::Request& request) {
-    const bool may_steer = access_of(shared.rules, asker_of(request)) == Access::steer;
+    const bool may_steer = permission_of(shared.rules, head_of(request)) == Permission::steer;
     std::make_shared<ViewerConnection>(std::move(stream), shared)->start(request, may_steer);
   };
   return service;
@@ -266,7 +266,7 @@ Rules rules_of(const Settings& settings) {
 
 }  // namespace
 
-struct Server::State {
+struct ViewerServer::State {
   explicit State(const Settings& settings)
       : shared{rules_of(settings), Page(settings.folder), settings.silence,
                Hub({settings.version, settings.scene, random_token()}, settings.parameters, requests)},
@@ -375,9 +375,9 @@ struct Server::State {
   std::thread thread;
 };
 
-Server::Server(const Settings& settings) : state_(std::make_unique<State>(settings)) {}
+ViewerServer::ViewerServer(const Settings& settings) : state_(std::make_unique<State>(settings)) {}
 
-Server::~Server() {
+ViewerServer::~ViewerServer() {
   State& state = *state_;
   asio::post(state.io, [&state] {
     state.shared.is_closing = true;
@@ -391,43 +391,43 @@ Server::~Server() {
   state.thread.join();
 }
 
-std::string Server::page_address() const { return state_->address("http"); }
-std::string Server::viewer_address() const { return state_->address("ws"); }
-ViewerRequests& Server::requests() { return state_->requests; }
+std::string ViewerServer::page_address() const { return state_->address("http"); }
+std::string ViewerServer::viewer_address() const { return state_->address("ws"); }
+ViewerRequests& ViewerServer::requests() { return state_->requests; }
 
-void Server::populate(const channels::Population& population) {
+void ViewerServer::populate(const channels::Population& population) {
   state_->feed.populate(population);
   state_->wake();
 }
 
-void Server::set_layers(const channels::Layers& layers) { state_->feed.set_layers(layers); }
+void ViewerServer::set_layers(const channels::Layers& layers) { state_->feed.set_layers(layers); }
 
-void Server::show(const channels::Moment& moment, Wanted wanted) {
+void ViewerServer::show(const channels::Moment& moment, Wanted wanted) {
   state_->feed.show(moment, std::move(wanted));
   state_->wake();
 }
 
-void Server::show_commands(const channels::Moment& moment, std::vector<std::uint32_t> wanted) {
+void ViewerServer::show_commands(const channels::Moment& moment, std::vector<std::uint32_t> wanted) {
   state_->feed.show_commands(moment, std::move(wanted));
   state_->wake();
 }
 
-void Server::show_event(channels::Message message) {
+void ViewerServer::show_event(channels::Message message) {
   state_->feed.show_event(std::move(message));
   state_->wake();
 }
 
-void Server::set_parameter(Parameter parameter) {
+void ViewerServer::set_parameter(Parameter parameter) {
   state_->post([parameter = std::move(parameter)](Hub& hub) { hub.set_parameter(parameter); });
 }
 
-void Server::answer(const Call& call, std::uint64_t tick) {
+void ViewerServer::answer(const ViewerCall& call, std::uint64_t tick) {
   state_->post([call, tick](Hub& hub) {
     hub.answer(call, true, fmt::format("{{\"tick\":{}}}", tick));
   });
 }
 
-void Server::refuse(const Call& call, const std::string& why) {
+void ViewerServer::refuse(const ViewerCall& call, const std::string& why) {
   state_->post([call, why](Hub& hub) { hub.answer(call, false, why); });
 }
 

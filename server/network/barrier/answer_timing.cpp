@@ -1,4 +1,4 @@
-#include "network/barrier/measuring.h"
+#include "network/barrier/answer_timing.h"
 
 #include <algorithm>
 #include <optional>
@@ -40,7 +40,7 @@ void keep(Barrier& barrier, std::size_t robot, std::uint64_t tick, double second
 ///                  order
 void settle_missed(Barrier& barrier, Session& session, std::uint64_t last,
                    std::optional<std::uint64_t> answered) {
-  auto& missed = session.turn.missed;
+  auto& missed = session.pending_answer.missed;
   const auto end = std::ranges::find_if(missed, [&](const auto& one) { return one.tick > last; });
   for (auto one = missed.begin(); one != end; ++one) {
     const double seconds = seconds_since(barrier, one->sent);
@@ -54,22 +54,22 @@ void settle_missed(Barrier& barrier, Session& session, std::uint64_t last,
 }  // namespace
 
 void measure_answer(Barrier& barrier, Session& session) {
-  const Turn& turn = session.turn;
-  const double seconds = seconds_since(barrier, turn.owes_since);
+  const PendingAnswer& answer = session.pending_answer;
+  const double seconds = seconds_since(barrier, answer.waiting_since);
   session.latencies.add(seconds);
   for_each_controller(barrier, session, [&](std::size_t robot) {
     barrier.answer_times[barrier.deadlines.controller(robot)].add(seconds);
   });
   if (!barrier.reactions.are_kept) return;
-  settle_missed(barrier, session, turn.tick, {});
+  settle_missed(barrier, session, answer.tick, {});
   for_each_controller(barrier, session, [&](std::size_t robot) {
-    keep(barrier, robot, turn.tick, seconds, Reaction::Kind::in_time);
+    keep(barrier, robot, answer.tick, seconds, Reaction::Kind::in_time);
   });
 }
 
 void expect_late_answer(Barrier& barrier, Session& session) {
   if (!barrier.reactions.are_kept) return;
-  session.turn.missed.push_back({session.turn.tick, session.turn.owes_since});
+  session.pending_answer.missed.push_back({session.pending_answer.tick, session.pending_answer.waiting_since});
 }
 
 void measure_late_answer(Barrier& barrier, Session& session, std::uint64_t tick) {
@@ -77,7 +77,7 @@ void measure_late_answer(Barrier& barrier, Session& session, std::uint64_t tick)
 }
 
 void give_up_answers(Barrier& barrier, Session& session) {
-  settle_missed(barrier, session, session.turn.tick, {});
+  settle_missed(barrier, session, session.pending_answer.tick, {});
 }
 
 void measure_absence(Barrier& barrier, std::size_t robot, Time since) {

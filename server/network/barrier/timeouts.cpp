@@ -1,4 +1,4 @@
-#include "network/barrier/timing.h"
+#include "network/barrier/timeouts.h"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "network/barrier/answer_timing.h"
 #include "network/barrier/departure.h"
 #include "network/barrier/directing.h"
 #include "network/barrier/exchange.h"
-#include "network/barrier/measuring.h"
 #include "network/barrier/peer_messages.h"
 #include "wire/fault.h"
 
@@ -88,7 +88,7 @@ bool miss_director(Barrier& barrier, std::size_t director) {
 /// Sends a warning on the session's tick. False if the session can't be told.
 bool warn(Barrier& barrier, Session& session, wire::Fault fault) {
   fault.severity = wire::Severity::warning;
-  fault.tick = session.turn.tick;
+  fault.tick = session.pending_answer.tick;
   barrier.outbox.error(fault);
   return send(barrier, session) != Delivery::unreachable;
 }
@@ -97,7 +97,7 @@ bool tell_missed(Barrier& barrier, Session& session, milliseconds deadline) {
   return warn(barrier, session,
               wire::make_fault(wire::ErrorCode::deadline_missed, {},
                                fmt::format("Tick {} went on without an answer after {} ms.{}",
-                                           session.turn.tick, deadline.count(),
+                                           session.pending_answer.tick, deadline.count(),
                                            session.has_ticks()
                                                ? ""
                                                : " What it drives has left the barrier.")));
@@ -118,12 +118,12 @@ bool tell_dropped(Barrier& barrier, Session& session, std::vector<std::uint32_t>
 /// At once, unless the last notice on this session is too fresh: then with the next one.
 void note_miss(Barrier& barrier, Session& session, milliseconds deadline) {
   Session::Untold& untold = session.untold;
-  if (untold.misses++ == 0) untold.first_tick = session.turn.tick;
+  if (untold.misses++ == 0) untold.first_tick = session.pending_answer.tick;
   if (barrier.now < untold.until) return;
   const std::string ticks =
-      untold.misses == 1 ? fmt::format("at tick {}", session.turn.tick)
+      untold.misses == 1 ? fmt::format("at tick {}", session.pending_answer.tick)
                          : fmt::format("at {} of the ticks {} to {}", untold.misses,
-                                       untold.first_tick, session.turn.tick);
+                                       untold.first_tick, session.pending_answer.tick);
   note(barrier, &session, fmt::format("{} ({}) missed its deadline of {} ms {}", session.client,
                                       robots_of(barrier, session), deadline.count(), ticks));
   untold = {0, 0, barrier.now + between_notices};
@@ -131,11 +131,11 @@ void note_miss(Barrier& barrier, Session& session, milliseconds deadline) {
 
 /// The tick goes on without the session's answer.
 void miss(Barrier& barrier, Session& session) {
-  barrier.gate.miss(session.turn, barrier.now);
+  barrier.gate.miss(session.pending_answer, barrier.now);
   expect_late_answer(barrier, session);
   ++session.misses;
   const auto& robots = session.roster.robots;
-  const milliseconds deadline = *session.turn.patience;
+  const milliseconds deadline = *session.pending_answer.deadline;
   note_miss(barrier, session, deadline);
   std::vector<std::uint32_t> dropped;
   for (std::size_t i = 0; i < robots.size(); ++i) {
@@ -159,33 +159,33 @@ void wake_at(Barrier& barrier, Time time) {
 
 void check_sessions(Barrier& barrier) {
   barrier.sessions.for_each([&](Session& session) {
-    if (!session.turn.owes || !session.turn.patience) return;
-    const Time deadline = session.turn.deadline(*session.turn.patience);
+    if (!session.pending_answer.is_owed || !session.pending_answer.deadline) return;
+    const Time deadline = session.pending_answer.due_at(*session.pending_answer.deadline);
     if (deadline > barrier.now) return wake_at(barrier, deadline);
     miss(barrier, session);
   });
 }
 
 /// Of a free robot or director, which does not wait.
-Time deadline_of(const Seats::Seat& seat, const scene::DeadlinePolicy& policy) {
-  return seat.free_since + time_left(milliseconds(policy.wall_deadline_ms), seat.waited);
+Time deadline_of(const Ownership::Entry& entry, const scene::DeadlinePolicy& policy) {
+  return entry.free_since + time_left(milliseconds(policy.wall_deadline_ms), entry.waited);
 }
 
 void check_free_robots(Barrier& barrier) {
   std::optional<std::size_t> controller;  // of the robot before
-  for (std::size_t robot = 0; robot < barrier.seats.size() && barrier.seats.is_awaited(); ++robot) {
-    const Seats::Seat& seat = barrier.seats[robot];
-    if (seat.holder != SessionId::none || seat.has_left || seat.is_skipped) continue;
+  for (std::size_t robot = 0; robot < barrier.ownership.size() && barrier.ownership.is_awaited(); ++robot) {
+    const Ownership::Entry& entry = barrier.ownership[robot];
+    if (entry.holder != SessionId::none || entry.has_left || entry.is_skipped) continue;
     const scene::DeadlinePolicy& policy = barrier.deadlines.policy(robot);
     if (policy.action == DeadlineAction::wait) continue;
-    const Time deadline = deadline_of(seat, policy);
+    const Time deadline = deadline_of(entry, policy);
     if (deadline > barrier.now) {
       wake_at(barrier, deadline);
     } else {
-      barrier.seats.skip(robot, barrier.now);
+      barrier.ownership.skip(robot, barrier.now);
       if (controller != barrier.deadlines.controller(robot)) {
         controller = barrier.deadlines.controller(robot);
-        measure_absence(barrier, robot, seat.free_since);
+        measure_absence(barrier, robot, entry.free_since);
       }
       miss(barrier, robot);
     }
@@ -195,20 +195,20 @@ void check_free_robots(Barrier& barrier) {
 void check_free_directors(Barrier& barrier) {
   Directors& directors = barrier.directors;
   for (std::size_t i = 0; i < directors.all.size(); ++i) {
-    const Seats::Seat seat = directors.seats[i];
+    const Ownership::Entry entry = directors.ownership[i];
     const scene::DeadlinePolicy& policy = directors.deadlines.policy(i);
     const bool is_awaited =
-        seat.holder == SessionId::none && !seat.has_left && !seat.is_skipped;
+        entry.holder == SessionId::none && !entry.has_left && !entry.is_skipped;
     if (!is_awaited || policy.action == DeadlineAction::wait) continue;
-    const Time deadline = deadline_of(seat, policy);
+    const Time deadline = deadline_of(entry, policy);
     if (deadline > barrier.now) {
       wake_at(barrier, deadline);
       continue;
     }
-    directors.seats.skip(i, barrier.now);
+    directors.ownership.skip(i, barrier.now);
     if (!miss_director(barrier, i)) continue;
-    Session* claimant = barrier.sessions.find(seat.claimant);
-    directors.seats.leave(i);
+    Session* claimant = barrier.sessions.find(entry.claimant);
+    directors.ownership.leave(i);
     if (claimant != nullptr) erase(barrier, *claimant);
   }
 }
@@ -228,20 +228,20 @@ void check_deadlines(Barrier& barrier) {
 /// To the session, if it is time.
 Delivery send_heartbeat(Barrier& barrier, Session& session) {
   const milliseconds usual = barrier.config.heartbeat;
-  const bool is_rare = session.turn.owes && session.contact.heartbeats >= most_heartbeats;
+  const bool is_rare = session.pending_answer.is_owed && session.liveness.heartbeats >= most_heartbeats;
   const milliseconds interval = is_rare ? std::max(rare_heartbeat, usual) : usual;
   Delivery delivery = Delivery::sent;
-  if (session.contact.last_sent + interval <= barrier.now) {
+  if (session.liveness.last_sent + interval <= barrier.now) {
     if (session.state == SessionState::hello) {
       barrier.outbox.loading(barrier.progress.share, barrier.progress.message);
     } else {
       barrier.outbox.heartbeat(++barrier.heartbeats);
     }
-    ++session.contact.heartbeats;
+    ++session.liveness.heartbeats;
     delivery = send(barrier, session);
   }
   barrier.timers.heartbeat =
-      std::min(barrier.timers.heartbeat, session.contact.last_sent + interval);
+      std::min(barrier.timers.heartbeat, session.liveness.last_sent + interval);
   return delivery;
 }
 
@@ -284,15 +284,15 @@ void expect_answer(Barrier& barrier, std::size_t robot) {
 }
 
 void expect_answer(Barrier& barrier, const Session& session) {
-  if (session.turn.patience) wake_at(barrier, session.turn.deadline(*session.turn.patience));
+  if (session.pending_answer.deadline) wake_at(barrier, session.pending_answer.due_at(*session.pending_answer.deadline));
 }
 
-void update_patience(Barrier& barrier, Session& session) {
+void update_deadline(Barrier& barrier, Session& session) {
   if (session.director) {
     const auto& policy = barrier.directors.deadlines.policy(*session.director);
-    session.turn.patience.reset();
+    session.pending_answer.deadline.reset();
     if (policy.action != DeadlineAction::wait) {
-      session.turn.patience = milliseconds(policy.wall_deadline_ms);
+      session.pending_answer.deadline = milliseconds(policy.wall_deadline_ms);
     }
   }
   // With its last robot gone, what it still owes keeps its deadline.
@@ -302,13 +302,13 @@ void update_patience(Barrier& barrier, Session& session) {
     if (session.roster.gone[i]) continue;
     const auto& policy = barrier.deadlines.policy(session.roster.robots[i]);
     if (policy.action == DeadlineAction::wait) {
-      session.turn.patience.reset();
+      session.pending_answer.deadline.reset();
       return;
     }
     longest = std::max(longest, milliseconds(policy.wall_deadline_ms));
   }
-  session.turn.patience = longest;
-  if (session.turn.owes) expect_answer(barrier, session);
+  session.pending_answer.deadline = longest;
+  if (session.pending_answer.is_owed) expect_answer(barrier, session);
 }
 
 }  // namespace ziggurat::network

@@ -1,6 +1,6 @@
 // What is kept of each answer for a report card, by a clock that only the test moves.
 
-#include "network/barrier/measuring.h"
+#include "network/barrier/answer_timing.h"
 
 #include <gtest/gtest.h>
 
@@ -21,8 +21,8 @@ Config keeping(DeadlineAction action, std::uint32_t budget = 0) {
 }
 
 /// "p" has the two robots, one of each controller, and a deadline of 50 ms.
-struct Measuring : ::testing::Test {
-  explicit Measuring(const Config& config = keeping(DeadlineAction::hold))
+struct AnswerTiming : ::testing::Test {
+  explicit AnswerTiming(const Config& config = keeping(DeadlineAction::hold))
       : small(2), peers(small, config) {
     peers.join("p", "*");
   }
@@ -45,7 +45,7 @@ struct Measuring : ::testing::Test {
   Peers peers;
 };
 
-TEST_F(Measuring, AnAnswerInTime) {
+TEST_F(AnswerTiming, AnAnswerInTime) {
   peers.publish(0);
   peers.pass(milliseconds{7});
   peers.say("p", Peers::command(0));
@@ -53,7 +53,7 @@ TEST_F(Measuring, AnAnswerInTime) {
   expect(kept()[0], 0, Reaction::Kind::in_time, 7e-3);
 }
 
-TEST_F(Measuring, DeadlinesBeginWhenTheObservationsAreSent) {
+TEST_F(AnswerTiming, DeadlinesBeginWhenTheObservationsAreSent) {
   peers.publish(0);
   peers.now += milliseconds{60};  // the server was stopped
   await_from(peers.barrier, peers.now);
@@ -69,7 +69,7 @@ TEST_F(Measuring, DeadlinesBeginWhenTheObservationsAreSent) {
   EXPECT_TRUE(peers.is_complete());
 }
 
-TEST_F(Measuring, ALateAnswerCountsWithItsWholeTime) {
+TEST_F(AnswerTiming, ALateAnswerCountsWithItsWholeTime) {
   peers.publish(0);
   peers.pass(milliseconds{50});
   peers.publish(1);
@@ -82,7 +82,7 @@ TEST_F(Measuring, ALateAnswerCountsWithItsWholeTime) {
   expect(kept()[1], 1, Reaction::Kind::in_time, 30e-3);
 }
 
-TEST_F(Measuring, AnObservationThatIsNeverAnsweredCountsUntilALaterAnswer) {
+TEST_F(AnswerTiming, AnObservationThatIsNeverAnsweredCountsUntilALaterAnswer) {
   peers.publish(0);
   peers.pass(milliseconds{50});
   peers.publish(1);
@@ -97,7 +97,7 @@ TEST_F(Measuring, AnObservationThatIsNeverAnsweredCountsUntilALaterAnswer) {
   expect(kept()[2], 2, Reaction::Kind::in_time, 10e-3);
 }
 
-TEST_F(Measuring, OrUntilTheEndOfTheRun) {
+TEST_F(AnswerTiming, OrUntilTheEndOfTheRun) {
   peers.publish(0);
   peers.pass(milliseconds{50});
   peers.publish(1);
@@ -109,7 +109,7 @@ TEST_F(Measuring, OrUntilTheEndOfTheRun) {
   EXPECT_EQ(kept().size(), 1U) << "once";
 }
 
-TEST_F(Measuring, OrUntilTheConnectionIsGone) {
+TEST_F(AnswerTiming, OrUntilTheConnectionIsGone) {
   peers.publish(0);
   peers.pass(milliseconds{50});
   peers.publish(1);
@@ -121,7 +121,7 @@ TEST_F(Measuring, OrUntilTheConnectionIsGone) {
   expect(kept()[1], 1, Reaction::Kind::unanswered, 50e-3);
 }
 
-TEST_F(Measuring, AResetBeginsAnotherWorld) {
+TEST_F(AnswerTiming, AResetBeginsAnotherWorld) {
   peers.publish(0);
   peers.pass(milliseconds{50});
   network::restart(peers.barrier, {42});
@@ -134,8 +134,8 @@ TEST_F(Measuring, AResetBeginsAnotherWorld) {
   EXPECT_EQ(kept()[1].world, 1U);
 }
 
-struct Dropping : Measuring {
-  Dropping() : Measuring(keeping(DeadlineAction::drop, 1)) {}
+struct Dropping : AnswerTiming {
+  Dropping() : AnswerTiming(keeping(DeadlineAction::drop, 1)) {}
 };
 
 TEST_F(Dropping, DroppedRobotsHaveTheirLastMissAndNoMore) {
