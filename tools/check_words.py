@@ -39,8 +39,8 @@ WORDS = {
 PATTERN = re.compile("|".join(rf"(?P<w{i}>(?<![A-Za-z0-9-])(?:{word})(?![A-Za-z0-9-]))"
                               for i, word in enumerate(WORDS)))
 
-COMMENTED = ["server/dynamics", "server/physics", "server/simulation", "tests/unit/dynamics", "tests/unit/physics",
-             "tests/unit/simulation"]
+COMMENTED = ["server/dynamics", "server/network", "server/physics", "server/simulation", "tests/unit/dynamics", "tests/unit/network",
+             "tests/unit/physics", "tests/unit/simulation"]
 LONGEST_SENTENCE = 25  # words
 COMMENT = re.compile(r"(?P<code>.*?)//[/!]?<?(?P<text> .*)?$")
 VAGUE = re.compile(r"\W*(What|Of|Those|That|How|Where|Whose)\b")

@@ -18,7 +18,7 @@ class AnswerCache {
  public:
   using Write = std::function<void(wire::Outbox&)>;
 
-  /// Of what answers tell.
+  /// State that the kept answers describe.
   struct Version {
     std::uint64_t changes = 0;  ///< another number: answers have changed
     std::uint64_t commands =

@@ -34,7 +34,7 @@ struct Roles {
 };
 inline constexpr Roles all_roles{true, true, true, true};
 
-/// What a connection may do, and by which key.
+/// Rights of a connection, and the key that gives them.
 struct Access {
   Roles roles = all_roles;
   std::optional<std::size_t> key = {};  ///< into Curve::clients; none: not encrypted
@@ -67,7 +67,7 @@ struct ClientKey {
   Scope scope = {};
 };
 
-/// How a server protects its endpoints.
+/// Protection of a server's endpoints by CURVE.
 struct Curve {
   std::string secret_key;  ///< Z85
   std::vector<ClientKey> clients;

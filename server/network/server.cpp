@@ -115,7 +115,8 @@ bool Server::State::take_messages(Done done, world::Commands* into) {
     if (is_done) return true;
   } while (!barrier.calls.has_news() && Clock::now() < end);
   for (const std::string& connection : socket.take_gone()) {
-    // What such a link still holds back arrives first; a heartbeat then finds that it is gone.
+    // Messages that such a link still holds back arrive first; a heartbeat then finds that the
+    // connection is gone.
     if (!link || !link->holds(connection)) disconnect(barrier, connection);
     ++changes;
   }
@@ -137,7 +138,8 @@ template <class Done>
 Outcome Server::State::wait_until(Done done, const Wait& wait, world::Commands* commands) {
   const bool is_bounded = wait.timeout.count() >= 0;
   const Time end = is_bounded ? Clock::now() + wait.timeout : never;
-  // What had arrived when the server last looked is not late, however long it was kept from taking it.
+  // Messages that had arrived when the server last looked are not late, even if it takes them
+  // later.
   Time looked = barrier.now;
   socket.handled();
   for (;;) {

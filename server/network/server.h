@@ -37,7 +37,7 @@
 
 namespace ziggurat::network {
 
-/// How long to wait, and for what else.
+/// Timeout of a wait, and descriptors that end it.
 struct Wait {
   std::chrono::milliseconds timeout{-1};  ///< wall time; negative: forever
   std::span<const int> descriptors;       ///< return as soon as one of these is readable
@@ -65,7 +65,8 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /// Where it listens, wildcards resolved: the private one first, then as in the config.
+  /// Addresses that it listens at, wildcards resolved: the private one first, then as in the
+  /// config.
   const std::vector<std::string>& endpoints() const;
 
   /// Answers clients while the world is being loaded.
@@ -166,7 +167,7 @@ class Server {
 /// no message.
 void keep_alive(Server& server);
 
-/// What the world needs most of the sessions that have these robots or directors.
+/// Greatest need of the sessions that have these robots or directors.
 Need need_of(const Server& server, const std::vector<std::string>& ids);
 
 /// The directors of a server.
@@ -177,8 +178,8 @@ class ServerDirectors {
 
   /// Told of each Direction that arrives, before it is taken: what is wrong with it in the present world.
   void check_by(std::function<std::optional<wire::Fault>(const wire::Direction&)> check);
-  /// What directors want done between the published tick, which is complete, and the next: in the order of
-  /// their ids. Valid until the server waits again.
+  /// Directions to apply between the published tick, which is complete, and the next. They are in
+  /// the order of their directors' ids, and valid until the server waits again.
   const std::vector<Directed>& directions() const;
   bool wants_contacts() const;             ///< a director subscribed to them
   bool has(const std::string& id) const;  ///< a director of that id is there, or was

@@ -40,15 +40,15 @@ class Socket {
   void add_private(const Config& config);
 
   const std::vector<std::string>& endpoints() const { return endpoints_; }
-  /// How many connections there may be, as far as the system's limits allow.
+  /// Greatest number of connections within the system's limits.
   std::size_t most_connections() const { return most_peers_; }
 
   // Neither waits.
   Delivery send(const std::string& connection, const wire::Outbox& message);
   Delivery send(const std::string& connection, std::string_view bytes, bool is_observation);
 
-  /// What a connection is from now on.
-  /// @param longest  of its messages [bytes]
+  /// Sets the standing of a connection.
+  /// @param longest  length of its longest message [bytes]
   void set_standing(const std::string& connection, Standing standing, std::size_t longest);
   /// A message that arrived, if any. Valid until the next call. It is false, too, if clients send
   /// much that is no message: the caller looks at the time and calls again.
@@ -81,7 +81,7 @@ class Socket {
     bool is_private = false;
     bool is_accepting = true;
 
-    /// Those who connect while it does not accept wait in the system.
+    /// Accepts connections, or leaves new ones waiting in the system.
     void set_accepting(ReadyList& list, bool accepts);
   };
   /// Connections that are served together.

@@ -27,7 +27,7 @@ namespace {
 constexpr std::size_t max_label = 64;  // bytes of a client's name, and of its version
 constexpr std::size_t max_waiting_bytes = std::size_t{64} << 20;  // of all Hellos that wait
 
-/// What a client calls itself, fit for a line on a terminal.
+/// Name of the client for a line on a terminal.
 std::string label_of(const wire::Hello& hello) {
   std::string text = hello.client_name.substr(0, max_label);
   if (text.empty()) text = "unnamed client";
@@ -150,7 +150,8 @@ void set_policies(Barrier& barrier, const Session& session, const wire::Hello& h
   }
 }
 
-/// How long the tick in hand has waited for those who had the session's robots, or its director, before.
+/// Longest time that the current tick has waited for earlier sessions of these robots or this
+/// director.
 std::chrono::nanoseconds waited_before(const Barrier& barrier, const Session& session) {
   std::chrono::nanoseconds longest{0};
   if (session.director) longest = barrier.directors.ownership[*session.director].waited;
@@ -261,7 +262,7 @@ void handle_hello(Barrier& barrier, const std::string& connection, const Access&
 void admit_waiting(Barrier& barrier) {
   std::vector<std::pair<std::string, WaitingHello>> waiting;
   barrier.sessions.for_each([&](Session& session) {
-    // Those whose connection is gone get no session, and no lease.
+    // A client whose connection is gone gets no session and no lease.
     if (tell_loading(barrier, session) != Delivery::unreachable) {
       waiting.emplace_back(session.connection, std::move(session.waiting_hello));
     }

@@ -1,5 +1,5 @@
 #pragma once
-// How long controllers take for their answers: for the status, and for report cards.
+// Response times of controllers, for the status and for report cards.
 
 #include <cstddef>
 #include <cstdint>

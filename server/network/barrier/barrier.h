@@ -32,13 +32,13 @@
 
 namespace ziggurat::network {
 
-/// What robots sense at the tick in hand. Seen, not owned: stays as it is until the next tick.
+/// Readings of robots at the current tick. Not owned; they stay unchanged until the next tick.
 struct Senses {
   const world::Observations* observations = nullptr;
   const std::vector<std::string>* tag_payloads = nullptr;  ///< for each of Layout::tags
 };
 
-/// Where the world stands after a reset or a restore, until its first tick is published.
+/// State of the world after a reset or a restore, until its first tick is published.
 struct Begin {
   std::uint64_t tick = 0;
   std::optional<world::Commands> commands = {};  ///< that hold there; none: nothing was commanded

@@ -11,7 +11,7 @@
 
 namespace ziggurat::network {
 
-/// What a policy asks for after a miss.
+/// Action of a policy after a miss.
 enum class Consequence {
   none,  ///< what was commanded before stays
   zero,  ///< its commands become zero when the tick is complete
@@ -39,7 +39,7 @@ class Deadlines {
 
   std::size_t controller(std::size_t robot) const { return robots_[robot].controller; }
   const scene::DeadlinePolicy& policy(std::size_t robot) const { return robots_[robot].policy; }
-  /// Of the robot's controller, whatever its session wishes.
+  /// Policy of the robot's controller, without its session's own policy.
   const scene::DeadlinePolicy& usual_policy(std::size_t robot) const {
     return defaults_[robots_[robot].controller].policy;
   }

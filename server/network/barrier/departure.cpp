@@ -27,7 +27,7 @@ void release(Barrier& barrier, const Session& holder, std::size_t robot, bool ma
   if (!is_skipped) expect_answer(barrier, robot);
 }
 
-/// Of a robot of the session, in Welcome.
+/// Index of a robot in the Welcome of its session.
 std::size_t position_of(const Session& session, std::size_t robot) {
   const auto& robots = session.roster.robots;
   return static_cast<std::size_t>(std::ranges::lower_bound(robots, robot) - robots.begin());

@@ -37,14 +37,14 @@ bool is_id(std::string_view text) {
   });
 }
 
-/// Of what was subscribed to, for a director that knows nothing of the world yet.
+/// View of a director that has not been sent anything of the world yet.
 wire::WorldView view_of(wire::Subscription subscription) {
   wire::WorldView view;
   view.subscription = std::move(subscription);
   return view;
 }
 
-/// What is wrong with what a director asks for, also for no director of the scene.
+/// Checks the fields of a director's Hello, also for a director that the scene does not name.
 std::optional<wire::Refusal> check_wishes(const Barrier& barrier, const wire::Hello& hello) {
   if (!hello.robots.empty() || !hello.controller.empty() || hello.lua_only) {
     return refuse(ErrorCode::bad_value, "robots", "A director asks for no robots.");
@@ -183,7 +183,7 @@ std::optional<wire::Fault> check(const Barrier& barrier, const Session& session,
   return barrier.inbox.check_direction();
 }
 
-/// What the world has to say.
+/// Checks a Direction against metrics and world.
 std::optional<wire::Fault> check(const Barrier& barrier, const Session& session,
                                  const wire::Direction& direction) {
   auto fault = barrier.directors.metrics.check(numbered(direction.metrics, *session.director));

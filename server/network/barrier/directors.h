@@ -19,7 +19,7 @@
 
 namespace ziggurat::network {
 
-/// What is wrong with a Direction in the present world, if anything.
+/// Checks a Direction against the world in its current state. No fault: it can be applied.
 using CheckDirection = std::function<std::optional<wire::Fault>(const wire::Direction&)>;
 
 /// Each director has the same number in all lists. Those of the scene come first, then those from outside in

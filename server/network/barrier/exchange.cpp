@@ -17,7 +17,7 @@ using wire::make_fault;
 
 namespace {
 
-/// What is wrong with the Command in `barrier.inbox`, if anything.
+/// Checks the Command in `barrier.inbox`.
 std::optional<wire::Fault> check_command(const Barrier& barrier, const Session& session,
                                          bool is_collecting) {
   if (session.state == SessionState::ready) {

@@ -19,7 +19,8 @@ namespace ziggurat::network {
 /// @param truth  that directors are told, likewise; null: none
 void publish(Barrier& barrier, const world::Observations& observations,
              const std::vector<std::string>& tag_payloads, const wire::Truth* truth = nullptr);
-/// What was published is on its way only now: the deadlines of the answers begin.
+/// Observations of the current tick leave the server only now: the deadlines of their answers
+/// begin.
 void await_from(Barrier& barrier, Time now);
 /// Sends a session what its robots sense at the tick in hand. @returns why it is lost; empty: it is not
 std::string_view observe(Barrier& barrier, Session& session);

@@ -29,7 +29,7 @@ wire::Refusal refuse_taken(const std::string& id, const Session& by, std::string
   return refusal;
 }
 
-/// What the key of a connection limits; none if it has none.
+/// Scope of the connection's key; null: it has no key.
 const Scope* scope_of(const Barrier& barrier, const Access& access) {
   if (!access.key || !barrier.config.curve) return nullptr;
   return &barrier.config.curve->clients[*access.key].scope;

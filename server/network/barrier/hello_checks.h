@@ -1,5 +1,5 @@
 #pragma once
-// What a Hello may have, and why not.
+// Checks of a Hello: the grant of robots, or the refusal with its reason.
 
 #include <cstddef>
 #include <optional>
@@ -28,9 +28,9 @@ std::optional<wire::Refusal> check_places(const Barrier& barrier, wire::Role rol
 /// Because its key may take nothing over, and it asks for that.
 std::optional<wire::Refusal> check_takeover(const Barrier& barrier, const wire::Hello& hello,
                                             const Access& access);
-/// Because it asks for the policy STOP, or for one by which the world may wait longer than it would, and its
-/// key may neither end nor stop the run (K11).
-/// @param robots  that it is to hold for
+/// Because its policy is STOP, or waits longer than the controller's own policy. A key that may
+/// neither end nor stop the run is refused both (K11).
+/// @param robots  robots that the policy is for
 std::optional<wire::Refusal> check_power(const Barrier& barrier, const wire::Hello& hello,
                                         const Access& access, std::span<const std::size_t> robots);
 /// Because of the deadline policy that it asks for.

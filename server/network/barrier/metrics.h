@@ -25,7 +25,7 @@ class Metrics {
   /// The world begins anew.
   void clear();
 
-  // Of robots in scene order, each sorted by name.
+  // Metrics of robots in scene order, sorted by name for each robot.
   std::vector<wire::Metric> of_tick() const;
   std::vector<wire::Metric> last() const;
 

@@ -116,7 +116,7 @@ std::vector<RobotStatus> robot_status(const Barrier& barrier) {
 
 namespace {
 
-/// Those of directors follow, in the order of their ids.
+/// Appends the metrics of directors, in the order of their ids.
 void append_named(const Directors& directors, const std::vector<wire::Metric>& metrics,
                   std::vector<world::Metric>& to) {
   for (const std::size_t director : directors.by_id) {

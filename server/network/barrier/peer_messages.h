@@ -1,5 +1,5 @@
 #pragma once
-// How the server talks to one peer: in its form, and what it answers to bad messages.
+// Messages to one peer in its encoding, and answers to bad messages.
 
 #include <cstdint>
 #include <optional>
@@ -32,9 +32,9 @@ void tell_fatal(Barrier& barrier, const std::string& connection, wire::Fault fau
 void answer_malformed(Barrier& barrier, const std::string& connection, Session* session,
                       std::string_view why);
 
-/// What a connection is whose session this is; null: none.
+/// Standing of a connection with this session; null: it has none.
 Standing standing_of(const Session* session);
-/// Of what its client may send [bytes].
+/// Longest message that the client may send [bytes].
 std::size_t longest_message(const Barrier& barrier, const Session* session);
 
 /// The tick in hand; 0 before the first.

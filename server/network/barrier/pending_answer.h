@@ -1,5 +1,5 @@
 #pragma once
-// What one session is_owed at the tick in hand.
+// The answer that a session owes to the current tick.
 
 #include <algorithm>
 #include <chrono>

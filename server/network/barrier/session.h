@@ -1,5 +1,5 @@
 #pragma once
-// What the server knows of one client.
+// Session of one client, as the server knows it.
 
 #include <cstddef>
 #include <cstdint>
@@ -31,7 +31,7 @@ enum class SessionState {
   lost,      ///< its connection is gone; its robots are free
 };
 
-/// What is known of its connection.
+/// Liveness of the session's connection, and its bad messages.
 struct Liveness {
   Time last_received;       ///< when a message came from it
   Time last_sent;           ///< when one was sent to it

@@ -31,7 +31,7 @@ class TickGate {
   void miss(PendingAnswer& answer, Time now);
   /// It is_owed nothing any more because the world is put back.
   void give_up(PendingAnswer& answer, Time now);
-  /// How long the tick in hand waits, or waited, for this answer.
+  /// Time that the current tick waits, or waited, for this answer.
   std::chrono::nanoseconds waited(const PendingAnswer& answer, Time now) const;
   /// The tick has gone on without an answer for this session.
   bool has_missed(const PendingAnswer& answer) const { return answer.has_missed && answer.tick == tick_; }

@@ -166,7 +166,7 @@ void check_sessions(Barrier& barrier) {
   });
 }
 
-/// Of a free robot or director, which does not wait.
+/// Deadline of a free robot or director whose policy is not to wait.
 Time deadline_of(const Ownership::Entry& entry, const scene::DeadlinePolicy& policy) {
   return entry.free_since + time_left(milliseconds(policy.wall_deadline_ms), entry.waited);
 }

@@ -1,6 +1,6 @@
 #pragma once
-// What happens when wall time passes: missed deadlines (docs/protocol.md, section 3.2), heartbeats
-// and, while the world is loading, news of that.
+// Timeouts: missed deadlines (docs/protocol.md, section 3.2), heartbeats, and progress messages
+// while the world is loading.
 
 #include <cstddef>
 

@@ -1,4 +1,4 @@
-// What is done to the world between two ticks, while clients come to be gone.
+// Changes of the world between two ticks, while clients connect and leave.
 
 #include <gtest/gtest.h>
 

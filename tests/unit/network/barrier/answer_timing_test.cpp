@@ -1,4 +1,4 @@
-// What is kept of each answer for a report card, by a clock that only the test moves.
+// Response times kept for a report card, by a clock that only the test moves.
 
 #include "network/barrier/answer_timing.h"
 
@@ -26,7 +26,7 @@ struct AnswerTiming : ::testing::Test {
       : small(2), peers(small, config) {
     peers.join("p", "*");
   }
-  /// Of the robots of the first controller, in the order in which they were known.
+  /// Reactions of the first controller's robots, in the order in which they were known.
   std::vector<Reaction> kept() const {
     std::vector<Reaction> result;
     for (const Reaction& one : peers.barrier.reactions.all) {
