@@ -66,7 +66,7 @@ std::optional<Ending> ControllerReplay::tell(const std::function<bool(std::uint6
   return std::nullopt;
 }
 
-/// What directors have shown on devices that no controller sets.
+/// Takes over devices that directors have shown and that no controller sets.
 void ControllerReplay::take_shown() {
   const world::Layout& layout = recorded_.simulation.layout();
   const world::Commands& shown = recorded_.simulation.commands();
@@ -130,7 +130,8 @@ void ControllerReplay::take_reset() {
   is_restarted_ = true;
 }
 
-/// Of controllers that were given nothing yet, as the server does it with those that connect later.
+/// Restores controllers that were given nothing yet, as the server does for clients that connect
+/// later.
 void ControllerReplay::take_restore(const std::string& snapshot) {
   if (has_told_) {
     throw replay::RecordingError(fmt::format(
@@ -172,7 +173,7 @@ void ControllerReplay::take_spawn() {
   add_robots();
 }
 
-/// Those that the layout has behind the known ones.
+/// Adds the robots that the layout has beyond the known ones.
 void ControllerReplay::add_robots() {
   const world::Layout& layout = told_world_.simulation.layout();
   const std::size_t first = gone_.size();

@@ -21,7 +21,7 @@ namespace ziggurat::run {
 
 class ControllerReplay {
  public:
-  /// Of the commands of one robot.
+  /// Difference between given and recorded commands of one robot.
   struct Difference {
     std::uint64_t first_tick = 0, ticks = 0;  ///< the first tick with one; how many have one
   };
@@ -57,7 +57,8 @@ class ControllerReplay {
   bool skip(const std::function<bool(std::uint64_t tick)>& is_end,
             const std::function<bool()>& meanwhile);
 
-  /// What the controllers command after tell(), values that stay included; null if they were told nothing.
+  /// Commands of the controllers after tell(), with values that stay set; null: they were given
+  /// nothing.
   const world::Commands* commanded() const { return is_restarted_ ? nullptr : &answered_; }
   bool has_ended() const { return has_ended_; }      ///< it came to the end of the recording
   std::uint64_t ticks() const { return ticks_; }     ///< whose commands were compared

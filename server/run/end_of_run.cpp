@@ -17,7 +17,7 @@ using Membership = network::RobotStatus::Membership;
 
 constexpr milliseconds between_looks{20};  // at what arrives
 
-/// How long controllers may take to end.
+/// Grace periods in which controllers may end.
 struct GracePeriods {
   milliseconds answer;  ///< of controllers that the run has not started, to the message that the run is over
   milliseconds leave;   ///< the same of those that it has started
@@ -27,7 +27,7 @@ constexpr GracePeriods usual{milliseconds{2000}, milliseconds{4000}, 1000};
 // Together with what else is to be done, less than Signals::patience.
 constexpr GracePeriods interrupted{milliseconds{400}, milliseconds{400}, 100};
 
-/// What is lost with a Lua process that is ended: it has said nothing of what its robots did at the end.
+/// Loss when a Lua process is ended: it has not reported the end of its robots yet.
 std::string what_is_lost(const processes::ControllerProcess& slow, std::optional<std::size_t> busy, const world::Layout& layout) {
   std::string text;
   const auto behind = busy ? std::ranges::upper_bound(slow.robots, *busy) : slow.robots.end();

@@ -79,7 +79,7 @@ reports::ReportCard Run::report_card() const {
     const bool is_new = std::ranges::find(deadlines, status[r].deadline) == deadlines.end();
     if (is_new) deadlines.push_back(status[r].deadline);
   }
-  // Those that control no robot.
+  // Controllers without robots have no card.
   std::erase_if(card.controllers, [](const auto& each) { return each.reactions.empty(); });
   complete(card);
   return card;

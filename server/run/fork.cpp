@@ -93,7 +93,7 @@ bool Fork::changes_world() const {
          seed_ != file_.run().seed();
 }
 
-/// Those of the user; no command of the recording starts by itself.
+/// Sets the commands of the user; no command of the recording starts by itself.
 void Fork::set_commands(scene::Scene& scene) const {
   const auto& recorded = file_.run().controllers();
   for (scene::Controller& controller : scene.controllers) {

@@ -36,7 +36,7 @@ class Fork {
   /// Writes the embedded files into a folder. @return  per robot its script there; empty = none
   std::vector<std::string> write_scripts(const supervision::World& world,
                                          const std::string& folder) const;
-  /// Those of the scene, with their scripts there.
+  /// Directors of the scene, with the paths of their scripts.
   /// @throws text::UsageError if one has no command that may be started
   std::vector<scene::Director> directors(const supervision::World& world, const std::string& folder) const;
   /// Robots that get no controller: those that had none.
@@ -53,8 +53,8 @@ class Fork {
                                         const std::string& folder, processes::Signals& signals,
                                         reports::Console& console);
 
-  /// What the recording of the fork says of its begin, and has for it.
-  /// @param world  where it begins
+  /// Adds the begin of the fork to its recording, with the snapshot and the files.
+  /// @param world  world at the begin of the fork
   void describe(const supervision::World& world, recorder::Start& start) const;
 
  private:

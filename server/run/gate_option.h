@@ -9,7 +9,7 @@
 
 namespace ziggurat::run {
 
-/// What the run gives its gate to measure.
+/// Properties of the run that its gate depends on.
 struct GateGround {
   std::span<const network::Config::Deadline> deadlines;  ///< of the controllers
   bool may_be_asked = false;  ///< clients of their own may ask for deadlines when they connect

@@ -1,5 +1,5 @@
 #pragma once
-// What a run is asked for, as plain data.
+// Options of a run, as plain data.
 
 #include <cstddef>
 #include <cstdint>

@@ -94,7 +94,7 @@ std::function<bool(std::string_view)> wish_of(const std::vector<std::string>& pa
   };
 }
 
-/// Those that a recording of the world as it is can have.
+/// Topics that a recording of this world can have.
 std::vector<std::string> topics_of(const supervision::World& world) {
   std::vector<std::string> topics{"/run", "/inputs", "/state"};
   channels::Channels channels;
@@ -229,8 +229,9 @@ void RecordedRun::report_failure(const std::string& missing, const char* otherwi
   console_.fault(failure_ + otherwise);
 }
 
-/// That of a spawned robot, and what it loads; not those that the recording has, which may have been
-/// edited since: the robots that run them began with the first.
+/// Embeds the script of a spawned robot, and the scripts that it loads. Scripts that the recording
+/// has already are left out: they may have been edited since, but their robots began with the first
+/// version.
 void RecordedRun::add_script(const std::string& script, std::vector<recorder::EmbeddedFile>& files) {
   if (script.empty() || !scripts_.insert(script).second) return;
   std::vector<fs::path> scripts{script};

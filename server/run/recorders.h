@@ -22,7 +22,7 @@
 
 namespace ziggurat::run {
 
-/// What is written of a tick is on the disk half a second of wall time later at most, also while
+/// Writes the output of a tick to the disk within half a second of wall time. This also holds while
 /// the world is paused or a tick takes long.
 class Recorders {
  public:

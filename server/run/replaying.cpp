@@ -37,7 +37,7 @@ supervision::World build_world(const replay::RecordingFile& file) {
   return {run.scene(), replay::read_scene(run, file.files()), run.seed(), {}, run.scene_hash()};
 }
 
-/// What needs more than poses can't be had without simulating.
+/// Refuses outputs that need a simulation, not only poses.
 void check_poses_suffice(const Options& options) {
   const std::pair<const char*, bool> others[] = {
       {"--readings", !options.readings.empty()}, {"--rays", !options.rays.empty()},
@@ -226,7 +226,7 @@ Replaying::End Replaying::repeat() {
   return End::complete;
 }
 
-/// Those of the present inputs.
+/// Metrics of the current inputs.
 std::vector<world::Metric> Replaying::take_metrics() {
   std::vector<world::Metric> metrics;
   for (const v1::Inputs::Metric& from : replay_.inputs().metrics()) {

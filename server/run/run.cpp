@@ -39,7 +39,7 @@ void keep(const std::vector<world::Metric>& metrics, reports::Summary& summary) 
   }
 }
 
-/// Those of the last tick, and what controllers have set when they were told the end.
+/// Metrics of the last tick, and metrics that controllers set after the end of the run.
 std::vector<world::Metric> last_metrics(const network::Server& server, const Watch& watch,
                                         reports::Summary& summary) {
   std::vector<world::Metric> metrics = watch.measured();
@@ -190,7 +190,7 @@ network::Config Run::complete_config() {
   return config_;
 }
 
-/// Those whose Lua controller names no script, or all robots if controllers are not wanted. The
+/// Robots whose Lua controller names no script, or all robots if controllers are not wanted. The
 /// run does not wait for them.
 std::vector<std::size_t> Run::robots_without_controller() const {
   if (fork_) return fork_->idle_robots(world_, scripts_);

@@ -36,7 +36,7 @@ enum class Service {
   serve,  ///< controllers connect from outside
 };
 
-/// How long a run is, and how fast.
+/// Length of a run, and its speed.
 struct Plan {
   std::optional<std::uint64_t> ticks;  ///< nothing = until stopped
   std::optional<double> real_time;     ///< simulated seconds per second of wall time, if paced

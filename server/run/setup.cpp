@@ -23,8 +23,9 @@
 namespace ziggurat::run {
 namespace {
 
-/// Of controllers and directors that nothing gives a policy. Hardware in the loop does not wait: they hold
-/// their last command after nine tenths of a tick, and directors have no acts in it.
+/// Policy of controllers and directors without one of their own. Hardware in the loop does not
+/// wait. Controllers hold their last command after nine tenths of a tick, and directors have no
+/// acts in it.
 scene::DeadlinePolicy usual_policy(const Options& options, const scene::Scene& scene) {
   if (!options.hil) return {};
   const double tick_ms =

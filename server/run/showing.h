@@ -30,7 +30,7 @@ class Showing {
  public:
   using clock = std::chrono::steady_clock;
 
-  /// What it shows, and what viewers change; all must outlive it. A run, or the replay of one.
+  /// Run, or replay of one, that viewers see and change; all must outlive this.
   struct Run {
     supervision::World& world;
     Schedule& schedule;
@@ -41,7 +41,7 @@ class Showing {
     std::function<bool()> is_paused;
     std::function<clock::duration()> paused_for;  ///< wall time so far
     std::function<wire::Status()> status;
-    /// Of each of the scene's controllers; none: nothing is known of them.
+    /// Performance of each controller of the scene; none: it is not known.
     std::function<std::vector<network::Performance::Controller>()> controllers;
   };
 

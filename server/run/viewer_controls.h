@@ -1,5 +1,6 @@
 #pragma once
-// What viewers of a replay may do: pause, resume, step, end. The world itself stays as recorded.
+// Controls of a replay that viewers have: pause, resume, step, end. The world itself stays as
+// recorded.
 
 #include <chrono>
 #include <cstdint>

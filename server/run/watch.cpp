@@ -271,8 +271,8 @@ std::optional<Ending> Watch::lost_controller() {
   return Ending::controller_vanished;
 }
 
-/// What an ended process means for the run: others have its robots, it has left by itself, it is started again, or the
-/// run ends.
+/// Handles an ended process. Others have its robots, it has left by itself, it is started again, or
+/// the run ends.
 std::optional<Ending> Watch::settle(processes::ControllerProcess& ended, const std::vector<network::RobotStatus>& status) {
   child_ended_ = true;  // another may have ended with it
   const auto left = gathered_ ? left_by(ended, status) : std::vector<std::size_t>();

@@ -52,7 +52,7 @@ class Watch {
   std::optional<reports::Ending> gather();
   /// Until every controller has answered `tick`.
   std::optional<reports::Ending> collect(world::Commands& commands, std::uint64_t tick);
-  /// That were set at that tick.
+  /// Metrics that were set at that tick.
   const std::vector<world::Metric>& measured() const { return measured_; }
   /// Until that moment, which may change. A client that connects meanwhile may answer the tick.
   std::optional<reports::Ending> sleep_until(const std::function<clock::time_point()>& moment,
@@ -72,7 +72,7 @@ class Watch {
     if (dropped_.size() > PeerReports::most_kept) dropped_.resize(PeerReports::most_kept);
   }
 
-  /// What controllers and other peers reported.
+  /// Reports of controllers and other peers.
   const PeerReports& reported() const { return peers_; }
   /// A sentence on each robot that a deadline took out of the run.
   const std::vector<std::string>& dropped() const { return dropped_; }
@@ -91,7 +91,7 @@ class Watch {
   std::optional<reports::Ending> settle(processes::ControllerProcess& ended,
                                         const std::vector<network::RobotStatus>& status);
   bool restart(const processes::ControllerProcess& ended);
-  /// What a notice on awaited robots names: more is printed once it is known.
+  /// Detail of a notice on awaited robots: more is printed once it is known.
   enum class Detail { robots, scripts, lines };
 
   void serve();
