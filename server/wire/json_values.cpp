@@ -108,7 +108,7 @@ constexpr auto make_digits() {
   return digits;
 }
 
-/// What base64 stands for, with or without padding.
+/// Bytes of a base64 text, with or without padding.
 std::optional<std::string> bytes_of(std::string_view text) {
   static constexpr auto digits = make_digits();
   const bool is_padded = text.size() % 4 == 0;

@@ -12,7 +12,7 @@
 
 namespace ziggurat::wire {
 
-/// What a session's robots hear and see.
+/// Readings of a session's robots from radios, tags and cameras.
 /// @param tag_payloads  of the same tick, for each of Layout::tags
 Sensed sensed_by(const Roster& roster, const world::Observations& from, std::span<const std::string> tag_payloads);
 

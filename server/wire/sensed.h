@@ -1,11 +1,12 @@
 #pragma once
-// What a message to a session would take.
+// Size of the readings in a message to a session.
 
 #include <cstddef>
 
 namespace ziggurat::wire {
 
-/// What a session hears and sees at a tick, counted before there is a message of it (docs/protocol.md, D5).
+/// Readings of a session at a tick, counted before there is a message with them (docs/protocol.md,
+/// D5).
 struct Sensed {
   std::size_t payloads = 0;  ///< content of radio messages and tags [bytes]
   std::size_t size = 0;      ///< of its share of the message, with these payloads [bytes]

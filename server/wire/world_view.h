@@ -1,5 +1,5 @@
 #pragma once
-// What a director is told: the world's true state, of the entities that it subscribed to.
+// World view of a director: the true state of the entities that it subscribed to.
 
 #include <cstddef>
 #include <cstdint>

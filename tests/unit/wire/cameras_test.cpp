@@ -1,4 +1,4 @@
-// What cameras see, on its way to a client.
+// Camera readings on their way to a client.
 
 #include "wire/device_wire.h"
 #include "wire/observation.h"
@@ -99,7 +99,7 @@ TEST_F(DeviceWire, PicturesCountToo) {
   EXPECT_FALSE(outbox.observation(roster, often, long_payloads));
 }
 
-/// What is counted of an observation holds for the message that is made of it.
+/// Expects the counted sizes of an observation in the message that is made of it.
 void expect_counted(const Roster& roster, const world::Observations& seen, const std::vector<std::string>& texts) {
   Outbox outbox;
   ASSERT_TRUE(outbox.observation(roster, seen, texts));

@@ -1,4 +1,4 @@
-// What the conformance tests do not see: bytes, packing.
+// Bytes and packing, which the conformance tests do not see.
 
 #include <gtest/gtest.h>
 
