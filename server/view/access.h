@@ -30,7 +30,7 @@ struct RequestHead {
 
 enum class Permission { refused, look, steer };
 
-/// Of a WebSocket handshake.
+/// Permission of a WebSocket handshake.
 Permission permission_of(const Rules& rules, const RequestHead& head);
 
 /// The value of `token` in a query; nothing: it has none.

@@ -1,5 +1,5 @@
 #pragma once
-// What a viewer with the token asks for.
+// Requests of a viewer with the token.
 
 #include <cstdint>
 #include <optional>

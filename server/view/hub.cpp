@@ -36,7 +36,7 @@ std::string check(const Parameter& parameter) {
   return fmt::format("The parameter \"{}\" can't be set.", parameter.name.substr(0, 64));
 }
 
-/// Those of the names; all if there is none.
+/// Parameters of these names; all if there is none.
 std::vector<Parameter> values_of(std::span<const std::string> names, const std::vector<Parameter>& all) {
   if (names.empty()) return all;
   std::vector<Parameter> values;
@@ -165,7 +165,7 @@ void Hub::handle(Viewer& viewer, const GetParameters& message) {
   send(viewer, parameter_values(values_of(message.names, parameters_), message.id));
 }
 
-/// What is wrong with it; empty: it holds now.
+/// Sets a parameter. @return  its fault; empty: it is set
 std::string Hub::set(const Parameter& parameter) {
   if (std::string why = check(parameter); !why.empty()) return why;
   requests_.add_parameter(parameter);

@@ -51,7 +51,7 @@ class Hub {
   std::size_t size() const { return viewers_.size(); }
 
   void receive(Viewer& viewer, std::string_view message, bool is_text);
-  /// What the viewer is to be sent next: answers, changes of the channels, then ticks.
+  /// Next item to send to the viewer: answers, changes of the channels, then ticks.
   std::optional<Item> next(Viewer& viewer);
 
   /// @param list  all channels of now, ascending by id

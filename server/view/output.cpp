@@ -28,7 +28,7 @@ void Output::add_frame(std::vector<Item> items) {
   }
 }
 
-/// What is kept goes to the tick behind.
+/// Drops a tick; items that must be kept move to the tick behind.
 void Output::drop(std::size_t place) {
   Frame dropped = std::move(frames_[place]);
   frames_.erase(frames_.begin() + static_cast<std::ptrdiff_t>(place));

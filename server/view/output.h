@@ -1,6 +1,6 @@
 #pragma once
-// What waits to be sent to a viewer: bounded, whatever the viewer does. Answers are kept, or the
-// viewer is disconnected; of ticks the oldest are dropped, whole, but for what must not be lost.
+// Output that waits for a viewer, of bounded size. Answers are kept, or the viewer is disconnected.
+// The oldest ticks are dropped whole, except for items that must not be lost.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace ziggurat::view {
 
-/// What is dropped with a tick.
+/// Rule for an item when its tick is dropped.
 enum class Keep {
   nothing,  ///< the next tick replaces it
   newest,   ///< the newest one of its channel is sent

@@ -1,5 +1,5 @@
 #pragma once
-// What viewers want, passed from the thread that serves them to the thread of the run.
+// Requests of viewers, passed from the thread that serves them to the thread of the run.
 
 #include <atomic>
 #include <cstdint>

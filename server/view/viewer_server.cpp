@@ -60,7 +60,7 @@ std::string protocol_in(std::string_view offered) {
   return {};
 }
 
-/// What all connections share; everything in it is used on the server's thread only.
+/// State that all connections share, used on the server's thread only.
 struct Shared {
   Rules rules;
   Page page;

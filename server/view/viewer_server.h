@@ -44,12 +44,12 @@ class ViewerServer {
   std::string page_address() const;
   std::string viewer_address() const;
 
-  /// What viewers want.
+  /// Requests of viewers, for the thread of the run.
   ViewerRequests& requests();
 
   // Each of these returns at once.
 
-  // What is shown: as of Feed.
+  // Ticks to show: as of Feed.
   void populate(const channels::Population& population);
   void set_layers(const channels::Layers& layers);
   void show(const channels::Moment& moment, Wanted wanted);

@@ -42,7 +42,7 @@ struct Watched {
   }
   void show_tick() { feed.show(moment(), {ids, {}, false}); }
   void show_all() { feed.show(moment(), {ids, ids, false}); }
-  /// What the viewer gets: topics with their ticks, as "/poses 3".
+  /// Messages that the viewer receives: topics with their ticks, as "/poses 3".
   std::vector<std::string> sent() {
     feed.pass_on(hub);
     std::vector<std::string> all;

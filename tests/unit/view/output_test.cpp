@@ -1,4 +1,4 @@
-// What waits for a viewer is bounded; ticks are dropped whole, the newest stays.
+// Output for a viewer is bounded; ticks are dropped whole, the newest stays.
 
 #include "view/output.h"
 
