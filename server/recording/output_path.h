@@ -1,5 +1,5 @@
 #pragma once
-// Where the path of an output leads, and who has put what stands on it.
+// Resolved path of an output, and the owners of its parts.
 
 #include <sys/types.h>
 
@@ -19,7 +19,8 @@ class OutputPath {
   explicit OutputPath(const std::string& path);
 
   int error() const { return error_; }  ///< of the system: a folder is not there, or can't be entered
-  /// What another user has put on the way or at its end where all can write, or below a folder that is there so.
+  /// Description of a planted part: another user put it on the way, or at the end, where all can
+  /// write. The same holds below a folder that is planted.
   const std::optional<std::string>& planted() const { return planted_; }
 
   /// Opens the file.

@@ -19,7 +19,7 @@ class BufferedStream {
   BufferedStream(const BufferedStream&) = delete;
   BufferedStream& operator=(const BufferedStream&) = delete;
 
-  /// What is to be written, in order. It is dropped if too much waits already.
+  /// Appends text to write, in order. It is dropped if too much waits already.
   void add(std::string_view text);
   /// The same for what must not be lost, whatever waits.
   void add_always(std::string_view text);
