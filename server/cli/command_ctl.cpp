@@ -43,7 +43,7 @@ po::options_description ctl_options() {
   return options;
 }
 
-/// What the command line says.
+/// Words and values of the command line.
 struct Given {
   std::vector<std::string> words;  ///< after the verb
   Values values;
@@ -55,7 +55,8 @@ struct Call {
   bool as_json;
 };
 
-/// What is asked of the server. Its words were checked before: a wrong one is told also if no server is there.
+/// Request to the server. Its words were checked before: a wrong one is told also if no server is
+/// there.
 using Request = std::function<void(const Call&)>;
 
 void print_result(const Call& call, std::string_view done, std::uint64_t tick) {

@@ -83,7 +83,7 @@ bool has_format(const po::variables_map& values) {
   return std::ranges::any_of(formats, [&](const Format& format) { return values.count(format.option) > 0; });
 }
 
-/// Those of all formats, before the first one is written.
+/// Checks the outputs of all formats, before the first one is written.
 void check_outputs(const po::variables_map& values, const std::string& recording) {
   std::vector<recording::TakenFile> taken{{recording, "the recording itself"}};
   for (const Format& format : formats) {

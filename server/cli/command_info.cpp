@@ -31,7 +31,7 @@ po::options_description info_options() {
   return options;
 }
 
-/// What is known of a file.
+/// Content of a file, as far as it could be read.
 struct Examined {
   std::string path;
   std::uint64_t size = 0;  // [bytes]

@@ -195,7 +195,8 @@ std::size_t usual_abscissa(const sweep::Experiment& experiment) {
                          "from left to right");
 }
 
-/// What the sweep is kept in and was made of. A picture in its folder, and the program that drew it, may be replaced.
+/// Files that belong to the sweep or that it was made of. A picture in its folder, and the program
+/// that drew it, may be replaced.
 std::vector<recording::TakenFile> taken_by(const Sofar& sofar) {
   std::vector<recording::TakenFile> taken;
   for (const auto& [path, hash] : sofar.scene_files) taken.push_back({path, "a file of the sweep's scene"});

@@ -57,7 +57,7 @@ WholeFile::WholeFile(std::string out) : out_(std::move(out)), part_(out_) {
   if (out_ == "-" || (fs::exists(out_, error) && !fs::is_regular_file(out_, error))) return;
   target_ = fs::is_symlink(out_, error) ? fs::weakly_canonical(out_, error).string() : out_;
   part_ = fmt::format("{}.{}.part", target_, ::getpid());  // another process may write the same
-  // What another user has put there, as a link to a file of ours, is not written to.
+  // A file that another user has put there, as a link to a file of ours, is never written to.
   fs::remove(part_, error);
   int file = create(part_);
   if (file < 0 && errno == EEXIST) {  // and can't be removed from a folder such as /tmp

@@ -15,7 +15,7 @@ class WholeFile {
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;
 
-  /// Where to write, and to close before keep().
+  /// Path to write to; close the file before keep().
   const std::string& path() const { return part_; }
 
   /// It is whole. @throws std::runtime_error  a sentence

@@ -1,5 +1,5 @@
 #pragma once
-// What stands between a camera and what it looks for.
+// Line of sight between a camera and the things that it detects.
 
 #include <cstddef>
 #include <span>

@@ -13,7 +13,7 @@
 namespace ziggurat::devices {
 namespace {
 
-/// How the frame of a sensor moves.
+/// Velocity and orientation of a sensor's frame.
 struct SensorMotion {
   math::Vector3 velocity = math::Vector3::Zero();               // of its origin, in W [m/s]
   math::Vector3 angular_velocity = math::Vector3::Zero();       // in W [rad/s]

@@ -1,6 +1,6 @@
 #pragma once
-// Where requests come from: sessions of the network, and others that this process serves itself, as
-// the viewers of a live server.
+// Sources of requests: sessions of the network, and others that this process serves itself, as the
+// viewers of a live server.
 
 #include <cstdint>
 #include <functional>
@@ -44,7 +44,7 @@ class Callers {
 
   /// The world was changed beside a tick by another than a caller.
   void note_change() { ++changes_; }
-  /// How often the world was changed beside a tick: by moves, spawns, removals.
+  /// Number of changes of the world beside a tick: by moves, spawns, removals.
   std::uint64_t changes() const { return changes_; }
 
  private:

@@ -48,7 +48,7 @@ class Directing::Names {
 
 namespace {
 
-/// What a director has asked for so far in a Direction.
+/// Acts that a director has asked for so far in a Direction.
 struct Asked {
   std::set<std::string> removed, spawned;  // ids
   EarlierSpawns spawns;
@@ -66,7 +66,7 @@ std::variant<std::size_t, wire::Fault> pushed_link(const world::Layout& layout, 
                     fmt::format("'{}' has no link '{}'.", push.entity, push.link.substr(0, 256)));
 }
 
-/// What is wrong with the values for the devices of a kind.
+/// Checks the number of values for the devices of a kind.
 /// @param is_set_by_robot  its controller sets them
 std::optional<wire::Fault> check_values(std::size_t given, std::size_t devices, bool is_set_by_robot,
                                         const wire::Show& show, const char* field) {
@@ -140,7 +140,7 @@ bool is_removal(const wire::DirectorAct& act) {
   return request != nullptr && request->kind == wire::Request::Kind::remove;
 }
 
-/// What is wrong with an act on an entity that is there.
+/// Checks an act on an entity that is there.
 std::optional<wire::Fault> check_act(const simulation::Simulation& world, std::size_t entity,
                                      const wire::DirectorAct& act) {
   if (const auto* show = std::get_if<wire::Show>(&act)) {

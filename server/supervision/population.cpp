@@ -246,7 +246,7 @@ std::optional<wire::Fault> Population::remove(const std::string& id) {
   return std::nullopt;
 }
 
-/// Of an element that was spawned, its model written out [bytes].
+/// Size of an element that was spawned, its model written out [bytes].
 std::size_t Population::size_of(const std::string& xml) const {
   const auto is_free = [](const std::string&) { return false; };  // it is what is there
   const auto read = world_.additions.read(xml, world_.scene, settings_.max_size, is_free, opener(allowed_, world_.path));

@@ -29,7 +29,7 @@ wire::Fault no_entity(std::string field, const std::string& id, const simulation
 /// The entity of that id that is in the world, into Layout::entities.
 std::optional<std::size_t> entity_named(const simulation::Simulation& world, const std::string& id);
 
-/// What is about to be spawned before something else.
+/// Spawns that precede another one in the same tick.
 struct EarlierSpawns {
   std::size_t count = 0;  ///< entities
   std::size_t size = 0;   ///< of their elements, models written out [bytes]

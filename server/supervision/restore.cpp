@@ -43,8 +43,8 @@ std::string list_of(const std::vector<std::string>& clients) {
 
 }  // namespace
 
-/// Waits for a restore that was asked for before: what that goes back to is found already, but a recording has it behind
-/// a snapshot that is taken now, which may have the same name.
+/// Takes a snapshot. It waits for a restore that was asked for before. The state of that restore is
+/// found already, but in a recording it would follow this snapshot, which may have the same name.
 Reply Supervision::snapshot(const network::Call& call) {
   if (resetting_) return Reply::later;
   if (auto fault = snapshots_.keep(call.request.text, world_)) return fail(call, std::move(*fault));

@@ -55,7 +55,7 @@ Selection select(const std::vector<std::string>& patterns, const simulation::Sim
   return selection;
 }
 
-/// What is wrong with the reason of a shutdown, if anything.
+/// Fault of the reason of a shutdown, if it has one.
 std::optional<wire::Fault> fault_of_reason(const std::string& reason) {
   constexpr std::size_t longest = 1024;  // [bytes]
   if (reason.size() <= longest) return std::nullopt;

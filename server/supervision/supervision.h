@@ -18,7 +18,7 @@
 
 namespace ziggurat::supervision {
 
-/// How long a paced run has been paused: its schedule shifts by that.
+/// Time that a paced run has been paused: its schedule shifts by that.
 class PauseTimer {
  public:
   using clock = std::chrono::steady_clock;

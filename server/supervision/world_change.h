@@ -1,5 +1,5 @@
 #pragma once
-// What supervisors and viewers have done to the world, as a recording needs it to do it again.
+// Changes of the world by supervisors and viewers, as a recording needs them to repeat them.
 
 #include <cstddef>
 #include <cstdint>
