@@ -39,8 +39,8 @@ struct RobotStatus {
 /// Need of the world before it can pause or go on, if no deadline ends the wait.
 enum class Need {
   nothing,
-  answers,  ///< to each tick; the one in hand is answered
-  answer,   ///< now: to the tick in hand
+  answers,  ///< to each tick; the current one is answered
+  answer,   ///< now: to the current tick
 };
 
 /// Whether a director is there, and whether the tick waits for it.

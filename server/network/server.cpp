@@ -36,12 +36,12 @@ std::vector<DisturbedLink::Target> targets_of(const Config& config, const wire::
   return targets;
 }
 
-/// No tick goes on before a message of one that is no controller yet: the world stands, or a robot is
+/// No tick goes on before a message of one that is no controller yet: the world is halted, or a robot is
 /// free that the tick waits for without end.
 bool waits_for_newcomer(const Barrier& barrier) {
   const bool has_free = barrier.ownership.is_awaited() || barrier.directors.ownership.is_awaited();
   const bool waits_for_robot = has_free && barrier.timers.deadline == never;
-  return barrier.gate.is_standing() || waits_for_robot;
+  return barrier.gate.is_halted() || waits_for_robot;
 }
 
 /// Observers and supervisors leave most of the connections to controllers.
@@ -242,8 +242,8 @@ void Server::set_paused(bool is_paused) {
 
 Pause Server::pause() const {
   const TickGate& gate = state_->barrier.gate;
-  if (gate.is_standing()) return Pause::standing;
-  return gate.is_held(TickGate::Hold::paused) ? Pause::asked : Pause::none;
+  if (gate.is_halted()) return Pause::halted;
+  return gate.is_held(TickGate::Hold::paused) ? Pause::requested : Pause::none;
 }
 
 void keep_alive(Server& server) {

@@ -47,11 +47,11 @@ enum class Outcome {
   complete,   ///< what was waited for is there
   timed_out,  ///< the time is over; call again to go on
   woken,      ///< a descriptor is readable, a signal arrived, or take_calls() has something or the
-              ///< world has come to stand; call again to go on
+              ///< world was halted; call again to go on
 };
 
-/// Whether the world is paused; once it is asked for, the world stands when the tick in hand is answered.
-enum class Pause { none, asked, standing };
+/// Whether the world is paused; once it is asked for, the world is halted when the current tick is answered.
+enum class Pause { none, requested, halted };
 
 class Server {
  public:
@@ -113,10 +113,10 @@ class Server {
   /// sessions that begin although the tick was complete.
   Outcome linger(world::Commands& commands, const Wait& wait);
 
-  /// Robots have come: those of the layout that the server does not know yet. The tick in hand does
+  /// Robots have come: those of the layout that the server does not know yet. The current tick does
   /// not wait for them, the next one does.
   /// @param scripts  of them, as Run::scripts
-  /// @param observations, tag_payloads  of the tick in hand, theirs included
+  /// @param observations, tag_payloads  of the current tick, theirs included
   void add_robots(std::span<const std::string> scripts, const world::Observations& observations,
                   const std::vector<std::string>& tag_payloads);
 
@@ -127,7 +127,7 @@ class Server {
   void remove_robots(std::span<const std::size_t> robots, const std::string& why = {});
 
   /// While that holds no tick is complete: collect() must still be called. Once the tick is
-  /// answered, the world stands, and sessions are told.
+  /// answered, the world is halted, and sessions are told.
   void set_paused(bool is_paused);
   Pause pause() const;
 

@@ -404,7 +404,7 @@ std::optional<Ending> Run::collect() {
     auto stopped =
         wait([&] { return watch_.collect(simulation.commands(), simulation.state().tick); });
     if (stopped) return stopped;
-  } while (server_.pause() == network::Pause::standing);
+  } while (server_.pause() == network::Pause::halted);
   return std::nullopt;
 }
 

@@ -186,7 +186,7 @@ Showing::Run shown(supervision::World& world, network::Server& server, supervisi
   Showing::Run watched{world, schedule, last_tick, {}, {}, {}, {}, {}, {}};
   watched.connect = [&callers](supervision::LocalCalls calls) { callers.add(std::move(calls)); };
   watched.changes = [&callers] { return callers.changes(); };
-  watched.is_paused = [&server] { return server.pause() == network::Pause::standing; };
+  watched.is_paused = [&server] { return server.pause() == network::Pause::halted; };
   watched.paused_for = [&supervision] { return supervision.paused_for(); };
   watched.status = [&supervision] { return supervision.status(); };
   watched.controllers = [&server] { return server.performance().controllers; };

@@ -93,7 +93,7 @@ TEST(Deadline, W2_ADeadConnectionIsUnderTheSamePolicy) {
   pair.peers.pass(milliseconds{0});
   EXPECT_TRUE(pair.peers.is_complete()) << "no tick waits for it any more";
   EXPECT_EQ(pair.target(), 3);
-  // A session takes it: the tick in hand waits again, and the robot obeys.
+  // A session takes it: the current tick waits again, and the robot obeys.
   pair.peers.publish(7);
   pair.peers.say("q", Peers::command(7));
   pair.peers.join("heir", "robot0");

@@ -199,7 +199,7 @@ void Play::check() {
   }
   require(barrier_.ownership.all_taken() == !is_free);
   if (barrier_.gate.is_complete()) require(!is_paused_ && !owes && !is_awaited);
-  if (barrier_.gate.is_standing()) require(is_paused_);
+  if (barrier_.gate.is_halted()) require(is_paused_);
   for (const double target : commands_.joint_targets) require(target == 0 || target == 1);
 }
 

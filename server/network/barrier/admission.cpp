@@ -229,7 +229,7 @@ Delivery tell_loading(Barrier& barrier, Session& session) {
   return send(barrier, session);
 }
 
-/// Keeps the Hello in hand until the world is loaded.
+/// Keeps the Hello until the world is loaded.
 void keep_waiting(Barrier& barrier, const std::string& connection, const Access& access,
                   std::string_view bytes) {
   const wire::Hello hello = barrier.inbox.hello();

@@ -81,7 +81,7 @@ struct Barrier {
   Begin begin;
   Timers timers;
   std::uint64_t heartbeats = 0;  // sent so far
-  std::uint64_t epoch = 0;       // of the tick in hand: resets and restores so far
+  std::uint64_t epoch = 0;       // of the current tick: resets and restores so far
   wire::Inbox inbox;             // the message that is being received
   wire::Outbox outbox;           // messages other than observations
 };

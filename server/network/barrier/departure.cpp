@@ -143,7 +143,7 @@ void disconnect(Barrier& barrier, const std::string& connection) {
   Session* session = barrier.sessions.find(barrier.connections.session_of(connection));
   if (session != nullptr) lose(barrier, *session, "its connection is gone");
   barrier.connections.erase(connection);
-  stand_if_paused(barrier);
+  halt_if_paused(barrier);
 }
 
 void take_over(Barrier& barrier, std::span<const std::size_t> robots, const std::string& by) {

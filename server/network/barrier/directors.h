@@ -29,12 +29,12 @@ struct Directors {
   Ownership ownership;
   Deadlines deadlines;  ///< each director is a controller of its own
   Metrics metrics;
-  std::vector<std::optional<wire::Direction>> answers;  ///< to the tick in hand; none yet, or missed
+  std::vector<std::optional<wire::Direction>> answers;  ///< to the current tick; none yet, or missed
   std::vector<std::size_t> by_id;  ///< their numbers, in the order of their ids
   bool are_allowed = false;  ///< from outside, that the scene does not name
   Config::Deadline deadline_of_others;  ///< of these
   CheckDirection check;      ///< may be empty
-  std::optional<wire::Truth> truth;  ///< of the tick in hand; none: there is none to tell
+  std::optional<wire::Truth> truth;  ///< of the current tick; none: there is none to tell
   std::vector<Directed> directed;  ///< what directions() returns
 
   /// Its number, if there is or was one of that id.

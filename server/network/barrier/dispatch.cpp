@@ -144,7 +144,7 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
         barrier, id, nullptr,
         make_fault(ErrorCode::out_of_state, {}, "The first message of a session must be Hello."));
   }
-  stand_if_paused(barrier);
+  halt_if_paused(barrier);
 }
 
 bool can_hear(const Barrier& barrier, const Call& call) {

@@ -72,7 +72,7 @@ void publish(Barrier& barrier, const world::Observations& observations,
     session.pending_answer.waited_before = {};
     if (const std::string_view why = observe(barrier, session); !why.empty()) lose(barrier, session, why);
   });
-  stand_if_paused(barrier);  // if no session owes an answer
+  halt_if_paused(barrier);  // if no session owes an answer
 }
 
 void await_from(Barrier& barrier, Time now) {
@@ -162,16 +162,16 @@ void zero_missing(Barrier& barrier, world::Commands& commands) {
 
 void pause(Barrier& barrier) {
   barrier.gate.hold(TickGate::Hold::paused);
-  stand_if_paused(barrier);
+  halt_if_paused(barrier);
 }
 
-void stand_if_paused(Barrier& barrier) {
+void halt_if_paused(Barrier& barrier) {
   TickGate& gate = barrier.gate;
   const bool is_paused = gate.is_held(TickGate::Hold::paused) && gate.tick() &&
                          !gate.is_held(TickGate::Hold::finished);
-  if (!is_paused || !(gate.is_standing() || gate.is_answered())) return;
-  if (!gate.is_standing()) barrier.calls.notify();
-  gate.set_standing(true);
+  if (!is_paused || !(gate.is_halted() || gate.is_answered())) return;
+  if (!gate.is_halted()) barrier.calls.notify();
+  gate.set_halted(true);
   barrier.sessions.for_each([&](Session& session) {
     const bool has_answered = session.state == SessionState::stepping && !session.pending_answer.is_owed;
     if (!has_answered || !session.has_ticks()) return;
@@ -185,8 +185,8 @@ void stand_if_paused(Barrier& barrier) {
 
 void resume(Barrier& barrier) {
   barrier.gate.release(TickGate::Hold::paused);
-  if (!barrier.gate.is_standing()) return;
-  barrier.gate.set_standing(false);
+  if (!barrier.gate.is_halted()) return;
+  barrier.gate.set_halted(false);
   barrier.ownership.restart(barrier.now);
   barrier.directors.ownership.restart(barrier.now);
   barrier.sessions.for_each([&](Session& session) {

@@ -1,5 +1,5 @@
 #pragma once
-// The metrics that sessions have set: at the tick in hand, and last.
+// The metrics that sessions have set: at the current tick, and last.
 
 #include <cstddef>
 #include <map>

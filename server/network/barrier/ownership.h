@@ -16,9 +16,9 @@ class Ownership {
     SessionId claimant = SessionId::none;  ///< free: the lost session that may resume
     bool has_left = false;                 ///< the barrier, for good
     bool was_held = false;                 ///< by any session, ever
-    bool is_skipped = false;               ///< free, and the tick in hand goes on without it
+    bool is_skipped = false;               ///< free, and the current tick goes on without it
     Time free_since;                       ///< free: since when
-    std::chrono::nanoseconds waited{0};    ///< for it by the tick in hand, before what it waits for now
+    std::chrono::nanoseconds waited{0};    ///< for it by the current tick, before what it waits for now
 
     /// The session that has the robot, or may resume; none: neither.
     SessionId owner() const { return holder == SessionId::none ? claimant : holder; }
@@ -37,14 +37,14 @@ class Ownership {
   /// @param robot     held
   /// @param claimant  the lost session that may resume; none: no session
   /// @param since     when it became free, as far as its deadline is concerned
-  /// @param is_skipped  its session has missed the tick in hand already
-  /// @param waited    by the tick in hand for its session
+  /// @param is_skipped  its session has missed the current tick already
+  /// @param waited    by the current tick for its session
   void release(std::size_t robot, SessionId claimant, Time since, bool is_skipped,
                std::chrono::nanoseconds waited);
   void drop_claim(std::size_t robot) { entries_[robot].claimant = SessionId::none; }
   /// Takes the robot out of the barrier for good. No effect if it has left.
   void leave(std::size_t robot);
-  /// The tick in hand goes on without the robot, which is free.
+  /// The current tick goes on without the robot, which is free.
   void skip(std::size_t robot, Time now);
   /// A tick begins, and waits for all free robots again.
   void begin_tick(Time now);
@@ -58,8 +58,8 @@ class Ownership {
   void wait_over(Entry& entry, Time now);
 
   std::vector<Entry> entries_;  // per robot of the layout
-  Time begun_;               // the tick in hand, as far as deadlines are concerned
-  bool has_changes_ = false;  // of who has which robot, in the tick in hand
+  Time begun_;               // the current tick, as far as deadlines are concerned
+  bool has_changes_ = false;  // of who has which robot, in the current tick
   std::size_t free_ = 0;     // robots without holder that have not left
   std::size_t skipped_ = 0;  // those of them that the tick does not wait for
 };

@@ -37,7 +37,7 @@ Standing standing_of(const Session* session);
 /// Longest message that the client may send [bytes].
 std::size_t longest_message(const Barrier& barrier, const Session* session);
 
-/// The tick in hand; 0 before the first.
+/// The current tick; 0 before the first.
 std::uint64_t tick_of(const Barrier& barrier);
 /// The epoch, if the session knows of epochs.
 std::optional<std::uint64_t> epoch_for(const Barrier& barrier, const Session& session);

@@ -119,7 +119,7 @@ void remove_robots(Barrier& barrier, std::span<const std::size_t> robots, const 
     if (session->roster.empty()) barrier.gate.settle(session->pending_answer, barrier.now);
     if (!why.empty()) tell_removed(barrier, *session, robot, why);
   }
-  stand_if_paused(barrier);
+  halt_if_paused(barrier);
 }
 
 void restart(Barrier& barrier, wire::Restart restart) {

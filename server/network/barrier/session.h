@@ -63,11 +63,11 @@ struct Session {
   Liveness liveness;
   Latencies latencies;       ///< from observation to command
   std::uint64_t misses = 0;  ///< deadlines
-  struct Untold {
+  struct UnreportedMisses {
     std::uint64_t misses = 0;
     std::uint64_t first_tick = 0;
     Time until;
-  } untold;  ///< misses that no notice has told yet
+  } unreported;  ///< misses that no notice has reported yet
   Time lease_end;            ///< lost: until then no other session gets its robots
   wire::Outbox observation;  ///< long-lived, for the tick path
   WaitingHello waiting_hello;   ///< in HELLO

@@ -11,7 +11,7 @@ using wire::make_fault;
 
 void TickGate::begin(std::uint64_t tick) {
   tick_ = tick;
-  is_standing_ = false;
+  is_halted_ = false;
 }
 
 void TickGate::await(PendingAnswer& answer, Time now) {

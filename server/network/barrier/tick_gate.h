@@ -1,5 +1,5 @@
 #pragma once
-// Whether the tick in hand is complete: every session has answered, and no robot is waited for.
+// Whether the current tick is complete: every session has answered, and no robot is waited for.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,12 +18,12 @@ class TickGate {
 
   /// A tick begins: it is published to all sessions.
   void begin(std::uint64_t tick);
-  /// There is no tick in hand: the world is about to begin anew.
+  /// Ends the current tick: the world is about to begin anew.
   void clear() { tick_.reset(); }
-  /// The tick in hand; none before the first one.
+  /// The current tick; none before the first one.
   std::optional<std::uint64_t> tick() const { return tick_; }
 
-  /// The session is_owed an answer to the tick in hand, which it is sent now.
+  /// The session is_owed an answer to the current tick, which it is sent now.
   void await(PendingAnswer& answer, Time now);
   /// It is_owed nothing any more. No effect if it does not owe.
   void settle(PendingAnswer& answer, Time now);
@@ -38,14 +38,14 @@ class TickGate {
 
   enum class Hold { paused, stopped, finished };
   /// No tick is complete while the world is paused or stopped (by a deadline). While there is any
-  /// hold, no deadline runs; a pause keeps deadlines only from when the world stands.
+  /// hold, no deadline runs; a pause keeps deadlines only from when the world is halted.
   void hold(Hold why) { holds_[static_cast<std::size_t>(why)] = true; }
   void release(Hold why) { holds_[static_cast<std::size_t>(why)] = false; }
   bool is_held(Hold why) const { return holds_[static_cast<std::size_t>(why)]; }
 
-  /// The world stands, or does not: it is paused, and the tick is answered.
-  void set_standing(bool is_standing) { is_standing_ = is_standing; }
-  bool is_standing() const { return is_standing_; }
+  /// Halts the world, or not: it is paused, and the tick is answered.
+  void set_halted(bool is_halted) { is_halted_ = is_halted; }
+  bool is_halted() const { return is_halted_; }
 
   /// A session is_owed an answer.
   bool is_owed() const { return owing_ > 0; }
@@ -63,7 +63,7 @@ class TickGate {
   std::optional<std::uint64_t> tick_;
   std::size_t owing_ = 0;  // sessions that owe an answer
   bool holds_[3] = {};     // by Hold
-  bool is_standing_ = false;
+  bool is_halted_ = false;
 };
 
 /// Why an answer that can't be taken is no bad message.

@@ -117,16 +117,16 @@ bool tell_dropped(Barrier& barrier, Session& session, std::vector<std::uint32_t>
 
 /// At once, unless the last notice on this session is too fresh: then with the next one.
 void note_miss(Barrier& barrier, Session& session, milliseconds deadline) {
-  Session::Untold& untold = session.untold;
-  if (untold.misses++ == 0) untold.first_tick = session.pending_answer.tick;
-  if (barrier.now < untold.until) return;
+  Session::UnreportedMisses& unreported = session.unreported;
+  if (unreported.misses++ == 0) unreported.first_tick = session.pending_answer.tick;
+  if (barrier.now < unreported.until) return;
   const std::string ticks =
-      untold.misses == 1 ? fmt::format("at tick {}", session.pending_answer.tick)
-                         : fmt::format("at {} of the ticks {} to {}", untold.misses,
-                                       untold.first_tick, session.pending_answer.tick);
+      unreported.misses == 1 ? fmt::format("at tick {}", session.pending_answer.tick)
+                         : fmt::format("at {} of the ticks {} to {}", unreported.misses,
+                                       unreported.first_tick, session.pending_answer.tick);
   note(barrier, &session, fmt::format("{} ({}) missed its deadline of {} ms {}", session.client,
                                       robots_of(barrier, session), deadline.count(), ticks));
-  untold = {0, 0, barrier.now + between_notices};
+  unreported = {0, 0, barrier.now + between_notices};
 }
 
 /// The tick goes on without the session's answer.
@@ -216,7 +216,7 @@ void check_free_directors(Barrier& barrier) {
 void check_deadlines(Barrier& barrier) {
   barrier.timers.deadline = never;
   const TickGate& gate = barrier.gate;
-  const bool is_running = gate.tick() && !gate.is_standing() &&
+  const bool is_running = gate.tick() && !gate.is_halted() &&
                           !gate.is_held(TickGate::Hold::finished) &&
                           !gate.is_held(TickGate::Hold::stopped);
   if (!is_running) return;
@@ -263,7 +263,7 @@ void advance(Barrier& barrier, Time now) {
   if (barrier.now >= barrier.timers.deadline) check_deadlines(barrier);
   send_heartbeats(barrier,
                   [&](Session& session) { lose(barrier, session, "its connection is gone"); });
-  stand_if_paused(barrier);  // a session that was lost may have been the last that owed
+  halt_if_paused(barrier);  // a session that was lost may have been the last that owed
 }
 
 void keep_alive(Barrier& barrier, Time now) {

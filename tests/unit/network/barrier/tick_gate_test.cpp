@@ -70,9 +70,9 @@ TEST_F(Gate, StaysClosedWhilePausedOrStopped) {
 }
 
 TEST_F(Gate, ATickEndsThatTheWorldStands) {
-  gate.set_standing(true);
+  gate.set_halted(true);
   gate.begin(8);
-  EXPECT_FALSE(gate.is_standing());
+  EXPECT_FALSE(gate.is_halted());
   gate.clear();
   EXPECT_FALSE(gate.tick());
 }
