@@ -5,7 +5,7 @@
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "run/controller_check.h"
-#include "run/replaying.h"
+#include "run/replay_run.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -71,7 +71,7 @@ int execute_verify(const Arguments& arguments, processes::Signals& signals) {
   options.run = parse_options(arguments, verify_options());
   options.recording = only_recording("verify", options.run.scenes);
   options.verifies = true;
-  return run::Replaying(options, signals).execute();
+  return run::ReplayRun(options, signals).execute();
 }
 
 }  // namespace ziggurat::cli

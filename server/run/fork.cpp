@@ -14,7 +14,7 @@
 #include "processes/scripts.h"
 #include "replay/recording_error.h"
 #include "replay/scene.h"
-#include "run/by_controller.h"
+#include "run/controller_option.h"
 #include "run/embedded_scripts.h"
 #include "run/files.h"
 #include "run/recorded_world.h"

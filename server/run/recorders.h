@@ -15,15 +15,15 @@
 #include "reports/report_card.h"
 #include "reports/summary.h"
 #include "run/options.h"
+#include "run/periodic_task.h"
 #include "run/pictures.h"
-#include "run/repeating.h"
 #include "simulation/simulation.h"
 #include "supervision/world.h"
 
 namespace ziggurat::run {
 
-/// Writes the output of a tick to the disk within half a second of wall time. This also holds while
-/// the world is paused or a tick takes long.
+/// Output files of a run. The output of a tick is on the disk within half a second of wall time, also
+/// while the world is paused or a tick takes long.
 class Recorders {
  public:
   /// Creates all files, so that a path that cannot be written is reported before the run.
@@ -72,7 +72,7 @@ class Recorders {
   std::string (*report_card_text_)(const reports::ReportCard& card) = nullptr;
   std::optional<recording::Images> images_;
   std::optional<Pictures> pictures_;
-  std::optional<Repeating> flushing_;  ///< the last: it uses the others
+  std::optional<PeriodicTask> flushing_;  ///< the last: it uses the others
 };
 
 }  // namespace ziggurat::run

@@ -87,16 +87,16 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       supervision_(supervision_settings(), world_, server_, callers_, population_),
       directing_(world_, server_, callers_, population_, console_),
       schedule_(plan_.real_time, world_.simulation.tick_length()),
-      showing_(make_showing(options, shown(world_, server_, callers_, supervision_, schedule_,
+      live_view_(make_showing(options, shown(world_, server_, callers_, supervision_, schedule_,
                                            plan_.ticks.value_or(0)))),
       watch_({options.metrics, options.insecure, options.fail_fast, service == Service::serve,
               plan_.ticks, restarts_of(options.restarts, world_.scene)},
-             world_, server_, controllers_, supervision_, signals, console_, showing_.get(),
+             world_, server_, controllers_, supervision_, signals, console_, live_view_.get(),
              [this](auto severity, auto name, auto text) {
-               if (showing_) showing_->log(severity, name, text);
+               if (live_view_) live_view_->log(severity, name, text);
                if (recorded_) recorded_->log(severity, name, text);
              }),
-      waits_for_viewer_(showing_ && !options.paused) {
+      waits_for_viewer_(live_view_ && !options.paused) {
   callers_.on_world_change([this](const supervision::WorldChange& change) {
     if (recorded_) recorded_->record(change);
   });
@@ -293,7 +293,7 @@ int Run::execute() {
   if (code == reports::exit_code::finished && !has_passed) code = reports::exit_code::gate_missed;
   const bool is_stopped =
       summary_.ending == Ending::interrupted || summary_.ending == Ending::forced;
-  if (showing_ && !is_stopped) {
+  if (live_view_ && !is_stopped) {
     console_.notice("the run is over; its last state is shown until Ctrl-C");
     console_.flush();
     watch_.show_end();
@@ -346,7 +346,7 @@ Ending Run::run_world() {
     timer_.end_phase(Phase::exchange, summary_);
     recorders_.tick(simulation);
     if (recorded_) recorded_->tick();
-    if (showing_) showing_->tick(timer_.last_tick());
+    if (live_view_) live_view_->tick(timer_.last_tick());
     timer_.end_phase(Phase::recording, summary_);
 
     auto stopped = collect();
@@ -362,16 +362,16 @@ Ending Run::run_world() {
     recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands(),
                         watch_.measured());
     keep(watch_.measured(), summary_);
-    if (showing_) showing_->answered();
+    if (live_view_) live_view_->answered();
     timer_.end_phase(Phase::recording, summary_);
     summary_.result = directing_.result();
     if (is_last || summary_.result) return Ending::finished;
     directing_.act();
     if (recorded_) recorded_->step(watch_.measured());
-    simulation.list_contacts((showing_ && showing_->wants_contacts()) ||
+    simulation.list_contacts((live_view_ && live_view_->wants_contacts()) ||
                              (recorded_ && recorded_->wants_contacts()) ||
                              directing_.wants_contacts());
-    simulation.list_rays((showing_ && showing_->wants_rays()) ||
+    simulation.list_rays((live_view_ && live_view_->wants_rays()) ||
                          (options_.pictures && options_.pictures->view.layers.rays));
     simulation.step();
     timer_.end_phase(Phase::physics, summary_);
@@ -444,7 +444,7 @@ bool Run::reset_world() {
   if (!supervision_.restart()) return false;
   watch_.forget_spawned();
   ++resets_;
-  if (showing_) showing_->restarted();
+  if (live_view_) live_view_->restarted();
   summary_.metrics.clear();
   return true;
 }

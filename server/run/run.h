@@ -16,6 +16,7 @@
 #include "reports/console.h"
 #include "reports/summary.h"
 #include "run/fork.h"
+#include "run/live_view.h"
 #include "run/local_endpoints.h"
 #include "run/options.h"
 #include "run/phase_timer.h"
@@ -23,7 +24,6 @@
 #include "run/record.h"
 #include "run/recorders.h"
 #include "run/schedule.h"
-#include "run/showing.h"
 #include "run/watch.h"
 #include "supervision/directing.h"
 #include "supervision/supervision.h"
@@ -114,7 +114,7 @@ class Run {
   supervision::Supervision supervision_;
   supervision::Directing directing_;
   Schedule schedule_;
-  const std::unique_ptr<Showing> showing_;  ///< null: not shown
+  const std::unique_ptr<LiveView> live_view_;  ///< null: not shown
   Watch watch_;
   reports::Summary summary_;
   PhaseTimer timer_;

@@ -9,9 +9,9 @@
 #include "network/server.h"
 #include "reports/console.h"
 #include "reports/summary.h"
+#include "run/live_view.h"
 #include "run/local_endpoints.h"
 #include "run/options.h"
-#include "run/showing.h"
 #include "scene/scene.h"
 #include "supervision/supervision.h"
 
@@ -59,12 +59,12 @@ wire::End end_message(const reports::Summary& summary);
 
 /// A run as viewers see and change it. Everything must outlive what it is given to.
 /// @param last_tick  0: until stopped
-Showing::Run shown(supervision::World& world, network::Server& server, supervision::Callers& callers,
+LiveView::Run shown(supervision::World& world, network::Server& server, supervision::Callers& callers,
                    supervision::Supervision& supervision, Schedule& schedule,
                    std::uint64_t last_tick);
 
 /// Serves viewers, if the options ask for that. Prints the addresses on stderr also if the run is
 /// to be quiet: without them nothing can be seen.
-std::unique_ptr<Showing> make_showing(const Options& options, const Showing::Run& run);
+std::unique_ptr<LiveView> make_showing(const Options& options, const LiveView::Run& run);
 
 }  // namespace ziggurat::run

@@ -15,8 +15,8 @@
 #include "reports/metrics.h"
 #include "reports/progress.h"
 #include "reports/summary.h"
+#include "run/live_view.h"
 #include "run/peer_reports.h"
-#include "run/showing.h"
 #include "supervision/supervision.h"
 #include "supervision/world.h"
 #include "world/metric.h"
@@ -38,12 +38,12 @@ class Watch {
   };
 
   /// Everything but the settings must outlive this.
-  /// @param showing  serves viewers meanwhile; may be null
+  /// @param live_view  serves viewers meanwhile; may be null
   /// @param tell     takes the lines of controllers, too
   /// @throws text::UsageError or std::runtime_error if metrics cannot be served
   Watch(const Settings& settings, const supervision::World& world, network::Server& server,
         processes::Controllers& controllers, supervision::Supervision& supervision,
-        processes::Signals& signals, reports::Console& console, Showing* showing, TellLine tell);
+        processes::Signals& signals, reports::Console& console, LiveView* live_view, TellLine tell);
 
   // Each of the three waits for something and prints what controllers and peers report meanwhile.
   // Each returns nothing if it was completed, otherwise how the run ends.
@@ -108,7 +108,7 @@ class Watch {
   supervision::Supervision& supervision_;
   processes::Signals& signals_;
   reports::Console& console_;
-  Showing* const showing_;
+  LiveView* const live_view_;
   const std::vector<int> descriptors_;  ///< that end a wait: of signals, and of viewers
   const bool fails_fast_, waits_for_clients_;
   const std::optional<std::uint64_t> last_tick_;

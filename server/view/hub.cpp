@@ -92,7 +92,7 @@ const channels::Channel* Hub::channel(std::uint32_t id) const {
 }
 
 void Hub::send(Viewer& viewer, Item item) {
-  if (!viewer.output.add_answer(std::move(item))) viewer.is_over = true;
+  if (!viewer.send_queue.add_answer(std::move(item))) viewer.is_over = true;
 }
 
 void Hub::receive(Viewer& viewer, std::string_view message, bool is_text) {
@@ -102,10 +102,10 @@ void Hub::receive(Viewer& viewer, std::string_view message, bool is_text) {
 }
 
 std::optional<Item> Hub::next(Viewer& viewer) {
-  if (viewer.output.has_answer()) return viewer.output.next();
+  if (viewer.send_queue.has_answer()) return viewer.send_queue.next();
   if (auto news = viewer.known.next(channels_)) return news;
   if (std::exchange(viewer.lacks_graph, false)) return graph();
-  return viewer.output.next();
+  return viewer.send_queue.next();
 }
 
 void Hub::handle(Viewer& viewer, const Wrong& message) {
@@ -133,7 +133,7 @@ void Hub::handle(Viewer& viewer, const Subscribe& message) {
     }
     if (++subscribers_[wanted] == 1) fresh.push_back(wanted);
   }
-  viewer.output.add_frame(std::move(known));
+  viewer.send_queue.add_frame(std::move(known));
   count_subscribers(std::move(fresh));
 }
 
@@ -238,7 +238,7 @@ void Hub::set_channels(std::vector<channels::Channel> list) {
       viewer->subscriptions.erase(found);
       --subscribers_[channel];
     }
-    viewer->output.forget(gone);
+    viewer->send_queue.forget(gone);
     viewer->known.change(gone, is_all_old);
     viewer->lacks_graph |= viewer->wants_graph && !(gone.empty() && is_all_old);
   }
@@ -262,8 +262,8 @@ void Hub::show(std::int64_t time_ns, std::span<const channels::Message> messages
       if (!found || subscription == viewer->subscriptions.end()) continue;
       items.push_back(view::message(subscription->second, each, keep_of(*found)));
     }
-    viewer->output.add_frame(std::move(items));
-    viewer->is_over |= viewer->output.is_too_much();
+    viewer->send_queue.add_frame(std::move(items));
+    viewer->is_over |= viewer->send_queue.is_too_much();
   }
 }
 

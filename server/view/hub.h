@@ -15,7 +15,7 @@
 #include "channels/message.h"
 #include "view/known_channels.h"
 #include "view/messages.h"
-#include "view/output.h"
+#include "view/send_queue.h"
 #include "view/viewer_requests.h"
 
 namespace ziggurat::view {
@@ -23,7 +23,7 @@ namespace ziggurat::view {
 struct Viewer {
   std::uint64_t id = 0;
   bool may_steer = false;
-  Output output;
+  SendQueue send_queue;
   std::unordered_map<std::uint32_t, std::uint32_t> channels;  ///< subscription -> channel
   std::unordered_map<std::uint32_t, std::uint32_t> subscriptions;  ///< channel -> subscription
   KnownChannels known;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "channels/channel.h"
-#include "view/output.h"
+#include "view/send_queue.h"
 
 namespace ziggurat::view {
 

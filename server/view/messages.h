@@ -11,7 +11,7 @@
 
 #include "channels/channel.h"
 #include "view/call.h"
-#include "view/output.h"
+#include "view/send_queue.h"
 
 namespace ziggurat::view {
 

@@ -186,9 +186,9 @@ void Outbox::refusal(const Refusal& from) {
 bool Outbox::observation(const Roster& roster, const world::Observations& observations,
                          std::span<const std::string> tag_payloads, std::size_t limit,
                          std::optional<std::uint64_t> epoch) {
-  const Sensed sensed = sensed_by(roster, observations, tag_payloads);
-  if (sensed.size > limit || sensed.memory > v1::most_counted) return false;
-  message_->forget(sensed.payloads);
+  const ReadingSize needed = size_of_readings(roster, observations, tag_payloads);
+  if (needed.size > limit || needed.memory > v1::most_counted) return false;
+  message_->forget(needed.payloads);
   v1::Observation& observation = *message_->message.mutable_observation();
   observation.Clear();
   fill(roster, observations, tag_payloads, observation);
@@ -216,9 +216,9 @@ bool world_layout(Outbox& outbox, const Run& run, const Truth& truth, WorldView&
 
 bool world_state(Outbox& outbox, const Truth& truth, const WorldView& view, std::size_t limit,
                  std::uint64_t epoch) {
-  const Sensed sensed = sensed_by(view, truth);
-  if (sensed.size > limit || sensed.memory > v1::most_counted) return false;
-  outbox.message_->forget(sensed.payloads);
+  const ReadingSize needed = size_of_readings(view, truth);
+  if (needed.size > limit || needed.memory > v1::most_counted) return false;
+  outbox.message_->forget(needed.payloads);
   v1::WorldState& state = *outbox.message_->message.mutable_world_state();
   state.Clear();
   fill(view, truth, state);

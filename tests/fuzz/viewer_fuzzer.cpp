@@ -44,7 +44,7 @@ class Play {
     hub_.receive(*viewer, message, (what & 4) != 0);
     require(viewer->unanswered <= view::Hub::most_unanswered);
     require(viewer->may_steer || viewer->unanswered == 0);
-    if (viewer->output.size() > view::Output::most_answers + view::Output::most_frames + message.size() + 4096) {
+    if (viewer->send_queue.size() > view::SendQueue::most_answers + view::SendQueue::most_frames + message.size() + 4096) {
       require(viewer->is_over);
     }
     if (viewer->is_over) hub_.remove(viewer->id);
@@ -81,7 +81,7 @@ class Play {
     hub_.for_each([this](view::Viewer& viewer) {
       while (hub_.next(viewer)) {
       }
-      require(viewer.output.size() == 0);
+      require(viewer.send_queue.size() == 0);
     });
   }
 

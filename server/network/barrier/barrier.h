@@ -33,7 +33,7 @@
 namespace ziggurat::network {
 
 /// Readings of robots at the current tick. Not owned; they stay unchanged until the next tick.
-struct Senses {
+struct TickReadings {
   const world::Observations* observations = nullptr;
   const std::vector<std::string>* tag_payloads = nullptr;  ///< for each of Layout::tags
 };
@@ -77,7 +77,7 @@ struct Barrier {
   Reactions reactions;
   std::vector<AnswerTimes> answer_times;  ///< per controller of the scene
 
-  Senses senses;
+  TickReadings readings;
   Begin begin;
   Timers timers;
   std::uint64_t heartbeats = 0;  // sent so far

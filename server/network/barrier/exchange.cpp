@@ -55,7 +55,7 @@ void answer_bad_command(Barrier& barrier, Session& session, wire::Fault fault) {
 
 void publish(Barrier& barrier, const world::Observations& observations,
              const std::vector<std::string>& tag_payloads, const wire::Truth* truth) {
-  barrier.senses = {&observations, &tag_payloads};
+  barrier.readings = {&observations, &tag_payloads};
   barrier.begin = {};
   truth != nullptr ? void(barrier.directors.truth.emplace(*truth)) : barrier.directors.truth.reset();
   for (auto& answer : barrier.directors.answers) answer.reset();
@@ -88,7 +88,7 @@ std::string_view observe(Barrier& barrier, Session& session) {
   const bool is_json = connection->encoding == wire::Encoding::json;
   const std::size_t limit =
       is_json ? wire::max_json_observation_bytes : wire::max_observation_bytes;
-  const auto& [observations, tag_payloads] = barrier.senses;
+  const auto& [observations, tag_payloads] = barrier.readings;
   session.pending_answer.epoch = barrier.epoch;
   if (!session.observation.observation(session.roster, *observations, *tag_payloads, limit,
                                        epoch_for(barrier, session))) {

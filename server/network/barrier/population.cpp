@@ -96,9 +96,9 @@ void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Dead
   add_directors(barrier, deadlines);
 }
 
-void add_robots(Barrier& barrier, std::span<const std::string> scripts, const Senses& senses) {
+void add_robots(Barrier& barrier, std::span<const std::string> scripts, const TickReadings& readings) {
   // A session that takes them at this tick is told what they sense.
-  if (barrier.gate.tick()) barrier.senses = senses;
+  if (barrier.gate.tick()) barrier.readings = readings;
   const auto& robots = barrier.run->layout.robots;
   auto& known = barrier.run->scripts;
   known.resize(barrier.ownership.size());
@@ -132,7 +132,7 @@ void restart(Barrier& barrier, wire::Restart restart) {
   forget_robots(barrier, restart.snapshot ? restart.snapshot->robots
                                           : barrier.run->layout.robots.size());
   barrier.gate.clear();  // a session that begins now gets no tick of the former world
-  barrier.senses = {};
+  barrier.readings = {};
   barrier.begin = {};
   if (restart.snapshot) barrier.begin = {restart.snapshot->tick, *restart.snapshot->commands};
   barrier.deadlines.reset();

@@ -175,7 +175,7 @@ TEST(Hub, ALongListOfChannelsIsMadeInPartsAsTheViewerReads) {
     bench.hub.set_channels(large_channels(1, 1));
     bench.hub.set_channels(large_channels(1, 4));
   }
-  EXPECT_LT(idle.output.size(), 1000u) << "nothing but serverInfo waits for one that does not read";
+  EXPECT_LT(idle.send_queue.size(), 1000u) << "nothing but serverInfo waits for one that does not read";
   EXPECT_EQ(told(bench, idle, "advertise"), (std::vector<std::vector<std::uint32_t>>{{1, 2, 3}, {4}}));
   const auto gone = nlohmann::json::parse(bench.hub.next(viewer)->head).at("channelIds");
   EXPECT_LE(gone.size(), 12u) << "each channel is told to be gone once";

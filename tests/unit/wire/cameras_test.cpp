@@ -103,11 +103,11 @@ TEST_F(DeviceWire, PicturesCountToo) {
 void expect_counted(const Roster& roster, const world::Observations& seen, const std::vector<std::string>& texts) {
   Outbox outbox;
   ASSERT_TRUE(outbox.observation(roster, seen, texts));
-  const Sensed sensed = sensed_by(roster, seen, texts);
+  const ReadingSize size = size_of_readings(roster, seen, texts);
   const std::string bytes = outbox.message().observation().SerializeAsString();
   constexpr std::size_t no_bound = v1::most_decoded, other_readings = 4096;
-  EXPECT_LE(v1::decoded_size(bytes, *v1::Observation::descriptor(), no_bound), sensed.memory + other_readings);
-  EXPECT_LT(sensed.memory, no_bound);
+  EXPECT_LE(v1::decoded_size(bytes, *v1::Observation::descriptor(), no_bound), size.memory + other_readings);
+  EXPECT_LT(size.memory, no_bound);
 }
 
 TEST_F(DeviceWire, ClientsDecodeAllThatASessionIsToldOfItsCameras) {

@@ -7,7 +7,7 @@ namespace ziggurat::wire {
 
 /// Readings of a session at a tick, counted before there is a message with them (docs/protocol.md,
 /// D5).
-struct Sensed {
+struct ReadingSize {
   std::size_t payloads = 0;  ///< content of radio messages and tags [bytes]
   std::size_t size = 0;      ///< of its share of the message, with these payloads [bytes]
   std::size_t memory = 0;    ///< that decoding it takes, at most [bytes]

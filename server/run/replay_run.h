@@ -13,11 +13,11 @@
 #include "reports/console.h"
 #include "reports/progress.h"
 #include "reports/summary.h"
+#include "run/live_view.h"
 #include "run/options.h"
 #include "run/phase_timer.h"
 #include "run/recorders.h"
 #include "run/schedule.h"
-#include "run/showing.h"
 #include "run/viewer_controls.h"
 #include "supervision/world.h"
 
@@ -31,11 +31,11 @@ struct ReplayOptions {
   bool from_poses = false;             ///< nothing is simulated: the recorded poses are shown
 };
 
-class Replaying {
+class ReplayRun {
  public:
   /// Reads the recording, builds its world and creates the output files.
   /// @throws replay::RecordingError and what main() turns into a message
-  Replaying(const ReplayOptions& options, processes::Signals& signals);
+  ReplayRun(const ReplayOptions& options, processes::Signals& signals);
 
   /// @returns an exit code: finished, differs, damaged or interrupted
   int execute();
@@ -45,8 +45,8 @@ class Replaying {
   enum class End { complete, differs, damaged, stopped };
 
   void show_poses();
-  Showing::Run shown();
-  std::unique_ptr<Showing> make_shown();
+  LiveView::Run shown();
+  std::unique_ptr<LiveView> make_shown();
   End repeat();
   bool wait();
   bool may_step(clock::time_point now, int& timeout_ms);
@@ -67,7 +67,7 @@ class Replaying {
   replay::Replay replay_;
   Schedule schedule_;
   ViewerControls viewer_controls_;
-  const std::unique_ptr<Showing> showing_;  ///< null: not shown
+  const std::unique_ptr<LiveView> live_view_;  ///< null: not shown
   reports::Progress progress_;
   reports::Summary summary_;
   PhaseTimer timer_;

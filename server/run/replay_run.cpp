@@ -1,4 +1,4 @@
-#include "run/replaying.h"
+#include "run/replay_run.h"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -87,7 +87,7 @@ std::string checked(const ReplayOptions& options) {
 
 }  // namespace
 
-Replaying::Replaying(const ReplayOptions& options, processes::Signals& signals)
+ReplayRun::ReplayRun(const ReplayOptions& options, processes::Signals& signals)
     : options_(options),
       signals_(signals),
       console_({options.run.quiet, options.run.json}),
@@ -98,19 +98,19 @@ Replaying::Replaying(const ReplayOptions& options, processes::Signals& signals)
       replay_({world_.scene, world_.additions, world_.simulation, world_.seed},
               file_.files().opener(), [this] { return states_.next(); }),
       schedule_(factor_of(options.run), world_.simulation.tick_length()),
-      showing_(make_showing(options.run, shown())),
+      live_view_(make_showing(options.run, shown())),
       progress_(console_, world_.simulation.tick_length(), file_.states()) {
   replay_.open_snapshots_by(embedded_snapshots(file_, world_));
   options.from_poses ? show_poses() : begin_as_recorded(file_, world_);
   summary_.scene = world_.path;
   summary_.robots = world_.simulation.layout().robots.size();
-  if (showing_) {
+  if (live_view_) {
     console_.notice(wait_notice());
     waits_for_viewer_until_ = clock::now() + longest_wait_for_viewer;
   }
 }
 
-void Replaying::show_poses() {
+void ReplayRun::show_poses() {
   if (!file_.reader().contents().channel_of("/state")) {
     throw text::UsageError(fmt::format(
         "--from-poses: {} has no topic /state, in which the poses are (--record-topics); replay it without",
@@ -122,8 +122,8 @@ void Replaying::show_poses() {
   replay_.begin_at(replay::read_snapshot(file_, begin, world_.scene, world_.additions));
 }
 
-Showing::Run Replaying::shown() {
-  Showing::Run watched{world_, schedule_, file_.run().last_tick(), {}, {}, {}, {}, {}, {}};
+LiveView::Run ReplayRun::shown() {
+  LiveView::Run watched{world_, schedule_, file_.run().last_tick(), {}, {}, {}, {}, {}, {}};
   watched.connect = [this](supervision::LocalCalls calls) { viewer_controls_.connect(std::move(calls)); };
   watched.changes = [this] { return replay_.changes(); };
   watched.is_paused = [this] { return viewer_controls_.is_paused(); };
@@ -133,7 +133,7 @@ Showing::Run Replaying::shown() {
   return watched;
 }
 
-wire::Status Replaying::status() const {
+wire::Status ReplayRun::status() const {
   wire::Status status;
   status.tick = world_.simulation.state().tick;
   status.time_ns = world_.simulation.state().time_ns;
@@ -147,7 +147,7 @@ wire::Status Replaying::status() const {
   return status;
 }
 
-int Replaying::execute() {
+int ReplayRun::execute() {
   End end = End::damaged;
   try {
     end = repeat();
@@ -172,7 +172,7 @@ int Replaying::execute() {
   if (const auto missing = recorders_.missing_frames(); !missing.empty()) console_.warning(missing);
   if (options_.run.hash) console_.result(recording::hash_line(summary_.ticks, summary_.hash));
   console_.flush();
-  if (showing_ && end != End::stopped) show_end();
+  if (live_view_ && end != End::stopped) show_end();
   switch (end) {
     case End::complete:
       return reports::exit_code::finished;
@@ -187,7 +187,7 @@ int Replaying::execute() {
 }
 
 /// From the first recorded state to the last one, or to the first that differs.
-Replaying::End Replaying::repeat() {
+ReplayRun::End ReplayRun::repeat() {
   simulation::Simulation& simulation = world_.simulation;
   timer_.end_startup(summary_);
   const bool draws_rays = options_.run.pictures && options_.run.pictures->view.layers.rays;
@@ -201,12 +201,12 @@ Replaying::End Replaying::repeat() {
     ++same_;
     const v1::Inputs& inputs = replay_.inputs();
     if (same_ == 1 || inputs.epoch() != epoch) schedule_.begin(inputs.tick(), viewer_controls_.paused_for());
-    if (showing_ && inputs.epoch() != epoch) showing_->restarted();
+    if (live_view_ && inputs.epoch() != epoch) live_view_->restarted();
     if (inputs.epoch() != epoch) summary_.metrics.clear();
     epoch = inputs.epoch();
     viewer_controls_.stepped(inputs.tick());
     recorders_.tick(simulation);
-    if (showing_) showing_->tick({});
+    if (live_view_) live_view_->tick({});
     if (progress_.needs_update()) progress_.show(same_ - 1, "");
     if (options_.until && inputs.tick() == *options_.until) return End::complete;
     timer_.end_phase(Phase::recording, summary_);
@@ -215,19 +215,19 @@ Replaying::End Replaying::repeat() {
     replay_.act();
     recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands(),
                         take_metrics());
-    if (showing_) {
-      showing_->answered();
-      showing_->update();
-      simulation.list_contacts(showing_->wants_contacts());
+    if (live_view_) {
+      live_view_->answered();
+      live_view_->update();
+      simulation.list_contacts(live_view_->wants_contacts());
     }
-    simulation.list_rays((showing_ && showing_->wants_rays()) || draws_rays);
+    simulation.list_rays((live_view_ && live_view_->wants_rays()) || draws_rays);
     timer_.end_phase(Phase::recording, summary_);
   }
   return End::complete;
 }
 
 /// Metrics of the current inputs.
-std::vector<world::Metric> Replaying::take_metrics() {
+std::vector<world::Metric> ReplayRun::take_metrics() {
   std::vector<world::Metric> metrics;
   for (const v1::Inputs::Metric& from : replay_.inputs().metrics()) {
     metrics.push_back({from.robot(), from.name(), from.value()});
@@ -236,18 +236,18 @@ std::vector<world::Metric> Replaying::take_metrics() {
   return metrics;
 }
 
-void Replaying::serve() {
-  if (!showing_) return;
-  showing_->serve();
+void ReplayRun::serve() {
+  if (!live_view_) return;
+  live_view_->serve();
   viewer_controls_.serve(world_.simulation.state().tick);
-  showing_->update();
+  live_view_->update();
 }
 
 /// @param timeout_ms  how long to wait otherwise
-bool Replaying::may_step(clock::time_point now, int& timeout_ms) {
+bool ReplayRun::may_step(clock::time_point now, int& timeout_ms) {
   timeout_ms = longest_sleep_ms;
-  if (showing_ && now < waits_for_viewer_until_) {
-    if (!showing_->is_watched()) return false;
+  if (live_view_ && now < waits_for_viewer_until_) {
+    if (!live_view_->is_watched()) return false;
     waits_for_viewer_until_ = {};
     schedule_.begin(world_.simulation.state().tick, viewer_controls_.paused_for());
   }
@@ -260,9 +260,9 @@ bool Replaying::may_step(clock::time_point now, int& timeout_ms) {
 }
 
 /// Until the next step may begin. False: the replay is to end.
-bool Replaying::wait() {
+bool ReplayRun::wait() {
   std::vector<pollfd> items{{signals_.descriptor(), POLLIN, 0}};
-  if (showing_) items.push_back({showing_->descriptor(), POLLIN, 0});
+  if (live_view_) items.push_back({live_view_->descriptor(), POLLIN, 0});
   for (;;) {
     if (signals_.take().interruptions > 0) return false;
     serve();
@@ -274,20 +274,20 @@ bool Replaying::wait() {
   }
 }
 
-void Replaying::show_end() {
+void ReplayRun::show_end() {
   console_.notice("the replay is over; its last state is shown until Ctrl-C");
   console_.flush();
-  showing_->end();
+  live_view_->end();
   std::vector<pollfd> items{{signals_.descriptor(), POLLIN, 0},
-                            {showing_->descriptor(), POLLIN, 0}};
-  while (!showing_->shutdown_requested() && signals_.take().interruptions == 0) {
-    showing_->serve();
-    showing_->update();
+                            {live_view_->descriptor(), POLLIN, 0}};
+  while (!live_view_->shutdown_requested() && signals_.take().interruptions == 0) {
+    live_view_->serve();
+    live_view_->update();
     ::poll(items.data(), items.size(), longest_sleep_ms);
   }
 }
 
-void Replaying::complete_summary(End end) {
+void ReplayRun::complete_summary(End end) {
   const simulation::Simulation& simulation = world_.simulation;
   summary_.ending =
       end == End::stopped ? reports::Ending::interrupted : reports::Ending::finished;
@@ -301,7 +301,7 @@ void Replaying::complete_summary(End end) {
 }
 
 /// The verdict: the result of `verify`; a replay prints it as a message.
-void Replaying::tell(End end) {
+void ReplayRun::tell(End end) {
   const std::string states = fmt::format("{} state{}", same_, same_ == 1 ? "" : "s");
   std::string verdict = end == End::differs ? "differs" : "identical";
   std::string text = states + " as recorded";

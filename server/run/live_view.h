@@ -26,7 +26,7 @@ namespace ziggurat::run {
 constexpr std::chrono::seconds longest_wait_for_viewer{5};
 std::string wait_notice();
 
-class Showing {
+class LiveView {
  public:
   using clock = std::chrono::steady_clock;
 
@@ -46,7 +46,7 @@ class Showing {
   };
 
   /// Listens. @throws text::UsageError, std::runtime_error
-  Showing(const Options& options, Run run);
+  LiveView(const Options& options, Run run);
 
   std::string page_address() const { return server_.page_address(); }
   std::string viewer_address() const { return server_.viewer_address(); }

@@ -6,20 +6,20 @@
 namespace ziggurat::cli {
 
 /// One at a time. What SIGINT, SIGTERM or SIGHUP interrupts is removed, and told.
-class WholeFile {
+class AtomicFile {
  public:
   /// @param out  is replaced at the end; `-`, a pipe or a device is written to directly
-  explicit WholeFile(std::string out);
+  explicit AtomicFile(std::string out);
   /// Removes what was not kept.
-  ~WholeFile();
-  WholeFile(const WholeFile&) = delete;
-  WholeFile& operator=(const WholeFile&) = delete;
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// Path to write to; close the file before keep().
+  /// Path to write to; close the file before commit().
   const std::string& path() const { return part_; }
 
   /// It is whole. @throws std::runtime_error  a sentence
-  void keep();
+  void commit();
 
  private:
   std::string out_, target_, part_;  // target_: behind links; empty: directly

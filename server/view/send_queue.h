@@ -33,7 +33,7 @@ struct Item {
   std::size_t size() const { return head.size() + (content ? content->held() : 0); }
 };
 
-class Output {
+class SendQueue {
  public:
   static constexpr std::size_t most_answers = std::size_t{1} << 20;  ///< [bytes]
   static constexpr std::size_t most_frames = std::size_t{1} << 20;   ///< [bytes]

@@ -1,4 +1,4 @@
-#include "cli/whole_file.h"
+#include "cli/atomic_file.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -14,9 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class WholeFileTest : public ::testing::Test {
+class AtomicFileTest : public ::testing::Test {
  protected:
-  WholeFileTest() { std::ofstream(out_) << "old"; }
+  AtomicFileTest() { std::ofstream(out_) << "old"; }
 
   /// Name and content of the only file that is in the folder.
   std::string only_file() const {
@@ -32,55 +32,55 @@ class WholeFileTest : public ::testing::Test {
   const std::string out_ = (folder_.path / "out.csv").string();
 };
 
-TEST_F(WholeFileTest, AppearsWhenItIsKept) {
-  WholeFile file(out_);
+TEST_F(AtomicFileTest, AppearsWhenItIsKept) {
+  AtomicFile file(out_);
   std::ofstream(file.path()) << "new";
   EXPECT_NE(file.path(), out_);
-  file.keep();
+  file.commit();
   EXPECT_EQ(only_file(), "out.csv: new\n");
 }
 
-TEST_F(WholeFileTest, IsNotWrittenThroughALinkThatWasThereBefore) {
-  const std::string part = WholeFile(out_).path();
+TEST_F(AtomicFileTest, IsNotWrittenThroughALinkThatWasThereBefore) {
+  const std::string part = AtomicFile(out_).path();
   {
     TemporaryFolder other;
     std::ofstream(other.path / "precious") << "kept";
     fs::create_symlink(other.path / "precious", part);
-    WholeFile file(out_);
+    AtomicFile file(out_);
     ASSERT_EQ(file.path(), part);
     std::ofstream(file.path()) << "new";
-    file.keep();
+    file.commit();
     EXPECT_EQ(fs::file_size(other.path / "precious"), 4U);
   }
   EXPECT_EQ(only_file(), "out.csv: new\n");
 }
 
-TEST_F(WholeFileTest, HasAnotherPlaceIfWhatIsThereCannotBeRemoved) {
-  const std::string part = WholeFile(out_).path();
+TEST_F(AtomicFileTest, HasAnotherPlaceIfWhatIsThereCannotBeRemoved) {
+  const std::string part = AtomicFile(out_).path();
   fs::create_directories(part + "/full");
   {
-    WholeFile file(out_);
+    AtomicFile file(out_);
     EXPECT_NE(file.path(), part);
     std::ofstream(file.path()) << "new";
-    file.keep();
+    file.commit();
   }
   fs::remove_all(part);
   EXPECT_EQ(only_file(), "out.csv: new\n");
 }
 
-TEST_F(WholeFileTest, IsRemovedIfItIsNotKept) {
+TEST_F(AtomicFileTest, IsRemovedIfItIsNotKept) {
   {
-    const WholeFile file(out_);
+    const AtomicFile file(out_);
     std::ofstream(file.path()) << "part";
   }
   EXPECT_EQ(only_file(), "out.csv: old\n");
 }
 
-TEST_F(WholeFileTest, IsRemovedByASignalThatEndsTheProgram) {
+TEST_F(AtomicFileTest, IsRemovedByASignalThatEndsTheProgram) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     const auto end = [&] {
       ::signal(number, SIG_DFL);
-      const WholeFile file(out_);
+      const AtomicFile file(out_);
       std::ofstream(file.path()) << "part";
       ::raise(number);
     };

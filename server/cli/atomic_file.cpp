@@ -1,4 +1,4 @@
-#include "cli/whole_file.h"
+#include "cli/atomic_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -52,7 +52,7 @@ int create(const std::string& path) { return ::open(path.c_str(), O_WRONLY | O_C
 
 }  // namespace
 
-WholeFile::WholeFile(std::string out) : out_(std::move(out)), part_(out_) {
+AtomicFile::AtomicFile(std::string out) : out_(std::move(out)), part_(out_) {
   std::error_code error;
   if (out_ == "-" || (fs::exists(out_, error) && !fs::is_regular_file(out_, error))) return;
   target_ = fs::is_symlink(out_, error) ? fs::weakly_canonical(out_, error).string() : out_;
@@ -71,13 +71,13 @@ WholeFile::WholeFile(std::string out) : out_(std::move(out)), part_(out_) {
   handle_interruptions();
 }
 
-WholeFile::~WholeFile() {
+AtomicFile::~AtomicFile() {
   if (target_.empty() || unfinished.exchange(nullptr) == nullptr) return;
   std::error_code error;
   fs::remove(part_, error);
 }
 
-void WholeFile::keep() {
+void AtomicFile::commit() {
   if (target_.empty()) return;
   std::error_code error;
   fs::rename(part_, target_, error);

@@ -1,17 +1,17 @@
-#include "view/output.h"
+#include "view/send_queue.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace ziggurat::view {
 
-bool Output::add_answer(Item item) {
+bool SendQueue::add_answer(Item item) {
   answer_bytes_ += item.size();
   answers_.push_back(std::move(item));
   return answer_bytes_ <= most_answers;
 }
 
-void Output::add_frame(std::vector<Item> items) {
+void SendQueue::add_frame(std::vector<Item> items) {
   if (items.empty()) return;
   Frame frame;
   for (Item& item : items) {
@@ -29,7 +29,7 @@ void Output::add_frame(std::vector<Item> items) {
 }
 
 /// Drops a tick; items that must be kept move to the tick behind.
-void Output::drop(std::size_t place) {
+void SendQueue::drop(std::size_t place) {
   Frame dropped = std::move(frames_[place]);
   frames_.erase(frames_.begin() + static_cast<std::ptrdiff_t>(place));
   frame_bytes_ -= dropped.bytes;
@@ -50,7 +50,7 @@ void Output::drop(std::size_t place) {
   }
 }
 
-void Output::forget(std::span<const std::uint32_t> channels) {
+void SendQueue::forget(std::span<const std::uint32_t> channels) {
   for (Frame& frame : frames_) {
     std::size_t kept = 0;
     std::erase_if(frame.items, [&](const Item& item) {
@@ -64,7 +64,7 @@ void Output::forget(std::span<const std::uint32_t> channels) {
   std::erase_if(frames_, [](const Frame& frame) { return frame.items.empty(); });
 }
 
-std::optional<Item> Output::next() {
+std::optional<Item> SendQueue::next() {
   if (!answers_.empty()) {
     Item item = std::move(answers_.front());
     answers_.pop_front();

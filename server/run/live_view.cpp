@@ -1,4 +1,4 @@
-#include "run/showing.h"
+#include "run/live_view.h"
 
 #include <fmt/format.h>
 
@@ -21,7 +21,7 @@ constexpr const char* over_for_good =
     "The run is over and its controllers have ended, so it can't be reset; start the program again, "
     "with --duration=0 for a run that does not end by itself.";
 
-view::Settings settings_of(const Options& options, const Showing::Run& run) {
+view::Settings settings_of(const Options& options, const LiveView::Run& run) {
   view::Settings settings;
   if (!options.view->empty()) settings.address = http::to_address("--view", *options.view);
   settings.insecure = options.insecure;
@@ -56,12 +56,12 @@ std::string wait_notice() {
   return fmt::format("waits for a viewer, for {} s at most", longest_wait_for_viewer.count());
 }
 
-Showing::Showing(const Options& options, Run run) : run_(run), server_(settings_of(options, run)) {
+LiveView::LiveView(const Options& options, Run run) : run_(run), server_(settings_of(options, run)) {
   connect_callers();
   populate();
 }
 
-void Showing::connect_callers() {
+void LiveView::connect_callers() {
   run_.connect({[this] { return take_calls(); },
                     [this](const network::Call& call) {
                       const auto found = unanswered_.find(call.request.id);
@@ -78,7 +78,7 @@ void Showing::connect_callers() {
                     }});
 }
 
-std::vector<network::Call> Showing::take_calls() {
+std::vector<network::Call> LiveView::take_calls() {
   std::erase_if(unanswered_,
                 [&](const auto& entry) { return !server_.requests().is_connected(entry.second.viewer); });
   std::vector<network::Call> calls;
@@ -93,25 +93,25 @@ std::vector<network::Call> Showing::take_calls() {
   return calls;
 }
 
-channels::Moment Showing::moment() const {
+channels::Moment LiveView::moment() const {
   simulation::Simulation& simulation = run_.world.simulation;
   return {simulation.state(), simulation.observations(), simulation.commands(),
           simulation.contacts(), phases_, simulation.rays()};
 }
 
-void Showing::populate() {
+void LiveView::populate() {
   const supervision::World& world = run_.world;
   server_.populate({world.scene, world.path, world.scene_hash, world.seed, run_.last_tick,
                     world.simulation.layout(), world.simulation.entities(),
                     world.simulation.state()});
 }
 
-void Showing::show(const std::vector<std::uint32_t>& wanted, bool all) {
+void LiveView::show(const std::vector<std::uint32_t>& wanted, bool all) {
   if (wanted.empty()) return;
   server_.show(moment(), {wanted, all ? wanted : std::vector<std::uint32_t>(), wants(Kind::image)});
 }
 
-void Showing::tick(const std::array<double, supervision::phase_count>& phases) {
+void LiveView::tick(const std::array<double, supervision::phase_count>& phases) {
   is_current_ = false;
   is_gathered_ = true;
   if (!has_viewers() || wanted_.empty()) return;
@@ -124,11 +124,11 @@ void Showing::tick(const std::array<double, supervision::phase_count>& phases) {
   show(wanted_, false);
 }
 
-void Showing::answered() {
+void LiveView::answered() {
   if (is_current_ && wants(Kind::command)) server_.show_commands(moment(), wanted_);
 }
 
-void Showing::restarted() {
+void LiveView::restarted() {
   is_gathered_ = false;
   populate();
   seen_changes_ = run_.changes();
@@ -136,13 +136,13 @@ void Showing::restarted() {
   show(wanted_, true);
 }
 
-void Showing::log(channels::Severity severity, std::string_view name, std::string_view text) {
+void LiveView::log(channels::Severity severity, std::string_view name, std::string_view text) {
   if (!wants(Kind::log)) return;
   const std::int64_t time_ns = run_.world.simulation.state().time_ns;
   server_.show_event(channels::Channels::log(time_ns, severity, name, text));
 }
 
-void Showing::serve() {
+void LiveView::serve() {
   if (!server_.requests().has_changes()) return;
   view::ViewerRequests::Changes changes = server_.requests().take();
   wanted_ = std::move(changes.wanted);
@@ -165,7 +165,7 @@ void Showing::serve() {
   fresh_.insert(fresh_.end(), changes.fresh.begin(), changes.fresh.end());
 }
 
-void Showing::apply(const view::Parameter& parameter) {
+void LiveView::apply(const view::Parameter& parameter) {
   if (parameter.name == "real_time_factor") return set_speed(std::get<double>(parameter.value));
   if (parameter.name == "frames_per_second") {
     frames_per_second_ = std::get<double>(parameter.value);
@@ -176,13 +176,13 @@ void Showing::apply(const view::Parameter& parameter) {
   show(wanted_, true);
 }
 
-void Showing::set_speed(double factor) {
+void LiveView::set_speed(double factor) {
   run_.schedule.set_factor(factor > 0 ? std::optional(factor) : std::nullopt,
                            run_.world.simulation.state().tick, run_.paused_for());
   server_.set_parameter({"real_time_factor", factor});
 }
 
-void Showing::update() {
+void LiveView::update() {
   if (seen_changes_ != run_.changes()) {
     seen_changes_ = run_.changes();
     populate();
@@ -221,7 +221,7 @@ void Showing::update() {
   }
 }
 
-void Showing::show_barrier() {
+void LiveView::show_barrier() {
   wire::Status status = run_.status();
   if (is_over_) status.phase = wire::Status::Phase::ending;
   const auto controllers = run_.controllers();
@@ -234,7 +234,7 @@ void Showing::show_barrier() {
   server_.show_event(channels::Channels::barrier(status, histograms));
 }
 
-void Showing::end() {
+void LiveView::end() {
   is_over_ = true;
   for (const auto& [id, call] : unanswered_) server_.refuse(call, over);
   unanswered_.clear();

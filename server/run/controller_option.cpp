@@ -1,4 +1,4 @@
-#include "run/by_controller.h"
+#include "run/controller_option.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

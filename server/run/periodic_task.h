@@ -9,17 +9,17 @@
 
 namespace ziggurat::run {
 
-class Repeating {
+class PeriodicTask {
  public:
   /// @param interval  wall time before each call
   /// @param call      must not throw
-  Repeating(std::chrono::milliseconds interval, std::function<void()> call)
+  PeriodicTask(std::chrono::milliseconds interval, std::function<void()> call)
       : thread_([this, interval, call = std::move(call)] {
           std::unique_lock lock(mutex_);
           while (!end_.wait_for(lock, interval, [this] { return is_over_; })) call();
         }) {}
   /// Waits for a call that has begun.
-  ~Repeating() {
+  ~PeriodicTask() {
     {
       const std::lock_guard lock(mutex_);
       is_over_ = true;
@@ -27,8 +27,8 @@ class Repeating {
     end_.notify_one();
     thread_.join();
   }
-  Repeating(const Repeating&) = delete;
-  Repeating& operator=(const Repeating&) = delete;
+  PeriodicTask(const PeriodicTask&) = delete;
+  PeriodicTask& operator=(const PeriodicTask&) = delete;
 
  private:
   std::mutex mutex_;  // of the next one
