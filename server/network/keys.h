@@ -81,7 +81,7 @@ std::string read_secret_key(const std::string& path);
 /// @throws KeyError
 std::vector<ClientKey> read_client_keys(const std::string& path);
 
-/// The same of files that have been read: what they say.
+/// Parses the text of files that have been read.
 /// @param path  for messages
 /// @throws KeyError
 std::string parse_secret_key(const std::string& text, const std::string& path);

@@ -1,6 +1,6 @@
 #pragma once
-// One connection: what arrives on it, cut into messages, and what waits to be sent. Nothing here
-// waits, and both directions are bounded.
+// Socket of one connection: its input, cut into messages, and its output queue. No call blocks, and
+// both directions are bounded.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace ziggurat::network {
 
 class PeerSocket {
  public:
-  /// It stands in the order in which connections are asked for messages.
+  /// Whether input is left that next() has not looked at.
   bool has_turn = false;
   /// next() has looked at a part of what has arrived only.
   bool has_more = false;

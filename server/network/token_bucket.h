@@ -1,6 +1,6 @@
 #pragma once
-// A bucket of tokens: full at the start, refilled by time. What is counted, such as messages, sentences or
-// time, takes tokens.
+// Token bucket: full at the start, refilled by time. Messages, sentences or time take tokens from
+// it.
 
 #include <algorithm>
 #include <chrono>

@@ -140,8 +140,8 @@ void bind(Barrier& barrier, Session& session, const std::string& connection) {
   barrier.connections.bind(connection, session.id);
 }
 
-/// A wish holds until another session has the robot; without one, a new session has that of the
-/// robot's controller.
+/// Sets the deadline policies of the session's robots. A policy that a Hello asks for holds until
+/// another session has the robot; otherwise the controller's policy holds.
 void set_policies(Barrier& barrier, const Session& session, const wire::Hello& hello) {
   if (!hello.deadline && !hello.session_token.empty()) return;
   for (std::size_t i = 0; i < session.roster.robots.size(); ++i) {

@@ -34,11 +34,10 @@ void keep(Barrier& barrier, std::size_t robot, std::uint64_t tick, double second
                                    static_cast<std::uint16_t>(controller), kind});
 }
 
-/// Settles the ticks that the session has missed, up to one of them.
-/// @param answered  the one that is answered late, if any; the others are not, as commands keep
-/// their
+/// Records the ticks that the session has missed, up to one of them.
+/// @param answered  tick that is answered late, if any; the others are not, as commands keep their
 ///                  order
-void settle_missed(Barrier& barrier, Session& session, std::uint64_t last,
+void record_missed(Barrier& barrier, Session& session, std::uint64_t last,
                    std::optional<std::uint64_t> answered) {
   auto& missed = session.pending_answer.missed;
   const auto end = std::ranges::find_if(missed, [&](const auto& one) { return one.tick > last; });
@@ -61,7 +60,7 @@ void measure_answer(Barrier& barrier, Session& session) {
     barrier.answer_times[barrier.deadlines.controller(robot)].add(seconds);
   });
   if (!barrier.reactions.are_kept) return;
-  settle_missed(barrier, session, answer.tick, {});
+  record_missed(barrier, session, answer.tick, {});
   for_each_controller(barrier, session, [&](std::size_t robot) {
     keep(barrier, robot, answer.tick, seconds, Reaction::Kind::in_time);
   });
@@ -73,11 +72,11 @@ void expect_late_answer(Barrier& barrier, Session& session) {
 }
 
 void measure_late_answer(Barrier& barrier, Session& session, std::uint64_t tick) {
-  settle_missed(barrier, session, tick, tick);
+  record_missed(barrier, session, tick, tick);
 }
 
 void give_up_answers(Barrier& barrier, Session& session) {
-  settle_missed(barrier, session, session.pending_answer.tick, {});
+  record_missed(barrier, session, session.pending_answer.tick, {});
 }
 
 void measure_absence(Barrier& barrier, std::size_t robot, Time since) {

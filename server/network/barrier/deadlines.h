@@ -21,7 +21,7 @@ enum class Consequence {
 
 /// The policy, if it is fixed and another than this one.
 std::optional<scene::DeadlinePolicy> fixed_against(const Config::Deadline& deadline,
-                                                   const scene::DeadlinePolicy& wish);
+                                                   const scene::DeadlinePolicy& requested);
 
 class Deadlines {
  public:
@@ -47,7 +47,7 @@ class Deadlines {
   void set_policy(std::size_t robot, const std::optional<scene::DeadlinePolicy>& policy);
   /// The policy of the robot's controller, if it is fixed and another than this one.
   std::optional<scene::DeadlinePolicy> fixed_against(std::size_t robot,
-                                                     const scene::DeadlinePolicy& wish) const;
+                                                     const scene::DeadlinePolicy& requested) const;
 
   /// The robot was not answered for in time. Counts that.
   Consequence miss(std::size_t robot, std::uint64_t tick);

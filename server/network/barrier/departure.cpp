@@ -40,7 +40,7 @@ void release_all(Barrier& barrier, Session& holder, bool may_resume) {
   }
 }
 
-/// The session's connection has no session any more.
+/// Unbinds the session's connection.
 void unbind(Barrier& barrier, const Session& session) {
   barrier.connections.unbind(session.connection);
   barrier.calls.forget(session.id);
@@ -48,7 +48,7 @@ void unbind(Barrier& barrier, const Session& session) {
   barrier.on_standing(session.connection, Standing::none, longest_message(barrier, nullptr));
 }
 
-/// The session has lost its last robots to another client.
+/// Ends a session whose last robots another client has taken over.
 void displace(Barrier& barrier, Session& session, const std::string& by) {
   if (session.state != SessionState::lost) {
     const std::string robots = robots_of(barrier, session);

@@ -45,7 +45,7 @@ wire::WorldView view_of(wire::Subscription subscription) {
 }
 
 /// Checks the fields of a director's Hello, also for a director that the scene does not name.
-std::optional<wire::Refusal> check_wishes(const Barrier& barrier, const wire::Hello& hello) {
+std::optional<wire::Refusal> check_director_hello(const Barrier& barrier, const wire::Hello& hello) {
   if (!hello.robots.empty() || !hello.controller.empty() || hello.lua_only) {
     return refuse(ErrorCode::bad_value, "robots", "A director asks for no robots.");
   }
@@ -140,7 +140,7 @@ void displace(Barrier& barrier, std::size_t director, const std::string& by) {
   erase(barrier, *session);
 }
 
-/// The world has grown: what fits the subscription is told.
+/// Extends the view of a director by new entities that its subscription matches.
 void update_view(wire::WorldView& view, const wire::Truth& truth) {
   if (view.considered == truth.layout.entities.size()) return;
   const auto& patterns = view.subscription.entities;
@@ -163,7 +163,7 @@ void keep_words(Barrier& barrier, std::size_t director, std::vector<wire::LogLin
   }
 }
 
-/// Its number stands in place of a robot's.
+/// Metrics of a director, with its number in place of a robot's.
 std::vector<wire::Metric> numbered(std::vector<wire::Metric> metrics, std::size_t director) {
   for (wire::Metric& metric : metrics) metric.robot = director;
   return metrics;
@@ -250,7 +250,7 @@ std::optional<wire::Refusal> check_fixed(const Barrier& barrier, std::size_t dir
 
 std::variant<Session*, wire::Refusal> begin_directing(Barrier& barrier, const wire::Hello& hello,
                                                       const std::string& client) {
-  if (auto refusal = check_wishes(barrier, hello)) return std::move(*refusal);
+  if (auto refusal = check_director_hello(barrier, hello)) return std::move(*refusal);
   auto found = find_director(barrier, hello.director);
   if (auto* refusal = std::get_if<wire::Refusal>(&found)) return std::move(*refusal);
   const std::size_t director = std::get<std::size_t>(found);

@@ -35,7 +35,7 @@ std::optional<wire::Fault> check_command(const Barrier& barrier, const Session& 
   return barrier.inbox.check(session.roster, barrier.run->layout);
 }
 
-/// A Command that came after the End: its values have no effect, its log lines count.
+/// Handles a Command that came after the End: its values have no effect, its log lines count.
 void keep_log(Barrier& barrier, const Session& session) {
   if (barrier.inbox.check(session.roster, barrier.run->layout)) return;
   barrier.inbox.append_log(session.roster, barrier.journal.log());

@@ -158,17 +158,17 @@ std::optional<wire::Refusal> check_places(const Barrier& barrier, wire::Role rol
 std::optional<wire::Refusal> check_policy(const Barrier& barrier, const wire::Hello& hello,
                                           std::span<const std::size_t> robots) {
   if (!hello.deadline) return std::nullopt;
-  const auto& wish = *hello.deadline;
-  if (wish.action < scene::DeadlineAction::wait || wish.action > scene::DeadlineAction::stop) {
+  const auto& requested = *hello.deadline;
+  if (requested.action < scene::DeadlineAction::wait || requested.action > scene::DeadlineAction::stop) {
     return make_refusal(ErrorCode::bad_value, "deadline_policy.action",
                         "The deadline policy has no action that this protocol knows.");
   }
-  if (wish.action != scene::DeadlineAction::wait && wish.wall_deadline_ms == 0) {
+  if (requested.action != scene::DeadlineAction::wait && requested.wall_deadline_ms == 0) {
     return make_refusal(ErrorCode::bad_value, "deadline_policy.wall_deadline_ms",
                         "A deadline policy other than WAIT must have a deadline of at least 1 ms.");
   }
   for (const std::size_t robot : robots) {
-    const auto fixed = barrier.deadlines.fixed_against(robot, wish);
+    const auto fixed = barrier.deadlines.fixed_against(robot, requested);
     if (!fixed) continue;
     const auto& layout = barrier.run->layout.robots[robot];
     auto refusal =
@@ -184,17 +184,17 @@ std::optional<wire::Refusal> check_policy(const Barrier& barrier, const wire::He
 std::optional<wire::Refusal> check_power(const Barrier& barrier, const wire::Hello& hello,
                                          const Access& access, std::span<const std::size_t> robots) {
   if (!hello.deadline || access.roles.supervisor) return std::nullopt;
-  const scene::DeadlinePolicy& wish = *hello.deadline;
+  const scene::DeadlinePolicy& requested = *hello.deadline;
   for (const std::size_t robot : robots) {
     const scene::DeadlinePolicy& policy = barrier.deadlines.policy(robot);
-    if (wish.action == DeadlineAction::stop && policy.action != DeadlineAction::stop) {
+    if (requested.action == DeadlineAction::stop && policy.action != DeadlineAction::stop) {
       return make_refusal(
           ErrorCode::forbidden, "deadline_policy.action",
           "The policy STOP can end the run, which the key of this connection may not: it lacks "
           "the role `supervisor`.");
     }
     const scene::DeadlinePolicy& usual = barrier.deadlines.usual_policy(robot);
-    if (wish == policy || !waits_longer(wish, usual)) continue;
+    if (requested == policy || !waits_longer(requested, usual)) continue;
     return make_refusal(
         ErrorCode::forbidden, "deadline_policy",
         fmt::format("The world waits for robot '{}' by {}, and a key without the role `supervisor` may not "

@@ -32,7 +32,7 @@ void tell_removed(Barrier& barrier, Session& session, std::size_t robot, const s
   }
 }
 
-/// Tells the sessions that have robots of its controller, also robots that left, of one that has come.
+/// Tells sessions with robots of this controller, including robots that left, about a new robot.
 void tell_spawned(Barrier& barrier, std::size_t robot) {
   const auto& robots = barrier.run->layout.robots;
   const std::size_t controller = robots[robot].controller;

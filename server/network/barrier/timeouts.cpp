@@ -115,7 +115,7 @@ bool tell_dropped(Barrier& barrier, Session& session, std::vector<std::uint32_t>
   return warn(barrier, session, std::move(fault));
 }
 
-/// At once, unless the last notice on this session is too fresh: then with the next one.
+/// Prints a notice at once, or with the next one if the last is too recent.
 void note_miss(Barrier& barrier, Session& session, milliseconds deadline) {
   Session::UnreportedMisses& unreported = session.unreported;
   if (unreported.misses++ == 0) unreported.first_tick = session.pending_answer.tick;
@@ -225,7 +225,7 @@ void check_deadlines(Barrier& barrier) {
   check_free_directors(barrier);
 }
 
-/// To the session, if it is time.
+/// Sends a heartbeat to the session, if it is time.
 Delivery send_heartbeat(Barrier& barrier, Session& session) {
   const milliseconds usual = barrier.config.heartbeat;
   const bool is_rare = session.pending_answer.is_owed && session.liveness.heartbeats >= most_heartbeats;
