@@ -1,5 +1,6 @@
 #pragma once
-// The file of --curve-clients: who can change it decides who may connect; whether it fits the scene.
+// Checks of the file of --curve-clients: its permissions decide who may connect, and its ids must
+// fit the scene.
 
 #include <sys/types.h>
 

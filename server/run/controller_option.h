@@ -16,10 +16,10 @@ namespace ziggurat::run {
 std::size_t controller_named(std::string_view option, const std::string& id,
                              const scene::Scene& scene);
 
-/// The ids of all whom a tick waits for: the scene's controllers, then its directors.
+/// Ids of all clients that a tick waits for: the scene's controllers, then its directors.
 std::vector<std::string> ids_of_awaited(const scene::Scene& scene);
 
-/// The places of those with this id in ids_of_awaited(): a controller, a director, or one of each.
+/// Indices of this id in ids_of_awaited(): a controller, a director, or one of each.
 /// @throws text::UsageError with the ids that the scene has
 std::vector<std::size_t> awaited_named(std::string_view option, const std::string& id,
                                        const scene::Scene& scene);
@@ -57,7 +57,7 @@ void apply_by_controller(std::string_view name, const std::vector<Option>& optio
   });
 }
 
-/// The same for all whom a tick waits for: apply(option, index into ids_of_awaited()).
+/// The same for all clients that a tick waits for: apply(option, index into ids_of_awaited()).
 template <class Option, class Apply>
 void apply_by_awaited(std::string_view name, const std::vector<Option>& options,
                       const scene::Scene& scene, const Apply& apply) {

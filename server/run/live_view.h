@@ -1,5 +1,5 @@
 #pragma once
-// A run that can be watched: what its viewers see, and what they ask for.
+// Live view of a run: the state that viewers see, and their requests.
 
 #include <array>
 #include <chrono>
@@ -56,7 +56,7 @@ class LiveView {
   bool has_viewers() { return server_.requests().has_viewers(); }
   bool is_watched() { return !wanted_.empty(); }  ///< a viewer has subscribed to something
 
-  /// A tick was published. Not all of them are shown: so many in a second of wall time at most.
+  /// Takes a published tick. At most `frames_per_second_` ticks are shown in a second of wall time.
   /// @param phases  wall time of the tick before, as supervision::Phase [s]
   void tick(const std::array<double, supervision::phase_count>& phases);
   /// The tick was answered: its commands are known.
@@ -68,9 +68,9 @@ class LiveView {
   void restarted();
   void log(channels::Severity severity, std::string_view name, std::string_view text);
 
-  /// Takes what viewers want. Call it whenever the run waits, before requests are answered.
+  /// Takes the requests of viewers. Call it whenever the run waits, before requests are answered.
   void serve();
-  /// Shows what was changed by requests, and who is waited for.
+  /// Shows changes by requests, and the robots that the tick waits for.
   void update();
   /// The run is over: requests are refused from now on, but for the end.
   void end();

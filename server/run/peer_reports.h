@@ -1,5 +1,5 @@
 #pragma once
-// Prints what the server reports of controllers and other peers.
+// Printer of the server's reports about controllers and other peers.
 
 #include <chrono>
 #include <cstdint>

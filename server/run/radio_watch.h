@@ -14,7 +14,7 @@ namespace ziggurat::run {
 
 class RadioWatch {
  public:
-  /// A tick was answered: what was received at it, and what is sent next.
+  /// Takes the messages of an answered tick: received ones, and ones that are sent next.
   void tick(const world::Observations& observations, const world::Commands& commands);
 
   /// Warnings about radios; empty: there are none. One names radios that sent at every tick and so

@@ -1,5 +1,5 @@
 #pragma once
-// --record: what a recording is told of its run.
+// Recording of a run: --record.
 
 #include <cstdint>
 #include <filesystem>

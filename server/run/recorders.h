@@ -39,7 +39,8 @@ class Recorders {
   void exchange(const world::State& state, const world::Observations& observations,
                 const world::Commands& commands, const std::vector<world::Metric>& metrics);
 
-  /// Writes what is not on the disk yet. An error is reported with the next tick. Any thread may call it.
+  /// Writes all output that is not on the disk yet. An error is reported with the next tick. Any
+  /// thread may call it.
   void flush();
 
   /// Completes every file except the summary and the report card, also if one of them fails.

@@ -1,5 +1,5 @@
 #pragma once
-// A recording that runs again: what `ziggurat replay` and `ziggurat verify` share.
+// Replay of a recording, for `ziggurat replay` and `ziggurat verify`.
 
 #include <chrono>
 #include <cstdint>

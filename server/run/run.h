@@ -42,7 +42,7 @@ struct Plan {
   std::optional<double> real_time;     ///< simulated seconds per second of wall time, if paced
 };
 
-/// The members stand in the order in which a run is set up.
+/// Run of a world. Its members are in the order in which a run is set up.
 class Run {
  public:
   /// Listens, loads the scene, creates the output files and starts the controllers.

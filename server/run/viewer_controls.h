@@ -15,7 +15,7 @@ class ViewerControls {
  public:
   void connect(supervision::LocalCalls calls) { calls_ = std::move(calls); }
 
-  /// Answers what viewers ask for.
+  /// Answers the requests of viewers.
   /// @param tick  of the present state
   void serve(std::uint64_t tick);
   /// A step was done, to this tick.

@@ -1,5 +1,5 @@
 #pragma once
-// Who may connect to a viewer's port, and what they may do (docs/viewing.md, docs/security.md).
+// Access control of a viewer's port (docs/viewing.md, docs/security.md).
 
 #include <cstdint>
 #include <optional>

@@ -1,5 +1,5 @@
 #pragma once
-// The viewers: what each subscribes to, and what waits for it. No sockets here.
+// Viewers with their subscriptions and send queues. No sockets here.
 
 #include <cstdint>
 #include <map>

@@ -1,5 +1,5 @@
 #pragma once
-// The Foxglove WebSocket protocol: what viewers send, and what they are sent. No sockets here.
+// Messages of the Foxglove WebSocket protocol, from and to viewers. No sockets here.
 
 #include <cstdint>
 #include <optional>

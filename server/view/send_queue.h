@@ -45,7 +45,7 @@ class SendQueue {
   /// The messages of a tick. If too much waits, earlier ticks are dropped that were not begun.
   void add_frame(std::vector<Item> items);
 
-  /// Drops what waits of these channels.
+  /// Drops the waiting items of these channels.
   /// @param channels  ascending
   void forget(std::span<const std::uint32_t> channels);
 

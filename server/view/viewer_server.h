@@ -1,6 +1,6 @@
 #pragma once
-// The live server: the page over HTTP, and viewers over WebSocket, on one port and a thread of its
-// own. The run is never held up: it leaves copies and takes what viewers want.
+// Server of viewers: the page over HTTP, and viewers over WebSocket, on one port and a thread of
+// its own. The run never waits for it: it leaves copies and takes the requests of viewers.
 
 #include <chrono>
 #include <cstdint>

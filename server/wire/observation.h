@@ -24,7 +24,7 @@ void count_cameras(const Roster& roster, const world::Observations& from, std::s
 void add_cameras(const Roster& roster, const world::Observations& from,
                  std::span<const std::string> tag_payloads, v1::Observation& to);
 
-/// Writes what a session's robots sense; `to` is clear.
+/// Writes the readings of a session's robots; `to` is clear.
 /// @param tag_payloads  of the same tick, for each of Layout::tags
 void fill(const Roster& roster, const world::Observations& from,
           std::span<const std::string> tag_payloads, v1::Observation& to);

@@ -14,7 +14,7 @@ namespace ziggurat::wire {
 /// @param robot  into the layout's robots
 void reset_commands(const world::Layout& layout, std::size_t robot, world::Commands& commands);
 
-/// Takes back what the robots of a session have sent by radio at this tick.
+/// Takes back the radio messages that the robots of a session have sent at this tick.
 void forget_radio_messages(const Roster& roster, world::RadioMessages& messages);
 
 }  // namespace ziggurat::wire
