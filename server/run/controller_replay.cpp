@@ -14,9 +14,9 @@ namespace ziggurat::run {
 using reports::Ending;
 
 ControllerReplay::ControllerReplay(const replay::RecordingFile& file, supervision::World& recorded,
-                     const supervision::World& told, std::function<void()> follow,
-                     const Services& services, std::vector<bool> gone, ScriptOf script_of,
-                     TellDifference tell_difference)
+                                   const supervision::World& told, std::function<void()> follow,
+                                   const Services& services, std::vector<bool> gone,
+                                   ScriptOf script_of, TellDifference tell_difference)
     : file_(file),
       recorded_(recorded),
       told_world_(told),

@@ -42,8 +42,9 @@ class ControllerReplay {
   /// @param follow    gives the told world the population of the recorded one; empty: it is the same
   /// @param gone      robots that no controller has
   ControllerReplay(const replay::RecordingFile& file, supervision::World& recorded,
-            const supervision::World& told, std::function<void()> follow, const Services& services,
-            std::vector<bool> gone, ScriptOf script_of, TellDifference tell_difference);
+                   const supervision::World& told, std::function<void()> follow,
+                   const Services& services, std::vector<bool> gone, ScriptOf script_of,
+                   TellDifference tell_difference);
 
   /// To the state for which `is_end(tick)` holds, which controllers are not given, or to the end of the
   /// recording. Controllers must have been gathered.
