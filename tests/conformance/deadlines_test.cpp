@@ -122,8 +122,8 @@ TEST(Deadline, W2_ATickThatWasMissedIsNotAwaitedOnceMoreWhenTheConnectionGoes) {
   EXPECT_FALSE(pair.peers.take_report().stopped.empty()) << "and two are not";
 }
 
-/// Clients take the robot one after the other and are gone before its deadline of 50 ms, as a program does that
-/// crashes and is started again.
+/// Clients take the robot one after the other and are gone before its deadline of 50 ms. A program
+/// does so that crashes and is started again.
 void crash_again_and_again(Pair& pair, int times) {
   for (int i = 0; i < times; ++i) {
     const std::string client = "crashes" + std::to_string(i);

@@ -1,6 +1,6 @@
-// What viewers send to the live server, behind WebSocket: messages of three viewers, two of them with the token,
-// between ticks, spawns and answers. What waits for a viewer is bounded, calls are only those of viewers with
-// the token, and each is answered once.
+// Messages of three viewers to the live server, behind WebSocket, two of them with the token,
+// between ticks, spawns and answers. The queue of a viewer is bounded. Calls are only those of
+// viewers with the token, and each is answered once.
 
 #include <algorithm>
 #include <cstdint>
