@@ -8,7 +8,7 @@ standard words. WORDS lists what came up again and again in their place, with wh
 Each use is printed as file:line: text; the exit code is 1 if there is any. Recorded messages, the
 licence and results of benchmarks are left out.
 
-Comments of the C++ sources below server/ and tests/ begin with the field's noun, or with a verb. No
+Comments of the C++ sources below COMMENTED begin with the field's noun, or with a verb. No
 sentence of theirs has more than 25 words; text in parentheses does not count, and a blank line ends a sentence.
 """
 
@@ -41,7 +41,7 @@ WORDS = {
 PATTERN = re.compile("(?<![A-Za-z0-9-])(?:" + "|".join(f"(?P<w{i}>{word})" for i, word in enumerate(WORDS))
                      + ")(?![A-Za-z0-9-])")
 
-COMMENTED = ("server/", "tests/")
+COMMENTED = ("clients/", "protocol/", "server/", "tests/")
 LONGEST_SENTENCE = 25  # words
 COMMENT = re.compile(r"(?P<code>.*?)//[/!]?<?(?P<text> .*)?$")
 VAGUE = re.compile(r"\W*(What|Of|Those|That|How|Where|Whose)\b")

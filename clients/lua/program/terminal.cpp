@@ -26,7 +26,7 @@ struct Stream {
   std::string rest;  // bytes of a character of which more is to come
 };
 
-/// How many bytes at the end are the beginning of a character in UTF-8.
+/// Number of bytes at the end that begin an unfinished character of UTF-8.
 std::size_t unfinished_bytes(std::string_view text) {
   for (std::size_t back = 1; back <= std::min<std::size_t>(3, text.size()); ++back) {
     const auto byte = static_cast<unsigned char>(text[text.size() - back]);
