@@ -81,8 +81,8 @@ int measure(int ticks, int robots) {
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   server.remove_robots(all);
   const pid_t director = start_director(server.endpoints().front());
-  network::DirectorsDesk desk(server);
-  while (desk.status().empty()) server.linger(simulation.commands(), {std::chrono::milliseconds(20), {}});
+  network::ServerDirectors directors(server);
+  while (directors.status().empty()) server.linger(simulation.commands(), {std::chrono::milliseconds(20), {}});
   for (auto& wheels : simulation.commands().wheels) wheels = {0.1, 0.05};
   const wire::Truth truth{simulation.layout(), simulation.entities(), simulation.state(),
                           simulation.observations(), simulation.contacts()};

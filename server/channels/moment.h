@@ -1,5 +1,5 @@
 #pragma once
-// What channels are made of: views of a running world.
+// Sources of channels: views of a running world.
 
 #include <array>
 #include <cstdint>
@@ -43,7 +43,7 @@ struct Moment {
   std::optional<std::span<const world::Ray>> rays = {};  ///< of all devices; nothing: State::rays
 };
 
-/// What `/scene` contains besides the shapes of links.
+/// Layers of `/scene` besides the shapes of links.
 struct Layers {
   bool labels = false;  ///< ids of entities
   bool frusta = true;   ///< of cameras

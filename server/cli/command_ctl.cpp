@@ -43,7 +43,7 @@ po::options_description ctl_options() {
   return options;
 }
 
-/// What the command line says.
+/// Words and values of the command line.
 struct Given {
   std::vector<std::string> words;  ///< after the verb
   Values values;
@@ -55,7 +55,8 @@ struct Call {
   bool as_json;
 };
 
-/// What is asked of the server. Its words were checked before: a wrong one is told also if no server is there.
+/// Request to the server. Its words were checked before: a wrong one is told also if no server is
+/// there.
 using Request = std::function<void(const Call&)>;
 
 void print_result(const Call& call, std::string_view done, std::uint64_t tick) {
@@ -147,27 +148,27 @@ Request remove(const Given& given) {
 }
 
 /// Words 1 and 2, which may be missing.
-struct Place {
+struct TargetPose {
   std::array<double, 3> position{};
   std::optional<std::array<double, 4>> orientation;
 };
 
-Place place_of(const Given& given) {
-  Place place;
-  text::to_numbers("position", given.words[1], "x,y,z in metres, as 1,-1,0.5", place.position);
+TargetPose pose_of(const Given& given) {
+  TargetPose pose;
+  text::to_numbers("position", given.words[1], "x,y,z in metres, as 1,-1,0.5", pose.position);
   if (given.words.size() == 3) {
     math::Vector3 angles;
     text::to_numbers("orientation", given.words[2], "turns about z,y,x in degrees, as 90,0,0", {angles.data(), 3});
     const math::Quaternion turned = scene::orientation_from_degrees(angles);
-    place.orientation = {turned.w(), turned.x(), turned.y(), turned.z()};
+    pose.orientation = {turned.w(), turned.x(), turned.y(), turned.z()};
   }
-  return place;
+  return pose;
 }
 
 Request move(const Given& given) {
   const Onto onto = given.values.has("may-overlap") ? Onto::others : Onto::free_place;
-  return [entity = given.words[0], place = place_of(given), onto](const Call& call) {
-    print_result(call, "moved", call.server.move(entity, place.position, place.orientation, onto));
+  return [entity = given.words[0], pose = pose_of(given), onto](const Call& call) {
+    print_result(call, "moved", call.server.move(entity, pose.position, pose.orientation, onto));
   };
 }
 
@@ -183,8 +184,8 @@ Request set_joint(const Given& given) {
 }
 
 Request is_free(const Given& given) {
-  return [what = given.words[0], place = place_of(given)](const Call& call) {
-    const auto overlapped = call.server.overlapped(what, place.position, place.orientation);
+  return [what = given.words[0], pose = pose_of(given)](const Call& call) {
+    const auto overlapped = call.server.overlapped(what, pose.position, pose.orientation);
     if (call.as_json) {
       call.console.result(nlohmann::ordered_json{{"free", !overlapped}, {"overlapped", overlapped.value_or("")}}.dump());
     } else {

@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "cli/arguments.h"
+#include "cli/atomic_file.h"
 #include "cli/commands.h"
-#include "cli/whole_file.h"
 #include "mcap/repair.h"
 #include "mcap/scan.h"
 #include "recorder/disk.h"
@@ -31,7 +31,7 @@ po::options_description info_options() {
   return options;
 }
 
-/// What is known of a file.
+/// Content of a file, as far as it could be read.
 struct Examined {
   std::string path;
   std::uint64_t size = 0;  // [bytes]
@@ -188,12 +188,12 @@ Examined examine(const std::string& path, const mcap::Source& source, const mcap
 
 void write_repaired(const std::string& path, const mcap::Reader& reader, const std::string& out,
                     reports::Console& console) {
-  WholeFile whole(out);
+  AtomicFile whole(out);
   recorder::Disk disk(whole.path());
   const mcap::Repaired repaired =
       mcap::repair(reader, [&](std::string_view bytes) { disk.write(bytes); });
   disk.close();
-  whole.keep();
+  whole.commit();
   for (const auto& fault : repaired.lost) {
     console.warning(fmt::format("{}: byte {}: {}; it is left out", shown(path), fault.offset,
                                 shown(fault.text)));

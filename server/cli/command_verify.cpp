@@ -4,8 +4,8 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "run/rehearsal.h"
-#include "run/replaying.h"
+#include "run/controller_check.h"
+#include "run/replay_run.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -28,12 +28,12 @@ po::options_description verify_options() {
 }
 
 int rehearse(const Parsed& parsed, const Arguments& arguments, processes::Signals& signals) {
-  run::RehearsalOptions options;
+  run::ControllerCheckOptions options;
   options.recording = only_recording("verify", parsed.positional);
   options.controllers = parse_options(arguments, verify_options()).controllers;
   options.trusts_commands = parsed.values.count("trust-recorded-commands") > 0;
   options.quiet = parsed.values.count("quiet") > 0;
-  return run::Rehearsal(options, signals).execute();
+  return run::ControllerCheck(options, signals).execute();
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ int execute_verify(const Arguments& arguments, processes::Signals& signals) {
   options.run = parse_options(arguments, verify_options());
   options.recording = only_recording("verify", options.run.scenes);
   options.verifies = true;
-  return run::Replaying(options, signals).execute();
+  return run::ReplayRun(options, signals).execute();
 }
 
 }  // namespace ziggurat::cli

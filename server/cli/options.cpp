@@ -68,7 +68,7 @@ std::vector<std::string> controllers_of(const std::vector<Option>& options) {
   return names;
 }
 
-/// Of both directions, if an injection is for both.
+/// Directions of several injections; an injection for both counts for each.
 std::vector<std::string> directions_of(const std::vector<run::InjectOption>& options) {
   using network::Direction;
   std::vector<std::string> subjects;
@@ -92,7 +92,7 @@ void check_subjects(const run::Options& options) {
   check_once("--set", std::move(paths));
 }
 
-/// What is passed to ziggurat-lua.
+/// Arguments for ziggurat-lua.
 std::vector<std::string> lua_arguments(const Values& values) {
   std::vector<std::string> arguments;
   if (values.has("trust-scripts")) arguments.emplace_back("--trust-scripts");
@@ -178,7 +178,7 @@ void read_outputs(const Values& values, run::Options& options) {
   options.summary = values.text("summary");
 }
 
-/// What an option would do nothing without, and what it would do nothing beside.
+/// Refuses options that have no effect without, or beside, another one.
 void check_effects(const Values& values, const po::options_description& known, const run::Options& options) {
   check_apart(values, "without-controllers",
               {"controller", "script", "restart", "trust-scripts", "trust-recorded-commands", "lua-processes",

@@ -10,7 +10,7 @@
 
 namespace ziggurat::cli {
 
-/// What each command understands, in groups with headings as its help prints them.
+/// Options of each command, in groups with headings as its help prints them.
 boost::program_options::options_description run_options();
 boost::program_options::options_description serve_options();
 boost::program_options::options_description check_options();

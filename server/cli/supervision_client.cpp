@@ -31,7 +31,7 @@ std::string duration(double seconds) {
   return fmt::format("{:.0f} min", seconds / 60);
 }
 
-/// What it drives.
+/// Robots or director of a session.
 std::string part_of(const SessionStatus& session) {
   return session.director.empty() ? some_of(session.robots)
                                   : fmt::format("director '{}'", session.director);

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What containers read and write must be in what they mount.
+/// Checks that a path which containers read or write is in the folder that they mount.
 void check_is_mounted(const std::string& mount, const fs::path& path) {
   const fs::path relative = path.lexically_relative(fs::path(mount).lexically_normal());
   if (!relative.empty() && *relative.begin() != "..") return;

@@ -38,7 +38,7 @@ auto text_values(const char* name) {
   return po::value<std::vector<std::string>>()->composing()->value_name(name);
 }
 
-/// What stands behind `--` is for `run`.
+/// Splits the arguments at `--`; the second part is for `run`.
 std::pair<Arguments, Arguments> split(const Arguments& arguments) {
   const auto end = std::ranges::find(arguments, "--");
   return {{arguments.begin(), end},
@@ -75,7 +75,7 @@ void check_run_arguments(const std::vector<std::string>& arguments) {
   }
 }
 
-/// What the first run is asked for: its arguments are read as `ziggurat run` reads them.
+/// Options of the first run: its arguments are read as `ziggurat run` reads them.
 /// @throws text::UsageError
 run::Options options_of_first_run(const sweep::Experiment& experiment,
                                   const sweep::Settings& settings) {
@@ -122,7 +122,7 @@ void read_settings(const Values& values, const sweep::ExperimentFile& file, Swee
   options.quiet = values.has("quiet");
 }
 
-/// What the options say of the experiment.
+/// Reads the experiment from the options.
 void read_experiment(const Values& values, const Arguments& for_run, sweep::Experiment& experiment) {
   for (const std::string& each : values.texts("param")) {
     experiment.axes.push_back(sweep::to_axis(sweep::Axis::Kind::parameter, each));

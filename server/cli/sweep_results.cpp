@@ -31,14 +31,14 @@ namespace {
 namespace po = boost::program_options;
 
 /// A folder's sweep, as far as it got.
-struct Sofar {
+struct SweepState {
   sweep::Folder folder;
   sweep::Experiment experiment;
   std::vector<sweep::Result> results;
   std::map<std::string, std::string> scene_files;  ///< hashes by path
 };
 
-Sofar look(const char* verb, const Parsed& parsed) {
+SweepState look(const char* verb, const Parsed& parsed) {
   if (parsed.positional.size() != 1) {
     throw text::UsageError(
         fmt::format("one folder of a sweep is expected; write: ziggurat sweep {} DIR", verb));
@@ -105,7 +105,7 @@ std::string as_csv(const Rows& rows) {
 }
 
 /// A row for each combination of the axes, with means and halves of their intervals.
-Rows table_of_means(const Sofar& sofar, const std::vector<std::size_t>& axes,
+Rows table_of_means(const SweepState& sofar, const std::vector<std::size_t>& axes,
                     const std::vector<std::string>& measures, double confidence) {
   Rows rows(1);
   for (const std::size_t axis : axes) rows[0].push_back(sofar.experiment.axes[axis].name);
@@ -128,7 +128,7 @@ Rows table_of_means(const Sofar& sofar, const std::vector<std::size_t>& axes,
 }
 
 /// Writes what tasks of a cluster found into the one table, unless a sweep works on it now.
-void gather(const Sofar& sofar) {
+void gather(const SweepState& sofar) {
   if (!std::filesystem::exists(sofar.folder.of_tasks())) return;
   if (sweep::Lock::is_held(sofar.folder.path() / "lock")) return;
   const sweep::Lock lock(sofar.folder.path() / "lock");
@@ -195,8 +195,9 @@ std::size_t usual_abscissa(const sweep::Experiment& experiment) {
                          "from left to right");
 }
 
-/// What the sweep is kept in and was made of. A picture in its folder, and the program that drew it, may be replaced.
-std::vector<recording::TakenFile> taken_by(const Sofar& sofar) {
+/// Files that belong to the sweep or that it was made of. A picture in its folder, and the program
+/// that drew it, may be replaced.
+std::vector<recording::TakenFile> taken_by(const SweepState& sofar) {
   std::vector<recording::TakenFile> taken;
   for (const auto& [path, hash] : sofar.scene_files) taken.push_back({path, "a file of the sweep's scene"});
   std::error_code error;
@@ -218,7 +219,7 @@ void print(const std::filesystem::path& file) {
 
 int sweep_status(const Arguments& arguments) {
   const Parsed parsed = parse(arguments, po::options_description());
-  const Sofar sofar = look("status", parsed);
+  const SweepState sofar = look("status", parsed);
   reports::Console console;
   const std::size_t total = run_count(sofar.experiment);
   std::vector<sweep::Result> failed;
@@ -248,7 +249,7 @@ int sweep_results(const Arguments& arguments) {
   const Parsed parsed = parse(arguments, results_options());
   const Values values(parsed.values);
   check_apart(values, "runs", {"by", "metric", "confidence", "csv"});
-  const Sofar sofar = look("results", parsed);
+  const SweepState sofar = look("results", parsed);
   sofar.folder.write_csv(sofar.experiment, sofar.results);
   gather(sofar);
   reports::Console console;
@@ -285,7 +286,7 @@ int sweep_results(const Arguments& arguments) {
 int sweep_plot(const Arguments& arguments) {
   const Parsed parsed = parse(arguments, plot_options());
   const Values values(parsed.values);
-  const Sofar sofar = look("plot", parsed);
+  const SweepState sofar = look("plot", parsed);
   sweep::Plot plot;
   plot.confidence = confidence_of(values);
   plot.x = values.has("x") ? axis_named(sofar.experiment, values.text("x"))

@@ -1,5 +1,5 @@
 #pragma once
-// What stands between a camera and what it looks for.
+// Line of sight between a camera and the things that it detects.
 
 #include <cstddef>
 #include <span>
@@ -13,7 +13,7 @@ namespace ziggurat::devices {
 /// Whether nothing stands between a camera and a point, both in W [m]: anything but the floor is in
 /// the way, the camera's robot and the carrier of what is at the point included; not what is met
 /// within 0.1 mm of the point, nor a body that the camera is inside of.
-struct Sight {
+struct OcclusionTest {
   const physics::Rays& rays;
   std::size_t robot;               ///< into Layout::robots: the one with the camera
   std::vector<world::Ray>* shown;  ///< gets the tested rays; may be null

@@ -17,8 +17,7 @@ std::unordered_map<std::string_view, std::size_t> joints_of(const scene::Entity&
   return joints;
 }
 
-/// What a motor may give in a substep [N s] or [N m s].
-/// @param substep  [s]
+/// Greatest impulse of a motor in a substep [N s] or [N m s]. @param substep  [s]
 double impulse_of(const scene::JointActuator& actuator, double substep) {
   return actuator.max_force ? *actuator.max_force * substep : actuator.max_impulse;
 }

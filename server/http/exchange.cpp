@@ -33,7 +33,7 @@ Answer refusal(unsigned status, const std::string& why) {
   return {status, Answer().type, {}, std::to_string(status) + ": " + why + ".\n"};
 }
 
-/// Of what is no request, or too long for one.
+/// Refusal of bytes that are no request, or are too long for one.
 Answer refusal(Error error) {
   return error == beast::http::error::header_limit || error == beast::http::error::buffer_overflow
              ? refusal(431, "the request is too long")
@@ -97,7 +97,8 @@ void Exchange::read() {
   parse();
 }
 
-/// What has arrived; then more, until the request's header is complete. A body is never read.
+/// Parses the bytes that have arrived, and reads more until the request's header is complete. A
+/// body is never read.
 void Exchange::parse() {
   Error error;
   buffer_.consume(parser_->put(buffer_.cdata(), error));

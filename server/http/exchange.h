@@ -24,7 +24,7 @@ using Response = boost::beast::http::response<boost::beast::http::string_body>;
 
 inline std::string_view view_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
-/// What a port serves, and how long it waits.
+/// Service of a port, and its timeouts.
 struct Service {
   std::string host;       ///< what clients may call it, see allows_host()
   bool any_host = false;  ///< any name
@@ -34,7 +34,7 @@ struct Service {
   std::function<Answer(std::string_view target, std::string_view etag)> get;
   std::function<void(const Request&, Response&)> decorate = {};  ///< adds fields; may be empty
 
-  // Of WebSocket handshakes; both may be empty: then they are requests as others.
+  // Handlers of WebSocket handshakes; if both are empty, handshakes are requests as others.
   std::function<std::optional<Answer>(const Request&)> refuse_upgrade = {};
   std::function<void(Stream, const Request&)> upgrade = {};
 };

@@ -18,7 +18,7 @@ namespace ziggurat::http {
 
 class Port {
  public:
-  /// What is at a path. It is called on the port's thread.
+  /// Answer for a path. It is called on the port's thread.
   using Read = std::function<Answer(std::string_view path)>;
 
   struct Limits {

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int most_panel_nodes = 6;
 constexpr int deepest = 40;  // halvings of a patch, both directions together
-/// Of a cylinder's field: gaps below this share of its longest side are resolved like this one. It
-/// bounds the cost of magnets that touch or overlap.
+/// Smallest resolved gap of a cylinder's field, as a share of its longest side; smaller gaps count
+/// as this one. It bounds the cost of magnets that touch or overlap.
 constexpr double closest_share = 0.03;
 /// The same for a box, as distances from its edges, where they are along a side of the patch. Where
 /// they are oblique, patches must be small in both directions, and the second counts.

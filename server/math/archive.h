@@ -1,5 +1,5 @@
 #pragma once
-// State as bytes. A struct with a state lists its fields once, in a function archive(Archive&) that
+// State as bytes. A struct with a state lists its fields once, in a function archive(Archive&). It
 // writes them, reads them back, and names them, so that two states can be compared field by field.
 // Bytes that are read are checked: their number, sizes, indices, and that numbers are finite.
 
@@ -30,7 +30,7 @@ struct ArchiveError : std::runtime_error {
 
 class Archive {
  public:
-  /// Where a field begins in the bytes.
+  /// Offset of a field in the bytes.
   struct Place {
     std::size_t offset = 0;
     std::string path;  ///< as in `physics/core/system/trees/3/q`

@@ -1,5 +1,5 @@
 #pragma once
-// What is in an MCAP file, without messages and the data of attachments.
+// Contents of an MCAP file, without messages and the data of attachments.
 
 #include <cstddef>
 #include <cstdint>
@@ -40,7 +40,7 @@ struct Contents {
   const Channel* channel_of(std::string_view topic) const;
   /// The attachment with this name; of several the last one; null: there is none.
   const AttachmentIndex* attachment_named(std::string_view name) const;
-  /// Of a channel; 0 if the statistics leave it out.
+  /// Number of messages of a channel; 0 if the statistics leave it out.
   std::uint64_t messages_of(std::uint16_t channel) const;
 };
 

@@ -22,7 +22,7 @@ class Reader {
   const Contents& contents() const { return contents_; }
   /// The file has an end, and its summary is good. Chunks may be damaged nevertheless: check().
   bool has_summary() const { return has_summary_; }
-  /// What is wrong: with the summary, and if that was not good, with anything.
+  /// Damage of the summary, and if that is not good, any damage.
   const std::vector<Fault>& faults() const { return faults_; }
 
   /// The records of a chunk, decompressed; its CRC was right. @throws Damaged

@@ -73,7 +73,7 @@ struct Message {
   std::string_view data;
 };
 
-/// Where a chunk is, and what is in it.
+/// Offset and content of a chunk.
 struct ChunkIndex {
   std::uint64_t start_time = 0, end_time = 0;  ///< of its messages, both included [ns]
   std::uint64_t offset = 0, length = 0;        ///< of the record with its head

@@ -261,7 +261,7 @@ void Scanner::add_index(std::string_view content) {
   if (begin != end) listed_.insert(index->channel);
 }
 
-/// Of the last chunk.
+/// State of the last chunk.
 void Scanner::end_indexes() {
   std::size_t channels = 0;
   for (std::size_t i = 0; i < entries_.size() && has_index_; ++i) {

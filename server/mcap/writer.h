@@ -1,7 +1,7 @@
 #pragma once
-// Writes an MCAP file with any content: chunks with message indexes, attachments, metadata, and a
-// summary at the end. What stands outside of chunks is written at once, so that a file that is cut
-// off anywhere is good up to its last whole chunk.
+// Writer of an MCAP file with any content: chunks with message indexes, attachments, metadata, and
+// a summary at the end. Records outside of chunks are written at once. So a file that is cut off
+// anywhere is good up to its last whole chunk.
 
 #include <cstddef>
 #include <cstdint>
@@ -38,7 +38,7 @@ class Writer {
   /// Appends with a sequence number of its own.
   void write(const Message& message);
 
-  /// What the present chunk has, before compression [bytes].
+  /// Size of the current chunk, before compression [bytes].
   std::size_t chunk_size() const { return chunk_.size(); }
   /// Compresses the present chunk and writes it with its indexes; without messages nothing is done.
   void end_chunk();

@@ -1,5 +1,5 @@
 #pragma once
-// What a server is told when it is started.
+// Configuration of a server.
 
 #include <chrono>
 #include <cstddef>
@@ -31,7 +31,7 @@ struct Config {
   bool keeps_reactions = false;               ///< each by itself, for a report card
   std::chrono::milliseconds lease{0};         ///< how long robots of a lost session are kept for it
 
-  // What depends on the scene: counts from Server::open() on.
+  // Settings that depend on the scene; they take effect at Server::open().
 
   /// One that only this user's processes can reach, without protection; empty: none.
   std::string private_endpoint;

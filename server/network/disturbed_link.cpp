@@ -90,8 +90,9 @@ void DisturbedLink::begin(const std::string& connection, const v1::Welcome& welc
                   line.paths.front().name));
 }
 
-/// Of a message that belongs to several controllers: the longest delay, and lost if one loses it.
-/// Nothing is lost for a session without a deadline: the world would wait for it forever.
+/// Draws the effect on a message. A message of several controllers has the longest of their delays,
+/// and is lost if one of them loses it. Sessions without deadline lose nothing: the world would
+/// wait without end.
 Effect DisturbedLink::draw(const Line& line, Direction direction, std::uint64_t tick) {
   Effect effect;
   const bool is_observation = direction == Direction::observations;

@@ -71,7 +71,7 @@ std::optional<Roles> to_roles(const std::string& text) {
   return roles;
 }
 
-/// What is wrong with a list of ids and globs, if anything.
+/// Fault of a list of ids and globs, if it has one.
 std::optional<std::string> fault_of(const std::vector<std::string>& globs) {
   if (globs.empty()) return "names nothing; write ids or patterns such as 'scout*'";
   if (globs.size() > most_patterns) {

@@ -66,8 +66,9 @@ void set_option(int socket, int level, int option, int value) {
   ::setsockopt(socket, level, option, &value, sizeof value);
 }
 
-/// Of servers that begin at one path at the same time only one is between its look at that path and listening there.
-/// Held while it is open. Any user of this machine may hold it, too, so no server waits for long.
+/// Locks a path, so that of several servers only one checks the path and then listens there. The
+/// lock is held while the descriptor is open. Any user of this machine may hold it, too, so no
+/// server waits for long.
 posix::Descriptor hold_path(const std::string& path) {
   constexpr int most_tries = 50, between_us = 10'000;
   const std::string lock = lock_of(path);
@@ -94,7 +95,7 @@ struct Address {
   socklen_t size = 0;
 };
 
-/// Of an address in numbers; none if the host is none.
+/// Address of a host given in numbers; none if it is a name.
 std::optional<Address> numeric_address(const char* host, const std::string& port) {
   addrinfo hints{};
   hints.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV | AI_PASSIVE;

@@ -7,8 +7,8 @@
 
 namespace ziggurat::network {
 
-/// Name of an abstract socket that a server holds from its look at this path until it listens there; empty if
-/// there is no such folder. Who removes a socket that is left there holds it, too.
+/// Name of an abstract socket that locks this path until a server listens there; empty if there is
+/// no such folder. Removing a socket that was left there takes the same lock.
 std::string lock_of(const std::string& path);
 
 class Listener {

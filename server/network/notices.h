@@ -28,7 +28,7 @@ class Notices {
   void tell_last(Time now) {
     if (untold_ > 0) tell(now);
   }
-  /// Those to be told since the last call, in order.
+  /// Sentences to print since the last call, in order.
   std::vector<std::string> take() { return std::exchange(told_, {}); }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// What waits to be sent over one connection. It is bounded, and nothing here waits.
+// Output that waits to be sent over one connection. Its size is bounded; no call blocks.
 
 #include <cstddef>
 #include <cstdint>
@@ -47,7 +47,7 @@ class OutputQueue {
     std::size_t size = 0, sent = 0;
     bool is_observation = false;
 
-    /// What keeping it takes, at least [bytes].
+    /// Memory that the frame takes, at least [bytes].
     std::size_t memory() const { return frame.capacity + 128; }
   };
   static Buffer kept(Buffer& frame, std::size_t size);

@@ -17,7 +17,7 @@ constexpr std::size_t least_space = 8 * kibibyte;   // for one read
 constexpr std::size_t read_at_once = 256 * kibibyte;  // others are looked at after so much,
 constexpr int frames_at_once = 16;                    // and after so many
 
-/// How much memory an idle connection keeps.
+/// Memory that an idle connection keeps [bytes].
 std::size_t kept_when_idle(Standing standing) {
   return standing == Standing::controller ? mebibyte : least_space;
 }

@@ -1,6 +1,6 @@
 #pragma once
-// One connection: what arrives on it, cut into messages, and what waits to be sent. Nothing here
-// waits, and both directions are bounded.
+// Socket of one connection: its input, cut into messages, and its output queue. No call blocks, and
+// both directions are bounded.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace ziggurat::network {
 
 class PeerSocket {
  public:
-  /// It stands in the order in which connections are asked for messages.
+  /// Whether input is left that next() has not looked at.
   bool has_turn = false;
   /// next() has looked at a part of what has arrived only.
   bool has_more = false;
@@ -41,7 +41,7 @@ class PeerSocket {
   bool is_open() const { return engine_.is_open(); }  ///< the handshake is over
   /// The connection is gone, or must be closed.
   bool is_over() const { return is_over_; }
-  /// What waits is not sent any more.
+  /// Drops the output that waits.
   void give_up();
   /// Why it was closed for what the client sent, for people; empty if it was not.
   std::string fault() const;
@@ -53,7 +53,7 @@ class PeerSocket {
   /// @param limit  of its size [bytes]
   bool next(std::size_t limit, Received& received);
 
-  /// Where its content is to stand in the frame, which has that many bytes more.
+  /// Offset of the content in its frame, which has that many bytes more.
   std::size_t content_at(std::size_t content) const { return engine_.content_at(content); }
   /// Sends a frame with its content in place, now or as soon as the client reads. The connection is
   /// over if too much waits for it. A newer Observation takes the place of one that waits.

@@ -1,5 +1,5 @@
 #pragma once
-// What the program that runs a server is told of peers and robots.
+// Report of peers and robots to the program that runs a server.
 
 #include <cstddef>
 #include <cstdint>
@@ -36,11 +36,11 @@ struct RobotStatus {
   bool can_restore = true;  ///< held, or of a lost session: its controller can go back to a snapshot
 };
 
-/// What the world needs of a session before it can stand, or move on, if no deadline ends the wait.
+/// Need of the world before it can pause or go on, if no deadline ends the wait.
 enum class Need {
   nothing,
-  answers,  ///< to each tick; the one in hand is answered
-  answer,   ///< now: to the tick in hand
+  answers,  ///< to each tick; the current one is answered
+  answer,   ///< now: to the current tick
 };
 
 /// Whether a director is there, and whether the tick waits for it.
@@ -55,13 +55,13 @@ struct DirectorStatus {
   bool can_restore = true;  ///< that client can go back to a snapshot
 };
 
-/// What a director wants done between the tick in hand and the next. Seen, not owned.
+/// Direction to apply between the current tick and the next. Not owned.
 struct Directed {
   const std::string& director;  ///< id
   const wire::Direction& direction;
 };
 
-/// How well controllers answered.
+/// Response times and losses of controllers.
 struct Performance {
   struct Controller {
     std::uint64_t missed_ticks = 0;  ///< at which one of its robots or more missed a deadline
@@ -72,7 +72,7 @@ struct Performance {
   const Reactions& reactions;           ///< of the server, if its config keeps them
 };
 
-/// How far the world is loaded.
+/// Progress of loading the world.
 struct Progress {
   double share = 0;  ///< 0 to 1
   std::string message;
@@ -105,7 +105,7 @@ struct DirectorLine {
   std::string text;
 };
 
-/// What happened since the last report.
+/// Events since the last report.
 struct Report {
   std::vector<wire::LogLine> log;    ///< robots in scene order, then as given: independent of which
                                      ///< process runs where and which answers first

@@ -37,7 +37,7 @@
 
 namespace ziggurat::network {
 
-/// How long to wait, and for what else.
+/// Timeout of a wait, and descriptors that end it.
 struct Wait {
   std::chrono::milliseconds timeout{-1};  ///< wall time; negative: forever
   std::span<const int> descriptors;       ///< return as soon as one of these is readable
@@ -47,11 +47,11 @@ enum class Outcome {
   complete,   ///< what was waited for is there
   timed_out,  ///< the time is over; call again to go on
   woken,      ///< a descriptor is readable, a signal arrived, or take_calls() has something or the
-              ///< world has come to stand; call again to go on
+              ///< world was halted; call again to go on
 };
 
-/// Whether the world is paused; once it is asked for, the world stands when the tick in hand is answered.
-enum class Pause { none, asked, standing };
+/// Whether the world is paused; once it is asked for, the world is halted when the current tick is answered.
+enum class Pause { none, requested, halted };
 
 class Server {
  public:
@@ -65,7 +65,8 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /// Where it listens, wildcards resolved: the private one first, then as in the config.
+  /// Addresses that it listens at, wildcards resolved: the private one first, then as in the
+  /// config.
   const std::vector<std::string>& endpoints() const;
 
   /// Answers clients while the world is being loaded.
@@ -112,10 +113,10 @@ class Server {
   /// sessions that begin although the tick was complete.
   Outcome linger(world::Commands& commands, const Wait& wait);
 
-  /// Robots have come: those of the layout that the server does not know yet. The tick in hand does
+  /// Robots have come: those of the layout that the server does not know yet. The current tick does
   /// not wait for them, the next one does.
   /// @param scripts  of them, as Run::scripts
-  /// @param observations, tag_payloads  of the tick in hand, theirs included
+  /// @param observations, tag_payloads  of the current tick, theirs included
   void add_robots(std::span<const std::string> scripts, const world::Observations& observations,
                   const std::vector<std::string>& tag_payloads);
 
@@ -126,7 +127,7 @@ class Server {
   void remove_robots(std::span<const std::size_t> robots, const std::string& why = {});
 
   /// While that holds no tick is complete: collect() must still be called. Once the tick is
-  /// answered, the world stands, and sessions are told.
+  /// answered, the world is halted, and sessions are told.
   void set_paused(bool is_paused);
   Pause pause() const;
 
@@ -155,7 +156,7 @@ class Server {
   Report take_report();
 
  private:
-  friend class DirectorsDesk;
+  friend class ServerDirectors;
   friend void keep_alive(Server& server);
   friend Need need_of(const Server& server, const std::vector<std::string>& ids);
   struct State;
@@ -166,19 +167,19 @@ class Server {
 /// no message.
 void keep_alive(Server& server);
 
-/// What the world needs most of the sessions that have these robots or directors.
+/// Greatest need of the sessions that have these robots or directors.
 Need need_of(const Server& server, const std::vector<std::string>& ids);
 
 /// The directors of a server.
-class DirectorsDesk {
+class ServerDirectors {
  public:
   /// @param server  must outlive this
-  explicit DirectorsDesk(Server& server) : state_(*server.state_) {}
+  explicit ServerDirectors(Server& server) : state_(*server.state_) {}
 
   /// Told of each Direction that arrives, before it is taken: what is wrong with it in the present world.
   void check_by(std::function<std::optional<wire::Fault>(const wire::Direction&)> check);
-  /// What directors want done between the published tick, which is complete, and the next: in the order of
-  /// their ids. Valid until the server waits again.
+  /// Directions to apply between the published tick, which is complete, and the next. They are in
+  /// the order of their directors' ids, and valid until the server waits again.
   const std::vector<Directed>& directions() const;
   bool wants_contacts() const;             ///< a director subscribed to them
   bool has(const std::string& id) const;  ///< a director of that id is there, or was

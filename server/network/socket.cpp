@@ -23,7 +23,7 @@ constexpr milliseconds tending{500};
 constexpr int looks_at_once = 64;     // at what may be no message, until the caller looks at the time
 constexpr int members_at_once = 64;   // until others have a look, if these never end
 
-/// How many descriptors connections may have: an eighth is for files and processes.
+/// Number of descriptors for connections: an eighth of all stays for files and processes.
 std::size_t descriptors_for_peers() {
   constexpr std::size_t most = 65'536, least_reserved = 48;
   rlimit limit{};
@@ -134,7 +134,7 @@ bool Socket::receive(Received& received) {
   return false;
 }
 
-/// Whose turn it is; null if there is nothing to do.
+/// Group to serve next; null if there is nothing to do.
 Socket::Group* Socket::next_group() {
   const bool has_members = members_.is_ready();
   if (has_members && ++members_in_a_row_ < members_at_once) return &members_;

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What /bin/sh runs itself.
+/// Commands that /bin/sh runs itself.
 constexpr std::array<std::string_view, 33> shell_words{
     "!",    ".",      ":",     "[",    "alias", "bg",    "break", "case",   "cd",
     "command", "echo", "eval",  "exec", "exit", "export", "false", "for",    "if",

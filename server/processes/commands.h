@@ -15,7 +15,7 @@ struct FoundCommand {
   std::string missing;  ///< a sentence on the file that is not there; empty if all are
 };
 
-/// What programs of a scene find in ZIGGURAT_SCENE_FOLDER.
+/// Value of ZIGGURAT_SCENE_FOLDER for programs of a scene.
 std::string scene_folder(const std::filesystem::path& scene_file);
 
 /// Finds the program that a command starts at last, if its name has a slash, and the script that is its first argument

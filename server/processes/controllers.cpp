@@ -75,7 +75,7 @@ std::vector<Launch> plan_lua(const std::vector<std::size_t>& robots,
   return launches;
 }
 
-/// What a command's program finds in its environment.
+/// Sets the environment of a command's program.
 /// @param name, id  of the variable that says what it is to drive
 void add_environment(const LaunchSettings& settings, const char* name, const std::string& id, Program& program) {
   program.environment = no_keys;
@@ -102,7 +102,7 @@ Launch plan_director(const scene::Director& director, const LaunchSettings& sett
   return launch;
 }
 
-/// Where a program of ours was looked for that is not there, and what to do.
+/// Sentence on a program of ours that is missing: the places that were searched, and the remedy.
 std::string missing(const std::string& program) {
   std::error_code error;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);

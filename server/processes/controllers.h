@@ -46,10 +46,10 @@ struct BusyScript {
   std::string place;  ///< `FILE`, and `:LINE` once that takes long, unless it sleeps
 };
 
-/// What it runs now, or ran when it ended; nothing if it ran none.
+/// Script that it runs now, or ran when it ended; nothing if it ran none.
 std::optional<BusyScript> busy_script(const ControllerProcess& process);
 
-/// How the controllers of a run are started.
+/// Settings that controllers of a run are started with.
 struct LaunchSettings {
   std::string endpoint;                    ///< where they connect
   std::string folder;                      ///< for files with the ids of robots

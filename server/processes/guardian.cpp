@@ -26,7 +26,7 @@
 namespace ziggurat::processes {
 namespace {
 
-// What is put into a folder while it is removed is removed, too, for so long.
+// Time for which files are still removed that appear in a folder during its removal.
 constexpr std::chrono::milliseconds longest_removal{2000};
 
 enum class Kind : std::int32_t {
@@ -75,7 +75,7 @@ void sleep_ms(int ms) noexcept {
 // --- the guardian's process
 // -----------------------------------------------------------------------
 
-/// What is left behind if the watched process ends now.
+/// Processes and folders that remain if the watched process ends now.
 struct Left {
   std::vector<pid_t> groups;
   std::vector<Order> sockets;

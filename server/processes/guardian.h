@@ -21,8 +21,8 @@ class Guardian {
   Guardian(const Guardian&) = delete;
   Guardian& operator=(const Guardian&) = delete;
 
-  // What it does when this process has ended. None of these waits or fails: without a guardian, if
-  // it was killed, nothing is registered.
+  // Duties when this process has ended. None of these waits or fails: without a guardian, if it was
+  // killed, nothing is registered.
 
   /// Kills this process group, unless it was forgotten. Async-signal-safe: the new process itself
   /// calls it between fork() and exec(), so that no moment is left in which nothing knows it.

@@ -1,5 +1,5 @@
 #pragma once
-// Where the files are that a scene names: scripts, and the programs of commands.
+// Paths of the files that a scene names: scripts, and the programs of commands.
 
 #include <filesystem>
 #include <optional>

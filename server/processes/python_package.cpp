@@ -16,7 +16,8 @@ bool has_client(const fs::path& package) {
   return fs::is_regular_file(package / "protocol_pb2.py", error) && fs::is_regular_file(package / "__init__.py", error);
 }
 
-/// Of a build, build/release/python; of an installation, lib/python3.N/dist-packages or site-packages.
+/// Folder of a build, build/release/python, or of an installation, lib/python3.N/dist-packages or
+/// site-packages.
 std::vector<fs::path> places_below(const fs::path& prefix) {
   std::vector<fs::path> places{prefix / "python/ziggurat"};
   std::error_code error;

@@ -21,7 +21,7 @@ constexpr std::size_t most_files = 1000;
 constexpr std::size_t largest_file = std::size_t{4} << 20;  // [bytes]
 constexpr std::size_t most_listed = std::size_t{16} << 20;  // of all listed folders together [bytes]
 
-/// What a script loads.
+/// Modules that a script loads.
 struct Loaded {
   std::vector<std::string> names;
   std::vector<std::string> folders;  ///< whose files have names that it computes; empty: its own folder
@@ -172,7 +172,7 @@ void add_all(Search& search, const fs::path& folder) {
   }
 }
 
-/// What a script in the folder `own` loads.
+/// Files that a script in the folder `own` loads.
 void follow(Search& search, const fs::path& own, const Loaded& loaded) {
   Paths places = search.folders;
   places.push_back(own);

@@ -46,7 +46,7 @@ void Disk::write(std::string_view bytes) {
       taken_ += static_cast<std::uint64_t>(count);
     } else if (is_abandoned_ || errno != EINTR) {
       const int error = is_abandoned_ ? ECANCELED : errno;
-      // Of a pipe nothing can be taken back; its reader sees the end of the file.
+      // A pipe cannot be cut; its reader sees the end of the file.
       [[maybe_unused]] const int ignored = ::ftruncate(descriptor_, static_cast<off_t>(size_));
       fail(error);
     }

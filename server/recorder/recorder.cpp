@@ -16,7 +16,7 @@
 namespace ziggurat::recorder {
 namespace {
 
-// What may wait for the disk: more than that, and the run waits.
+// Limits of the tasks that wait for the disk: beyond them the run waits.
 constexpr std::size_t most_waiting = std::size_t{64} << 20;  // [bytes]
 constexpr std::size_t most_tasks = 1024;
 
@@ -34,7 +34,7 @@ constexpr int parts_of_patience = 100;
 
 }  // namespace
 
-/// What the run's thread and the recorder's share.
+/// State that the run's thread and the recorder's share.
 struct Recorder::Shared {
   explicit Shared(const Settings& settings) : patience(settings.patience), disk(settings.path) {}
 
@@ -66,7 +66,7 @@ struct Recorder::Shared {
   std::size_t waiting = 0;                 // of all tasks that are not done [bytes]
   std::size_t unfinished = 0;              // their number
   std::uint64_t finished = 0;              // the number of those that are done
-  // What a killed run would lose: the chunk under way, and tasks that are not done.
+  // Data that a killed run would lose: the chunk being filled, and tasks that are not done.
   std::size_t chunks = 0, chunk_size = 0, chunk_ticks = 0;  // its number, bytes, and ticks so far
   std::size_t tick_size = 0;                    // in a chunk, as those before [bytes]
   std::size_t waiting_ticks = 0, other_size = 0;  // of tasks: their number, and bytes of all others
@@ -137,7 +137,7 @@ bool Recorder::Shared::has_room_for(const Task& task) const {
   return chunk_ticks + waiting_ticks < few_ticks || unwritten() + tick_size <= most_unwritten;
 }
 
-/// What is in no file yet, about [bytes].
+/// Size of the data that is in no file yet, about [bytes].
 std::size_t Recorder::Shared::unwritten() const {
   return chunk_size + waiting_ticks * tick_size + other_size;
 }

@@ -25,7 +25,7 @@ namespace ziggurat::recorder {
 inline constexpr std::size_t most_unwritten = std::size_t{1} << 20;
 inline constexpr std::chrono::milliseconds longest_unwritten{1000};
 
-/// What of a run is kept. `/run` and `/inputs` always are.
+/// Topics of a run that are kept. `/run` and `/inputs` always are.
 struct Contents {
   std::function<bool(std::string_view topic)> wants;  ///< of the other topics; empty: all
   std::uint64_t picture_interval = 1;                 ///< pictures of each Nth tick
@@ -51,7 +51,7 @@ class Recording {
   void add(v1::Act act);
   void log(channels::Severity severity, const std::string& name, const std::string& text);
   void attach(const EmbeddedFile& file);
-  /// What controllers have measured, between the last tick and the next.
+  /// Adds metrics that controllers have set between the last tick and the next.
   void measured(const std::vector<world::Metric>& metrics);
   /// The world is stepped with these commands.
   void step(const world::Commands& commands);

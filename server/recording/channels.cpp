@@ -95,7 +95,7 @@ void write(Message& message, std::string_view name, const std::string* id, const
         value);
 }
 
-/// Of a device; none for values that are recorded by position.
+/// Id of a device; none for values that are recorded by position.
 std::optional<std::string> id_in(const world::DeviceLists& lists, world::IdOf id, std::size_t device) {
   if (!id) return std::nullopt;
   return id(lists, device);

@@ -31,7 +31,7 @@ using Arguments = std::vector<std::string>;
 constexpr int film_of_child = 3;  // its descriptor
 constexpr const char* even_sides = "pad=ceil(iw/2)*2:ceil(ih/2)*2";
 
-/// How ffmpeg makes the format of an ending; empty: it is none of ours.
+/// Arguments with which ffmpeg makes the format of an ending; empty: it is not supported.
 Arguments encoder_of(const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();
   if (ending == ".mp4") {

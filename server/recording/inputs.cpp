@@ -133,7 +133,7 @@ bool read(const std::string& from, std::vector<std::uint8_t>& to) {
   return true;
 }
 
-/// What is wrong with a message's values of a channel.
+/// Reads a message's values of a channel. @return  their fault, if they have one
 template <std::size_t i>
 std::optional<std::string> read_channel(const Commands& from, world::Commands& to) {
   constexpr auto& row = std::get<i>(packed);

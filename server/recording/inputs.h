@@ -1,6 +1,6 @@
 #pragma once
-// What a step reads and what it makes of the world, exactly: the messages `Commands` and
-// `ExactState` of run.proto. Writers and readers of recordings share it.
+// Exact inputs and result of a step: the messages `Commands` and `ExactState` of run.proto. Writers
+// and readers of recordings share it.
 
 #include <cstdint>
 #include <optional>

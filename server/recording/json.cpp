@@ -28,8 +28,8 @@ constexpr std::size_t longest_buffer = std::size_t{16} << 20;  // [bytes]
 /// Such as times.
 bool is_protobufs_own(const google::protobuf::Descriptor& type) { return type.file()->package() == "google.protobuf"; }
 
-// protobuf's MessageToJsonString makes a tree of the message and its defaults that takes a thousand bytes for each field,
-// and walks maps in an order that differs from run to run.
+// Writer in place of protobuf's MessageToJsonString. That function takes a thousand bytes for each
+// field, defaults included. It walks maps in an order that differs from run to run.
 class Writer {
  public:
   explicit Writer(OutputFile& to) : file_(to), to_(to.buffer()) {}

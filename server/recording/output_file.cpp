@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "posix/descriptor.h"
-#include "recording/place.h"
+#include "recording/output_path.h"
 
 namespace ziggurat::recording {
 namespace {
@@ -22,11 +22,11 @@ constexpr std::size_t full_buffer = std::size_t{256} << 10;  // [bytes]
 }
 
 /// @throws WriteError
-Place place_to_write(const std::string& path) {
-  Place place(path);
-  if (place.planted()) throw WriteError(fmt::format("{}: cannot be written: it is {}", path, *place.planted()));
-  if (place.error() != 0) fail(path, place.error());
-  return place;
+OutputPath path_to_write(const std::string& path) {
+  OutputPath output(path);
+  if (output.planted()) throw WriteError(fmt::format("{}: cannot be written: it is {}", path, *output.planted()));
+  if (output.error() != 0) fail(path, output.error());
+  return output;
 }
 
 /// Whether another program has the lock of those that write to a file. Who may only read it could have one that keeps others from
@@ -42,12 +42,12 @@ bool is_taken_by_a_writer(int file) {
 
 }  // namespace
 
-std::optional<std::string> planted_at(const std::string& path) { return Place(path).planted(); }
+std::optional<std::string> planted_at(const std::string& path) { return OutputPath(path).planted(); }
 
 int open_alone(const std::string& path, int flags) {
   flags |= O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC;
-  int file = place_to_write(path).open(flags | O_EXCL);
-  if (file < 0 && errno == EEXIST) file = place_to_write(path).open(flags);
+  int file = path_to_write(path).open(flags | O_EXCL);
+  if (file < 0 && errno == EEXIST) file = path_to_write(path).open(flags);
   if (file < 0) fail(path, errno);
   struct stat status {};
   if (::fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) return file;
@@ -60,12 +60,12 @@ int open_alone(const std::string& path, int flags) {
 }
 
 void check_can_be_written(const std::string& path) {
-  const Place place = place_to_write(path);
+  const OutputPath output = path_to_write(path);
   constexpr int flags = O_WRONLY | O_CREAT | O_CLOEXEC;
-  const posix::Descriptor made(place.open(flags | O_EXCL));
+  const posix::Descriptor made(output.open(flags | O_EXCL));
   if (made.is_open()) {
-    place.remove();
-  } else if (errno != EEXIST || !posix::Descriptor(place.open(flags)).is_open()) {
+    output.remove();
+  } else if (errno != EEXIST || !posix::Descriptor(output.open(flags)).is_open()) {
     fail(path, errno);
   }
 }

@@ -72,7 +72,7 @@ std::string head_of(const fs::path& path) {
   return head;
 }
 
-/// What follows the mark of UTF-8, the declaration and the comments of XML.
+/// Text behind the mark of UTF-8, the declaration and the comments of XML.
 std::string_view without_prologue(std::string_view text) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   for (;;) {

@@ -1,5 +1,5 @@
 #pragma once
-// What robots sensed and what they answered: `--readings`.
+// Readings of robots and the commands that answered them: `--readings`.
 
 #include <string>
 #include <vector>
@@ -20,7 +20,8 @@ class Readings {
   /// Keeps a reference to `layout`. @throws WriteError
   Readings(std::string path, const world::Layout& layout);
 
-  /// What was true and observed at a tick, and the commands that answered it. @throws WriteError
+  /// Writes true state, readings, and the commands that answered them, of one tick.
+  /// @throws WriteError
   /// @param metrics  that were set then
   void write(const world::State& state, const world::Observations& observations,
              const world::Commands& commands, const std::vector<world::Metric>& metrics = {});

@@ -10,7 +10,7 @@
 
 namespace ziggurat::recording {
 
-/// Of those that are new; of all when a world begins or goes back.
+/// Names the rows of new entities and links, or of all when a world begins or goes back.
 void Trace::name_rows(const world::State& state) {
   if (state.tick == 0 || state.tick < last_tick_) name_anew();
   last_tick_ = state.tick;

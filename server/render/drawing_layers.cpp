@@ -1,4 +1,4 @@
-// What is drawn over the world if a view asks for it: rays, frusta, names.
+// Layers over the world if a view asks for them: rays, frusta, names.
 #include <algorithm>
 
 #include "camera/projection.h"

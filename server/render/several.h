@@ -15,7 +15,7 @@
 
 namespace ziggurat::render {
 
-/// The pictures are those of a Renderer, bit by bit, and are given away in the order in which they
+/// Pictures are those of a Renderer, bit by bit. They are given away in the order in which they
 /// were asked for, whatever the number of threads.
 class Several {
  public:

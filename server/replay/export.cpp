@@ -97,7 +97,8 @@ struct Topic {
   const google::protobuf::Descriptor* type = nullptr;  ///< null: this version does not know it
 };
 
-/// Of those that runs record. protobuf knows types of its own, for which there are no bounds.
+/// Whether a type is one that runs record. protobuf knows types of its own, for which there are no
+/// bounds.
 bool is_recorded(const google::protobuf::Descriptor& type) {
   const std::string& package = type.file()->package();
   return package == "ziggurat.v1" || package == "foxglove";

@@ -11,7 +11,7 @@ namespace ziggurat::replay {
 
 namespace {
 
-/// Of the entity that a link names.
+/// Id of the entity that a link names.
 const std::string& entity_of(const v1::World& world, const v1::World::Link& link) {
   static const std::string unknown = "?";
   const bool is_known = link.entity() < static_cast<std::uint32_t>(world.entities_size());

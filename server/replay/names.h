@@ -22,7 +22,7 @@ std::vector<std::string> link_names(const RecordingFile& file);
 /// links [bytes].
 inline constexpr std::size_t most_name_bytes = std::size_t{128} << 20;
 
-/// What is wrong if they have more.
+/// Fault of a world with more of them.
 std::optional<std::string> fault_of_names(const v1::World& world);
 
 /// The name of a link, also if it is not known.

@@ -30,7 +30,7 @@ class RecordingFile {
   std::optional<std::string> snapshot(const std::string& name) const;
   /// A sentence on what is missing or damaged at the end; empty: it was closed in good order.
   std::string shortcoming() const;
-  /// How many states were recorded.
+  /// Number of recorded states.
   std::uint64_t states() const;
 
   /// The messages of these topics, in the order of the file; topics that it lacks are skipped.

@@ -66,7 +66,7 @@ class Replay {
   /// @throws RecordingError
   void act();
 
-  /// Where the snapshots are that the recording has embedded: by the name of their file.
+  /// Source of embedded snapshots: by the name of their file.
   using OpenSnapshot = std::function<simulation::Snapshot(const std::string& file)>;
   void open_snapshots_by(OpenSnapshot open) { open_snapshot_ = std::move(open); }
 
@@ -81,14 +81,14 @@ class Replay {
   /// Told of each act, after it was done.
   void tell(std::function<void(const v1::Act&)> told) { told_ = std::move(told); }
 
-  /// Of the present state.
+  /// Inputs of the current state.
   const v1::Inputs& inputs() const { return *inputs_; }
   /// As computed, behind act() with what it has changed; if it is shown, as recorded.
   std::uint64_t hash() const { return hash_; }
   bool is_same() const;                         ///< the recorded hash is the same
-  /// How many resets and restores, moves, spawns and removals there were.
+  /// Number of resets and restores, moves, spawns and removals.
   std::uint64_t changes() const { return changes_; }
-  /// How many of the first robots were still the same ones after the last restore.
+  /// Number of first robots that were still the same ones after the last restore.
   std::size_t common_robots() const { return common_robots_; }
 
  private:

@@ -21,7 +21,7 @@ namespace ziggurat::replay {
 scene::OpenScene read_scene(const v1::RunStart& run, const EmbeddedFiles& files,
                             const scene::Variation& more = {});
 
-/// Of the embedded files and what is set in them: 16 hexadecimal digits.
+/// Hash of the embedded files and their settings: 16 hexadecimal digits.
 std::string scene_hash(const scene::Scene& scene, const EmbeddedFiles& files);
 
 /// Reads a snapshot that the recording has; its state is compared with its hash when it is restored.

@@ -12,7 +12,7 @@
 
 namespace ziggurat::reports {
 
-/// How the program ends.
+/// Ending of the program.
 namespace exit_code {
 constexpr int finished = 0;
 constexpr int fault = 1;  ///< of scene, arguments or environment
@@ -68,7 +68,7 @@ struct Summary {
   };
   std::vector<Departure> departures;  ///< robots whose controller left before the end; in order of time
   std::string shutdown_reason;       ///< shut_down: why
-  /// How a director has ended the run.
+  /// Result with which a director has ended the run.
   struct Result {
     std::string director;  ///< id
     std::string text;

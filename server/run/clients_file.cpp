@@ -33,7 +33,7 @@ void check_folders(const fs::path& file) {
   }
 }
 
-/// Those of the patterns that mean none of the names.
+/// Patterns that match none of the names.
 std::vector<std::string> without_effect(const std::vector<std::string>& patterns, const std::vector<std::string>& names) {
   std::vector<std::string> found;
   for (const std::string& pattern : patterns) {

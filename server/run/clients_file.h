@@ -1,5 +1,6 @@
 #pragma once
-// The file of --curve-clients: who can change it decides who may connect; whether it fits the scene.
+// Checks of the file of --curve-clients: its permissions decide who may connect, and its ids must
+// fit the scene.
 
 #include <sys/types.h>
 
@@ -12,10 +13,10 @@
 
 namespace ziggurat::run {
 
-/// That no other user than the one who starts the program, and root, can change the file or put another one in its place. A file
-/// that can't be read is no fault here.
+/// Checks that only root and the user who starts the program can change or replace the file. A file
+/// that can't be read passes.
 /// @param path  may be empty
-/// @param user  who starts the program
+/// @param user  user who starts the program
 /// @throws text::UsageError
 void check_clients(const std::string& path, uid_t user);
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "run/by_controller.h"
+#include "run/controller_option.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {

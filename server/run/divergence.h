@@ -1,5 +1,5 @@
 #pragma once
-// How two recordings differ: where first, and how far their poses are apart over time.
+// Comparison of two recordings: their first difference, and the distance of their poses over time.
 
 #include <cstdint>
 #include <optional>
@@ -32,7 +32,7 @@ struct Divergence {
 /// @throws replay::RecordingError
 Divergence compare(const replay::RecordingFile& a, const replay::RecordingFile& b);
 
-/// What differs first, then a table of about 20 rows.
+/// First difference, then a table of about 20 rows.
 std::string to_text(const Divergence& divergence);
 /// One object.
 std::string to_json(const Divergence& divergence);

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where an embedded file is written: `..` and roots are names like any other.
+/// Path that an embedded file is written to: `..` and roots are names like any other.
 fs::path place(const std::string& folder, const std::string& name) {
   fs::path path = folder;
   for (const fs::path& part : fs::path(name).lexically_normal()) {
@@ -58,7 +58,7 @@ std::optional<std::string> only_file_of(const fs::path& script, const replay::Em
   return found;
 }
 
-/// Where it is written. @throws replay::RecordingError if it is not embedded
+/// Path of the written script. @throws replay::RecordingError if it is not embedded
 std::string embedded_script(const std::string& folder, const replay::EmbeddedFiles& files,
                             const scene::Scene& scene, const std::string& scene_path, const Named& script) {
   std::vector<fs::path> folders;  // where a run looks for scripts, too

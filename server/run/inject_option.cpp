@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "run/by_controller.h"
+#include "run/controller_option.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {

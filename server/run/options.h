@@ -1,5 +1,5 @@
 #pragma once
-// What a run is asked for, as plain data.
+// Options of a run, as plain data.
 
 #include <cstddef>
 #include <cstdint>
@@ -52,7 +52,7 @@ struct Options {
   std::string curve_secret, curve_clients;  ///< paths; both or none
   bool fail_fast = false;    ///< the run ends when a controller fails or a robot is dropped
   bool allow_drops = false;  ///< robots that a deadline dropped are no failure
-  bool paused = false;       ///< the world stands at tick 0 until a supervisor resumes it
+  bool paused = false;       ///< the world is halted at tick 0 until a supervisor resumes it
   bool ends_with_input = false;  ///< the end of standard input is an interruption
   bool hil = false;          ///< hardware in the loop: paced, never waits
   std::vector<reports::Condition> gate;  ///< conditions that every controller must meet

@@ -1,5 +1,5 @@
 #pragma once
-// Prints what the server reports of controllers and other peers.
+// Printer of the server's reports about controllers and other peers.
 
 #include <chrono>
 #include <cstdint>
@@ -26,7 +26,7 @@ using TellLine =
 
 class PeerReports {
  public:
-  /// Of each kind, over resets.
+  /// Most reports that are kept of each kind, over resets.
   static constexpr std::size_t most_kept = 10'000;
 
   /// All must outlive this. @param tell  viewers and recordings
@@ -51,10 +51,11 @@ class PeerReports {
   /// @param robots  into the present layout
   bool has_failure(std::span<const std::size_t> robots) const;
 
-  /// Of all robots whose controller left before the end: sorted by tick, then by scene order.
+  /// Departures of robots whose controller left before the end: sorted by tick, then by scene
+  /// order.
   const std::vector<reports::Summary::Departure>& departures() const { return departures_; }
 
-  /// Of all robots whose controller failed: sorted by tick, then by scene order.
+  /// Failures of all controllers: sorted by tick, then by scene order of the robots.
   std::vector<reports::Summary::Failure> failures() const;
 
  private:

@@ -170,7 +170,7 @@ void Pictures::draw(const simulation::Simulation& simulation, const render::View
   several_->draw(simulation.state(), simulation.rays(), view, std::move(take));
 }
 
-/// That of the first picture, moved with the entity that it follows.
+/// View of the first picture, moved with the entity that it follows.
 render::View Pictures::view(const world::State& state) {
   const auto place = [&] { return state.origins[*followed_].position; };
   if (!view_) {

@@ -34,7 +34,8 @@ struct PictureOptions {
 /// The tick of the last picture. @throws text::UsageError if the film has no end
 std::uint64_t last_tick(const PictureOptions& options, const scene::Experiment& experiment);
 
-/// That a path has one place at most for the number of a picture, and nothing else that printf() would replace.
+/// Checks that a path has at most one number of a picture, and nothing else that printf() would
+/// replace.
 /// @throws text::UsageError
 void check_picture_path(const std::string& out);
 

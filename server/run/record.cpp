@@ -94,7 +94,7 @@ std::function<bool(std::string_view)> wish_of(const std::vector<std::string>& pa
   };
 }
 
-/// Those that a recording of the world as it is can have.
+/// Topics that a recording of this world can have.
 std::vector<std::string> topics_of(const supervision::World& world) {
   std::vector<std::string> topics{"/run", "/inputs", "/state"};
   channels::Channels channels;
@@ -139,7 +139,7 @@ void check_names(const recorder::Start& start) {
 
 recorder::Start start_of(const Options& options, const supervision::World& world,
                          const ReadFiles& files, std::uint64_t last_tick,
-                         const std::vector<std::size_t>& idle, const Past* past,
+                         const std::vector<std::size_t>& idle, const Fork* fork,
                          reports::Console& console) {
   recorder::Start start;
   start.scene = world.path;
@@ -159,7 +159,7 @@ recorder::Start start_of(const Options& options, const supervision::World& world
   start.build = this_build();
   start.arguments = options.arguments;
   start.files = files.all();
-  past ? past->describe(world, start) : add_scripts(world, start, console);
+  fork ? fork->describe(world, start) : add_scripts(world, start, console);
   check_names(start);
   return start;
 }
@@ -186,7 +186,7 @@ std::vector<std::string> ReadFiles::names() const {
 
 RecordedRun::RecordedRun(const Options& options, supervision::World& world, const ReadFiles& files,
                          std::uint64_t last_tick, const std::vector<std::size_t>& idle,
-                         const Past* past, reports::Console& console)
+                         const Fork* fork, reports::Console& console)
     : world_(world),
       console_(console),
       last_tick_(last_tick),
@@ -194,7 +194,7 @@ RecordedRun::RecordedRun(const Options& options, supervision::World& world, cons
       recorder_({options.record,
                  options.record_compression,
                  {wish_of(options.record_topics), options.record_every}},
-                begin(start_of(options, world, files, last_tick, idle, past, console))) {}
+                begin(start_of(options, world, files, last_tick, idle, fork, console))) {}
 
 recorder::Start RecordedRun::begin(recorder::Start start) {
   note(start.files);
@@ -229,8 +229,9 @@ void RecordedRun::report_failure(const std::string& missing, const char* otherwi
   console_.fault(failure_ + otherwise);
 }
 
-/// That of a spawned robot, and what it loads; not those that the recording has, which may have been
-/// edited since: the robots that run them began with the first.
+/// Embeds the script of a spawned robot, and the scripts that it loads. Scripts that the recording
+/// has already are left out: they may have been edited since, but their robots began with the first
+/// version.
 void RecordedRun::add_script(const std::string& script, std::vector<recorder::EmbeddedFile>& files) {
   if (script.empty() || !scripts_.insert(script).second) return;
   std::vector<fs::path> scripts{script};
@@ -241,33 +242,33 @@ void RecordedRun::add_script(const std::string& script, std::vector<recorder::Em
   }
 }
 
-void RecordedRun::act(const supervision::Act& done) {
+void RecordedRun::record(const supervision::WorldChange& change) {
   recorder::Recorder& to = recorder_;
   std::visit(
-      [&](const auto& act) {
-        using Type = std::decay_t<decltype(act)>;
+      [&](const auto& made) {
+        using Type = std::decay_t<decltype(made)>;
         if constexpr (std::is_same_v<Type, supervision::Moved>) {
-          to.moved(act.entity, act.pose);
+          to.moved(made.entity, made.pose);
         } else if constexpr (std::is_same_v<Type, supervision::JointSet>) {
-          to.joint_set(act.entity, act.joint, act.position, act.velocity);
+          to.joint_set(made.entity, made.joint, made.position, made.velocity);
         } else if constexpr (std::is_same_v<Type, supervision::Spawned>) {
           std::vector<recorder::EmbeddedFile> files;
-          for (const auto& [name, text] : act.files) files.push_back({name, text});
-          add_script(act.script, files);
+          for (const auto& [name, text] : made.files) files.push_back({name, text});
+          add_script(made.script, files);
           note(files);
-          to.spawned(act.xml, std::move(files));
+          to.spawned(made.xml, std::move(files));
           is_population_new_ = true;
         } else if constexpr (std::is_same_v<Type, supervision::Removed>) {
-          to.removed(act.entity);
+          to.removed(made.entity);
           is_population_new_ = true;
         } else if constexpr (std::is_same_v<Type, supervision::WasReset>) {
-          to.reset(act.seed);
+          to.reset(made.seed);
           is_population_new_ = true;
         } else if constexpr (std::is_same_v<Type, supervision::Restored>) {
-          to.restored(act.snapshot, act.bytes);
+          to.restored(made.snapshot, made.bytes);
           is_population_new_ = true;
-        } else if constexpr (std::is_same_v<Type, supervision::Kept>) {
-          to.kept(act.snapshot);
+        } else if constexpr (std::is_same_v<Type, supervision::SnapshotTaken>) {
+          to.kept(made.snapshot);
         } else if constexpr (std::is_same_v<Type, supervision::Paused>) {
           to.set_paused(true);
         } else {
@@ -275,16 +276,16 @@ void RecordedRun::act(const supervision::Act& done) {
           to.set_paused(false);
         }
       },
-      done);
+      change);
 }
 
 std::unique_ptr<RecordedRun> start_recording(const Options& options, supervision::World& world,
                                              const ReadFiles& files, std::uint64_t last_tick,
-                                             const std::vector<std::size_t>& idle, const Past* past,
+                                             const std::vector<std::size_t>& idle, const Fork* fork,
                                              reports::Console& console) {
   if (options.record.empty()) return nullptr;
   check_topics(options.record_topics, world, console);
-  return std::make_unique<RecordedRun>(options, world, files, last_tick, idle, past, console);
+  return std::make_unique<RecordedRun>(options, world, files, last_tick, idle, fork, console);
 }
 
 }  // namespace ziggurat::run

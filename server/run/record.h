@@ -1,5 +1,5 @@
 #pragma once
-// --record: what a recording is told of its run.
+// Recording of a run: --record.
 
 #include <cstdint>
 #include <filesystem>
@@ -11,11 +11,11 @@
 
 #include "recorder/recorder.h"
 #include "reports/console.h"
+#include "run/fork.h"
 #include "run/options.h"
-#include "run/past.h"
 #include "scene/files.h"
-#include "supervision/act.h"
 #include "supervision/world.h"
+#include "supervision/world_change.h"
 
 namespace ziggurat::run {
 
@@ -39,16 +39,16 @@ class RecordedRun {
   /// @param last_tick  0: until stopped
   /// @param idle       robots without controller: into Layout::robots
   /// @throws recording::WriteError
-  /// @param past       of a fork, whose world is where it begins; null: the run begins at tick 0
+  /// @param fork       its world is where the run begins; null: the run begins at tick 0
   RecordedRun(const Options& options, supervision::World& world, const ReadFiles& files,
-              std::uint64_t last_tick, const std::vector<std::size_t>& idle, const Past* past,
+              std::uint64_t last_tick, const std::vector<std::size_t>& idle, const Fork* fork,
               reports::Console& console);
 
   bool wants_contacts() const { return recorder_.wants("/contacts"); }
   /// A tick was published. If the recording can't be written any more, a message is printed, once.
   /// @throws recording::WriteError instead, if the run is to end then
   void tick();
-  void act(const supervision::Act& act);
+  void record(const supervision::WorldChange& change);
   void log(channels::Severity severity, std::string_view name, std::string_view text) {
     recorder_.log(severity, name, text);
   }
@@ -82,7 +82,7 @@ class RecordedRun {
 /// Null if the options ask for no recording.
 std::unique_ptr<RecordedRun> start_recording(const Options& options, supervision::World& world,
                                              const ReadFiles& files, std::uint64_t last_tick,
-                                             const std::vector<std::size_t>& idle, const Past* past,
+                                             const std::vector<std::size_t>& idle, const Fork* fork,
                                              reports::Console& console);
 
 }  // namespace ziggurat::run

@@ -17,7 +17,7 @@
 namespace ziggurat::run {
 namespace {
 
-/// What links look like says nothing of what robots sense and show: these topics do.
+/// Compares the topics that show readings and device states of robots; poses of links do not.
 bool is_compared(channels::Kind kind) {
   return kind == channels::Kind::observation || kind == channels::Kind::poses ||
          kind == channels::Kind::detections || kind == channels::Kind::radio;

@@ -13,8 +13,8 @@
 #include "processes/python_package.h"
 #include "processes/scripts.h"
 #include "processes/spawned_scripts.h"
-#include "run/askers.h"
 #include "run/background.h"
+#include "run/client_options.h"
 #include "run/clients_file.h"
 #include "run/files.h"
 #include "run/gate_option.h"
@@ -39,7 +39,7 @@ void keep(const std::vector<world::Metric>& metrics, reports::Summary& summary) 
   }
 }
 
-/// Those of the last tick, and what controllers have set when they were told the end.
+/// Metrics of the last tick, and metrics that controllers set after the end of the run.
 std::vector<world::Metric> last_metrics(const network::Server& server, const Watch& watch,
                                         reports::Summary& summary) {
   std::vector<world::Metric> metrics = watch.measured();
@@ -62,8 +62,8 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       service_(service),
       signals_(signals),
       console_({options.quiet, options.json}),
-      past_(options.fork ? std::make_unique<Past>(options) : nullptr),
-      path_(past_ ? past_->scene_path()
+      fork_(options.fork ? std::make_unique<Fork>(options) : nullptr),
+      path_(fork_ ? fork_->scene_path()
                   : existing_scene(options, console_)),
       local_(signals.guardian()),
       config_(network_config(options, service == Service::serve, local_)),
@@ -74,10 +74,10 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       plan_(make_plan()),
       with_controllers_(!options.without_controllers && !(options.pictures && plan_.ticks == 0)),
       folder_(signals.guardian()),
-      scripts_(past_ ? past_->write_scripts(world_, folder_.path() + "/files")
+      scripts_(fork_ ? fork_->write_scripts(world_, folder_.path() + "/files")
                      : script_paths(world_.scene, world_.simulation.layout(), path_)),
       recorders_(options, world_),
-      recorded_(past_ ? nullptr
+      recorded_(fork_ ? nullptr
                       : start_recording(options, world_, files_, plan_.ticks.value_or(0),
                                         robots_without_controller(), nullptr, console_)),
       controllers_(start_controllers()),
@@ -87,18 +87,18 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       supervision_(supervision_settings(), world_, server_, callers_, population_),
       directing_(world_, server_, callers_, population_, console_),
       schedule_(plan_.real_time, world_.simulation.tick_length()),
-      showing_(make_showing(options, shown(world_, server_, callers_, supervision_, schedule_,
+      live_view_(make_showing(options, shown(world_, server_, callers_, supervision_, schedule_,
                                            plan_.ticks.value_or(0)))),
       watch_({options.metrics, options.insecure, options.fail_fast, service == Service::serve,
               plan_.ticks, restarts_of(options.restarts, world_.scene)},
-             world_, server_, controllers_, supervision_, signals, console_, showing_.get(),
+             world_, server_, controllers_, supervision_, signals, console_, live_view_.get(),
              [this](auto severity, auto name, auto text) {
-               if (showing_) showing_->log(severity, name, text);
+               if (live_view_) live_view_->log(severity, name, text);
                if (recorded_) recorded_->log(severity, name, text);
              }),
-      waits_for_viewer_(showing_ && !options.paused) {
-  callers_.tell_acts([this](const supervision::Act& act) {
-    if (recorded_) recorded_->act(act);
+      waits_for_viewer_(live_view_ && !options.paused) {
+  callers_.on_world_change([this](const supervision::WorldChange& change) {
+    if (recorded_) recorded_->record(change);
   });
   print_notices();
   summary_.scene = path_;
@@ -119,7 +119,7 @@ supervision::World Run::read_world(const Tell& tell_clients) {
          fmt::format("{} of {} entities are {}.", done, all, is_placing ? "placed" : "built"));
   };
   tell(0, "The scene is being read.");
-  if (past_) return past_->build(tell_step);
+  if (fork_) return fork_->build(tell_step);
   Options options = options_;
   if (!options.record.empty()) options.scene_file.open = files_.keep(options.scene_file.open);
   scene::OpenScene opened = load_scene(path_, options, console_);
@@ -144,14 +144,14 @@ std::unique_ptr<supervision::World> Run::load_world() {
   Background<supervision::World> loading([this](const Tell& tell) { return read_world(tell); });
   const std::array descriptors{signals_.descriptor(), loading.descriptor()};
   for (;;) {
-    const auto news = loading.news();
-    if (news.is_done) {
+    const auto status = loading.status();
+    if (status.is_done) {
       auto world = loading.take();
-      past_ ? past_->prepare(*world) : check_outputs(options_, world->scene, files_.names());
+      fork_ ? fork_->prepare(*world) : check_outputs(options_, world->scene, files_.names());
       if (service_ == Service::serve) tell_how_to_connect(options_, server_.endpoints().front(), *world, console_);
       return world;
     }
-    server_.attend({news.progress, news.message}, {std::chrono::milliseconds{-1}, descriptors});
+    server_.attend({status.progress, status.message}, {std::chrono::milliseconds{-1}, descriptors});
     if (signals_.take().interruptions == 0) continue;
     listening_.reset();  // tells clients that wait
     local_.release();
@@ -164,10 +164,10 @@ Plan Run::make_plan() const {
   Plan plan;
   plan.ticks = options_.pictures ? last_tick(*options_.pictures, experiment)
                                  : tick_count(options_, world_.scene);
-  if (past_ && !options_.ticks && !options_.duration && past_->last_tick()) {
-    plan.ticks = past_->last_tick();
+  if (fork_ && !options_.ticks && !options_.duration && fork_->last_tick()) {
+    plan.ticks = fork_->last_tick();
   }
-  if (past_ && plan.ticks && *plan.ticks < options_.fork->at) {
+  if (fork_ && plan.ticks && *plan.ticks < options_.fork->at) {
     throw text::UsageError(fmt::format(
         "--at {} is after the end of the run at tick {}; write --ticks with a later end",
         options_.fork->at, *plan.ticks));
@@ -182,18 +182,18 @@ Plan Run::make_plan() const {
 network::Config Run::complete_config() {
   add_controllers(options_, world_.scene, config_);
   const auto& controllers = world_.scene.controllers;
-  const Askers askers = askers_of(options_, world_.scene, service_ == Service::serve, with_controllers_);
-  check_askers(options_, askers, config_);
-  check_gate(options_.gate, {std::span(config_.deadlines).first(controllers.size()), askers.clients,
+  const ExpectedClients clients = expected_clients(options_, world_.scene, service_ == Service::serve, with_controllers_);
+  check_client_options(options_, clients, config_);
+  check_gate(options_.gate, {std::span(config_.deadlines).first(controllers.size()), clients.can_connect,
                              plan_.real_time.has_value()});
   if (service_ == Service::run || options_.starts_directors) config_.private_endpoint = "ipc://" + folder_.path() + "/run";
   return config_;
 }
 
-/// Those whose Lua controller names no script, or all robots if controllers are not wanted. The
+/// Robots whose Lua controller names no script, or all robots if controllers are not wanted. The
 /// run does not wait for them.
 std::vector<std::size_t> Run::robots_without_controller() const {
-  if (past_) return past_->idle_robots(world_, scripts_);
+  if (fork_) return fork_->idle_robots(world_, scripts_);
   const auto& all = world_.simulation.layout().robots;
   std::vector<std::size_t> robots;
   for (std::size_t r = 0; r < all.size(); ++r) {
@@ -208,7 +208,7 @@ processes::Controllers Run::start_controllers() {
   run.is_hardware_in_the_loop = options_.hil;
   std::vector<scene::Director> directors;
   if (with_controllers_) {
-    directors = past_ ? past_->directors(world_, folder_.path() + "/files") : directors_of(world_);
+    directors = fork_ ? fork_->directors(world_, folder_.path() + "/files") : directors_of(world_);
   }
   run.directors = directors;
   server_.open(std::move(run), complete_config());
@@ -224,17 +224,17 @@ processes::LaunchSettings Run::launch_settings(std::vector<scene::Director> dire
                                      options_.lua_arguments,       signals_.guardian(),
                                      std::move(directors)};
   settings.only_directors = service_ == Service::serve;
-  settings.scene_folder = past_ ? folder_.path() + "/files" : processes::scene_folder(path_);
+  settings.scene_folder = fork_ ? folder_.path() + "/files" : processes::scene_folder(path_);
   settings.python_path = processes::python_path(folder_.path());
   const auto allow = [&](const std::string& folder) {
     settings.lua_arguments.insert(settings.lua_arguments.end(), {"--script-folder", folder});
   };
-  if (past_) allow(folder_.path() + "/files");
-  if (!past_) {
+  if (fork_) allow(folder_.path() + "/files");
+  if (!fork_) {
     for (const auto& folder : processes::folders_of(world_.scene, path_)) allow(folder.string());
   }
   for (const auto& folder : options_.spawned_script_folders) allow(folder);
-  const auto exceptions = exceptions_of(options_, past_ ? nullptr : &world_.scene, path_);
+  const auto exceptions = exceptions_of(options_, fork_ ? nullptr : &world_.scene, path_);
   settings.lua_arguments.insert(settings.lua_arguments.end(), exceptions.begin(), exceptions.end());
   return settings;
 }
@@ -250,12 +250,12 @@ void Run::print_notices() {
   if (config_.curve) {
     for (const auto& doubt : doubts_of(config_.curve->clients, world_.scene, world_.simulation.layout())) console_.notice(doubt);
   }
-  const std::uint64_t scene_seed = past_ ? world_.seed : world_.scene.experiment.random_seed;
+  const std::uint64_t scene_seed = fork_ ? world_.seed : world_.scene.experiment.random_seed;
   if (options_.seed.value_or(scene_seed) == 0) {
     console_.notice(fmt::format("seed {0} drawn; --seed {0} repeats this run", world_.seed));
   }
   if (options_.paused) {
-    server_.set_paused(!past_);  // a fork stands when it begins
+    server_.set_paused(!fork_);  // a fork is paused when it begins
     return console_.notice("paused, as --paused asks; 'ziggurat ctl URL resume' begins");
   }
   const bool has_controllers =
@@ -293,7 +293,7 @@ int Run::execute() {
   if (code == reports::exit_code::finished && !has_passed) code = reports::exit_code::gate_missed;
   const bool is_stopped =
       summary_.ending == Ending::interrupted || summary_.ending == Ending::forced;
-  if (showing_ && !is_stopped) {
+  if (live_view_ && !is_stopped) {
     console_.notice("the run is over; its last state is shown until Ctrl-C");
     console_.flush();
     watch_.show_end();
@@ -303,23 +303,23 @@ int Run::execute() {
 }
 
 /// A fork begins with the recorded run. Supervisors wait meanwhile.
-std::optional<Ending> Run::relive() {
+std::optional<Ending> Run::replay_to_begin() {
   callers_.hold(true);
-  const auto ending = past_->relive(world_, {server_, controllers_, watch_},
+  const auto ending = fork_->replay_to_begin(world_, {server_, controllers_, watch_},
                                     robots_without_controller(), folder_.path() + "/files",
                                     signals_, console_);
   callers_.hold(false);
   if (ending) return ending;
   recorded_ = start_recording(options_, world_, files_, plan_.ticks.value_or(0),
-                              robots_without_controller(), past_.get(), console_);
+                              robots_without_controller(), fork_.get(), console_);
   if (options_.paused) server_.set_paused(true);
   return std::nullopt;
 }
 
 /// From the start to the end, again after each reset.
 Ending Run::run_to_end() {
-  if (past_) {
-    if (const auto ending = relive()) return *ending;
+  if (fork_) {
+    if (const auto ending = replay_to_begin()) return *ending;
   }
   for (;;) {
     std::optional<Ending> ending = wait([&] { return watch_.gather(); });
@@ -346,7 +346,7 @@ Ending Run::run_world() {
     timer_.end_phase(Phase::exchange, summary_);
     recorders_.tick(simulation);
     if (recorded_) recorded_->tick();
-    if (showing_) showing_->tick(timer_.last_tick());
+    if (live_view_) live_view_->tick(timer_.last_tick());
     timer_.end_phase(Phase::recording, summary_);
 
     auto stopped = collect();
@@ -362,16 +362,16 @@ Ending Run::run_world() {
     recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands(),
                         watch_.measured());
     keep(watch_.measured(), summary_);
-    if (showing_) showing_->answered();
+    if (live_view_) live_view_->answered();
     timer_.end_phase(Phase::recording, summary_);
     summary_.result = directing_.result();
     if (is_last || summary_.result) return Ending::finished;
     directing_.act();
     if (recorded_) recorded_->step(watch_.measured());
-    simulation.list_contacts((showing_ && showing_->wants_contacts()) ||
+    simulation.list_contacts((live_view_ && live_view_->wants_contacts()) ||
                              (recorded_ && recorded_->wants_contacts()) ||
                              directing_.wants_contacts());
-    simulation.list_rays((showing_ && showing_->wants_rays()) ||
+    simulation.list_rays((live_view_ && live_view_->wants_rays()) ||
                          (options_.pictures && options_.pictures->view.layers.rays));
     simulation.step();
     timer_.end_phase(Phase::physics, summary_);
@@ -404,7 +404,7 @@ std::optional<Ending> Run::collect() {
     auto stopped =
         wait([&] { return watch_.collect(simulation.commands(), simulation.state().tick); });
     if (stopped) return stopped;
-  } while (server_.pause() == network::Pause::standing);
+  } while (server_.pause() == network::Pause::halted);
   return std::nullopt;
 }
 
@@ -444,7 +444,7 @@ bool Run::reset_world() {
   if (!supervision_.restart()) return false;
   watch_.forget_spawned();
   ++resets_;
-  if (showing_) showing_->restarted();
+  if (live_view_) live_view_->restarted();
   summary_.metrics.clear();
   return true;
 }

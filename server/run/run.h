@@ -15,15 +15,15 @@
 #include "processes/signals.h"
 #include "reports/console.h"
 #include "reports/summary.h"
+#include "run/fork.h"
+#include "run/live_view.h"
 #include "run/local_endpoints.h"
 #include "run/options.h"
-#include "run/past.h"
 #include "run/phase_timer.h"
 #include "run/radio_watch.h"
 #include "run/record.h"
 #include "run/recorders.h"
 #include "run/schedule.h"
-#include "run/showing.h"
 #include "run/watch.h"
 #include "supervision/directing.h"
 #include "supervision/supervision.h"
@@ -36,13 +36,13 @@ enum class Service {
   serve,  ///< controllers connect from outside
 };
 
-/// How long a run is, and how fast.
+/// Length of a run, and its speed.
 struct Plan {
   std::optional<std::uint64_t> ticks;  ///< nothing = until stopped
   std::optional<double> real_time;     ///< simulated seconds per second of wall time, if paced
 };
 
-/// The members stand in the order in which a run is set up.
+/// Run of a world. Its members are in the order in which a run is set up.
 class Run {
  public:
   /// Listens, loads the scene, creates the output files and starts the controllers.
@@ -73,7 +73,7 @@ class Run {
   void print_notices();
 
   // Running.
-  std::optional<Ending> relive();
+  std::optional<Ending> replay_to_begin();
   Ending run_to_end();
   Ending run_world();
   std::optional<Ending> collect();
@@ -93,7 +93,7 @@ class Run {
   const Service service_;
   processes::Signals& signals_;
   reports::Console console_;
-  const std::unique_ptr<Past> past_;  ///< null: the run begins at tick 0
+  const std::unique_ptr<Fork> fork_;  ///< null: the run begins at tick 0
   const std::string path_;  ///< of the scene file
   ReadFiles files_;  ///< of the scene
   LocalEndpoints local_;
@@ -114,7 +114,7 @@ class Run {
   supervision::Supervision supervision_;
   supervision::Directing directing_;
   Schedule schedule_;
-  const std::unique_ptr<Showing> showing_;  ///< null: not shown
+  const std::unique_ptr<LiveView> live_view_;  ///< null: not shown
   Watch watch_;
   reports::Summary summary_;
   PhaseTimer timer_;

@@ -23,8 +23,9 @@
 namespace ziggurat::run {
 namespace {
 
-/// Of controllers and directors that nothing gives a policy. Hardware in the loop does not wait: they hold
-/// their last command after nine tenths of a tick, and directors have no acts in it.
+/// Policy of controllers and directors without one of their own. Hardware in the loop does not
+/// wait. Controllers hold their last command after nine tenths of a tick, and directors have no
+/// acts in it.
 scene::DeadlinePolicy usual_policy(const Options& options, const scene::Scene& scene) {
   if (!options.hil) return {};
   const double tick_ms =
@@ -179,29 +180,29 @@ wire::End end_message(const reports::Summary& summary) {
   return end;
 }
 
-Showing::Run shown(supervision::World& world, network::Server& server, supervision::Callers& callers,
+LiveView::Run shown(supervision::World& world, network::Server& server, supervision::Callers& callers,
                    supervision::Supervision& supervision, Schedule& schedule,
                    std::uint64_t last_tick) {
-  Showing::Run watched{world, schedule, last_tick, {}, {}, {}, {}, {}, {}};
+  LiveView::Run watched{world, schedule, last_tick, {}, {}, {}, {}, {}, {}};
   watched.connect = [&callers](supervision::LocalCalls calls) { callers.add(std::move(calls)); };
   watched.changes = [&callers] { return callers.changes(); };
-  watched.is_paused = [&server] { return server.pause() == network::Pause::standing; };
+  watched.is_paused = [&server] { return server.pause() == network::Pause::halted; };
   watched.paused_for = [&supervision] { return supervision.paused_for(); };
   watched.status = [&supervision] { return supervision.status(); };
   watched.controllers = [&server] { return server.performance().controllers; };
   return watched;
 }
 
-std::unique_ptr<Showing> make_showing(const Options& options, const Showing::Run& run) {
+std::unique_ptr<LiveView> make_showing(const Options& options, const LiveView::Run& run) {
   if (!options.view) return nullptr;
-  auto showing = std::make_unique<Showing>(options, run);
-  const std::string page = showing->page_address(), viewer = showing->viewer_address();
+  auto live_view = std::make_unique<LiveView>(options, run);
+  const std::string page = live_view->page_address(), viewer = live_view->viewer_address();
   const std::string text =
       options.json ? reports::json_text({{"view", page}, {"viewer", viewer}}) + "\n"
                    : "ziggurat: watch this run at " + page +
                          "\nziggurat: or open a Foxglove WebSocket connection to " + viewer + "\n";
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
-  return showing;
+  return live_view;
 }
 
 void end_while_loading() {

@@ -102,7 +102,7 @@ bool is_replaced(const processes::ControllerProcess& ended,
 
 Watch::Watch(const Settings& settings, const supervision::World& world, network::Server& server,
              processes::Controllers& controllers, supervision::Supervision& supervision,
-             processes::Signals& signals, reports::Console& console, Showing* showing,
+             processes::Signals& signals, reports::Console& console, LiveView* live_view,
              TellLine tell)
     : world_(world),
       server_(server),
@@ -111,8 +111,8 @@ Watch::Watch(const Settings& settings, const supervision::World& world, network:
       supervision_(supervision),
       signals_(signals),
       console_(console),
-      showing_(showing),
-      descriptors_(showing ? std::vector{signals.descriptor(), showing->descriptor()}
+      live_view_(live_view),
+      descriptors_(live_view ? std::vector{signals.descriptor(), live_view->descriptor()}
                            : std::vector{signals.descriptor()}),
       fails_fast_(settings.fail_fast),
       waits_for_clients_(settings.waits_for_clients),
@@ -159,16 +159,16 @@ std::optional<Ending> Watch::wait_for_viewer(world::Commands& commands) {
   console_.notice(wait_notice());
   console_.flush();
   const auto end = clock::now() + longest_wait_for_viewer;
-  return sleep_until([&] { return showing_->is_watched() ? clock::time_point() : end; }, commands);
+  return sleep_until([&] { return live_view_->is_watched() ? clock::time_point() : end; }, commands);
 }
 
 void Watch::show_end() {
-  showing_->end();
+  live_view_->end();
   std::vector<pollfd> items;
   for (const int descriptor : descriptors_) items.push_back({descriptor, POLLIN, 0});
-  while (!showing_->shutdown_requested() && signals_.take().interruptions == 0) {
-    showing_->serve();
-    showing_->update();
+  while (!live_view_->shutdown_requested() && signals_.take().interruptions == 0) {
+    live_view_->serve();
+    live_view_->update();
     ::poll(items.data(), items.size(), static_cast<int>(usual_wait.count()));
   }
 }
@@ -196,9 +196,9 @@ std::optional<Ending> Watch::until(const Step& step) {
 }
 
 void Watch::serve() {
-  if (showing_) showing_->serve();
+  if (live_view_) live_view_->serve();
   supervision_.serve();
-  if (showing_) showing_->update();
+  if (live_view_) live_view_->update();
   if (metrics_ && metrics_->needs_update()) metrics_->publish(supervision_.status());
 }
 
@@ -271,8 +271,8 @@ std::optional<Ending> Watch::lost_controller() {
   return Ending::controller_vanished;
 }
 
-/// What an ended process means for the run: others have its robots, it has left by itself, it is started again, or the
-/// run ends.
+/// Handles an ended process. Others have its robots, it has left by itself, it is started again, or
+/// the run ends.
 std::optional<Ending> Watch::settle(processes::ControllerProcess& ended, const std::vector<network::RobotStatus>& status) {
   child_ended_ = true;  // another may have ended with it
   const auto left = gathered_ ? left_by(ended, status) : std::vector<std::size_t>();

@@ -26,11 +26,11 @@ struct Addition {
   bool ok() const;                ///< no fault
 };
 
-/// What is needed to read later elements, beyond the plain data of Scene: models, the engine's
-/// defaults for all bodies, what controllers need.
+/// Context to read later elements, beyond the plain data of Scene: models, the engine's defaults
+/// for all bodies, and needs of controllers.
 class Additions {
  public:
-  /// Of no scene; only to be assigned another.
+  /// Makes an empty context, only to be assigned another.
   Additions();
   /// Takes from a scene that has been read what later elements need.
   explicit Additions(Draft& draft);

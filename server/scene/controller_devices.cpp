@@ -17,7 +17,7 @@ OneOf<JointMode> joint_modes() {
           {"disabled", JointMode::disabled}};
 }
 
-/// What is needed to read one device.
+/// Arguments to read one device.
 struct Enabling {
   Draft& draft;
   Element& element;
@@ -94,7 +94,7 @@ void enable_joint_sensors(const Enabling& e) {
 
 constexpr std::string_view own_medium = "the medium is that of the entity's own <devices>";
 
-/// What the controller enables of a kind that has both an actuator and a sensor.
+/// Settings of a kind that has both an actuator and a sensor; the first call enables it.
 template <class Use>
 Use& use_of(std::optional<Use>& use) {
   return use ? *use : use.emplace();

@@ -135,7 +135,7 @@ std::string_view kind_of(const Entity& entity) {
   return entity.kind == EntityKind::e_puck ? "e-puck" : "prototype";
 }
 
-/// What an entity needs for a device and does not have, or nothing.
+/// Part that an entity needs for a device and does not have, or nothing.
 std::optional<std::string> missing_for(const Entity& entity, const DeviceUse& use) {
   const bool prototype = entity.kind == EntityKind::prototype;
   const auto component = std::ranges::find(components, use.name, &Component::device);

@@ -141,7 +141,7 @@ void read_magnets(Draft& draft, Element& container, Entity& entity) {
       });
 }
 
-/// What a sensor perceives; an element that leaves it open takes it from the next outer one.
+/// Perception of a sensor; an element that leaves it open takes it from the next outer one.
 struct Perception {
   std::optional<bool> sees_floor;
   std::optional<Response> response;
@@ -294,7 +294,7 @@ Anchor read_anchor(Draft& draft, Element& element) {
 }
 
 std::vector<std::string> anchor_names(const Draft& draft) {
-  // Of links with the same id only the first is an anchor: their numbers may have gaps.
+  // Links with the same id have one anchor, that of the first: their numbers may have gaps.
   std::map<std::size_t, std::string> by_link;
   for (const auto& [id, link] : draft.anchors) {
     if (link <= most_compared) by_link.emplace(link, id);

@@ -33,7 +33,7 @@ void read_director(Draft& draft, Element& element, Director director) {
   directors.push_back(std::move(director));
 }
 
-/// That of a scene for ARGoS is a library, which a server does not load.
+/// Loop functions of a scene for ARGoS are a library, which a server does not load.
 void read_loop_functions(Draft& draft, Element& element) {
   const bool is_library = element.has("library") || !element.has("script");
   if (is_library && draft.options.lenient) {

@@ -17,7 +17,7 @@
 
 namespace ziggurat::scene {
 
-/// What a scene and its includes may still take.
+/// Budget that a scene and its includes may still use.
 struct ReadBudget {
   std::size_t bytes = 0;
   std::size_t tags = 0;        ///< opening and closing ones
@@ -48,18 +48,18 @@ class Document {
   /// @param setting  must outlive this
   Value<std::size_t> set(const Setting& setting);
 
-  /// Where a character of the parsed text stands.
+  /// Location of a character of the parsed text.
   Location locate(const char* character) const;
-  /// Where an attribute's name stands, or its element if the attribute was set.
+  /// Location of an attribute's name, or of its element if the attribute was set.
   Location locate(const pugi::xml_attribute& attribute) const;
-  /// Where its value begins; the same.
+  /// Location of its value; the same.
   Location locate_value(const pugi::xml_attribute& attribute) const;
 
   /// The attribute's text as written, before character references are replaced.
   std::string_view raw(const pugi::xml_attribute& attribute) const;
   /// The setting that set it, or null.
   const Setting* setting_of(const pugi::xml_attribute& attribute) const;
-  /// How the attribute got its value, if not as written: continues a message.
+  /// Origin of an attribute's value, if not as written: continues a message.
   std::string origin(const pugi::xml_attribute& attribute) const;
   /// Its value with parameters, which count as if they were written out, trimmed.
   Value<std::string> value(const pugi::xml_attribute& attribute) const;

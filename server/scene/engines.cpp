@@ -84,7 +84,7 @@ void read_dynamics3d(Draft& draft, Element& engine) {
   engine.done();
 }
 
-/// How much force and torque the ground of a <dynamics2d> brakes with.
+/// Reads the force and torque with which the ground of a <dynamics2d> brakes.
 void read_ground(Element friction, Plane& plane) {
   plane.box.max_force = friction.optional("box_linear_friction", non_negative, plane.box.max_force);
   plane.box.max_torque =

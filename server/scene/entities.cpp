@@ -50,7 +50,7 @@ void read_prototype(Draft& draft, Element& element, Entity& entity) {
   read_devices(draft, element, entity);
 }
 
-/// What the ids of copies begin with: empty, they are numbered alone.
+/// Beginning of the ids of copies; empty: they are numbers alone.
 Value<std::string> start_of_ids(std::string_view text) {
   return text.empty() ? Value<std::string>(std::string()) : identifier(text);
 }

@@ -109,7 +109,7 @@ std::optional<Joint> read_joint(const Draft& draft, Element& element, Ids& ids) 
 
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 
-/// What to do with a joint whose child has a place in the tree already.
+/// Advice for a joint whose child has a place in the tree already.
 std::string_view advice_on_closing(const Entity& entity, const Joint& joint) {
   const bool is_parent_placed = joint.parent == entity.reference_link ||
                                 std::ranges::any_of(entity.joints, [&](const Joint& other) {
@@ -187,7 +187,7 @@ void order_joints(Report& report, Entity& entity) {
   for (std::size_t i = 0; i < entity.joints.size(); ++i) {
     if (incoming[entity.joints[i].child] == i) outgoing[entity.joints[i].parent].push_back(i);
   }
-  // Of the joints whose parent is placed, the first in the document comes next.
+  // Joints whose parent is placed come next, in document order.
   std::priority_queue<std::size_t, std::vector<std::size_t>, std::greater<>> next;
   for (const std::size_t i : outgoing[entity.reference_link]) next.push(i);
   std::vector<Joint> ordered;

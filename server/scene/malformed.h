@@ -29,7 +29,7 @@ struct Unescaped {
   std::optional<std::size_t> declaration;  ///< offset of the first <?xml that is not the text's beginning
 };
 
-/// What is no XML by its standard, though the parser reads it.
+/// Finds text that is not XML by its standard, although the parser reads it.
 /// @param source  that the parser has read without error
 Unescaped find_unescaped(std::string_view source);
 

@@ -36,7 +36,7 @@ std::size_t memory_of(const Camera& camera) {
   return of_camera + 3 * pixels + sizeof(Detector) * camera.detectors.size() + memory_of_text(camera.id);
 }
 
-/// Of devices with an id.
+/// Memory of a list of devices, each with an id.
 template <class List>
 std::size_t memory_of_each(const List& list, std::size_t each) {
   std::size_t sum = each * list.size();

@@ -18,9 +18,9 @@ class Element;
 constexpr std::size_t memory_per_byte = 64;
 
 std::size_t memory_of(const Params& params);
-/// Of a device that a controller fixes to an anchor, in each robot.
+/// Memory of a device that a controller fixes to an anchor, in each robot.
 std::size_t memory_of_mounted(const std::string& id);
-/// What a robot takes for the devices that its controller enables.
+/// Memory of a robot for the devices that its controller enables.
 std::size_t memory_of(const ControllerDevices& devices);
 /// @param controller  its own, or null
 std::size_t memory_of(const Entity& entity, const Controller* controller);

@@ -65,7 +65,7 @@ constexpr auto attribute_homes = std::to_array<Reason>({
     {"restitution", "link"},
 });
 
-/// What the names of their devices begin with.
+/// Beginnings of the names of their devices.
 constexpr auto foreign_robots = std::to_array<Reason>({
     {"eyebot_", "eye-bot"},
     {"kilobot_", "kilobot"},

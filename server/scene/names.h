@@ -12,7 +12,7 @@
 
 namespace ziggurat::scene {
 
-/// How many candidates are compared with a name: more need not be collected.
+/// Most candidates that are compared with a name: more need not be collected.
 constexpr std::size_t most_compared = 256;
 
 /// The candidate that was probably meant, if one is near enough; the first of equally near ones.

@@ -57,7 +57,8 @@ bool is_range(std::string_view text) {
   return dots != std::string_view::npos && is_number(text.substr(0, dots)) && is_number(text.substr(dots + 2));
 }
 
-/// Where the scene has one number, several are probably meant for as many runs.
+/// Warns about several numbers for a parameter with one number in the scene: probably as many runs
+/// are meant.
 /// @param given  by the command line
 std::string doubt(const Parameter& declared, const std::string& given) {
   if (!is_number(declared.value)) return {};

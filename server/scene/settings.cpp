@@ -14,7 +14,7 @@
 namespace ziggurat::scene {
 namespace {
 
-/// Where a character stands first outside of brackets and quotes, or npos.
+/// Position of a character's first occurrence outside of brackets and quotes, or npos.
 std::size_t find_outside(std::string_view text, char wanted, std::size_t begin = 0) {
   int depth = 0;
   char quote = 0;
@@ -79,8 +79,9 @@ bool is_cheap(std::string_view condition) {
   return std::regex_match(condition.begin(), condition.end(), cheap);
 }
 
-/// Conditions in conditions or with far paths, axes, several `//` and many `..`, as in `*/../*/../*`, take a time
-/// that grows with a power of the scene's size or of the path's.
+/// Refuses paths whose cost grows with a power of the scene's size or of their length. They are
+/// conditions in conditions or with far paths, axes, several `//`, and many `..` as in
+/// `*/../*/../*`.
 std::optional<Wrong> check_cost(std::string_view path) {
   if (path.size() > longest_path) {
     return Wrong{fmt::format("has {} characters; at most {} are allowed", path.size(), longest_path)};

@@ -48,7 +48,7 @@ class Directing::Names {
 
 namespace {
 
-/// What a director has asked for so far in a Direction.
+/// Acts that a director has asked for so far in a Direction.
 struct Asked {
   std::set<std::string> removed, spawned;  // ids
   EarlierSpawns spawns;
@@ -66,7 +66,7 @@ std::variant<std::size_t, wire::Fault> pushed_link(const world::Layout& layout, 
                     fmt::format("'{}' has no link '{}'.", push.entity, push.link.substr(0, 256)));
 }
 
-/// What is wrong with the values for the devices of a kind.
+/// Checks the number of values for the devices of a kind.
 /// @param is_set_by_robot  its controller sets them
 std::optional<wire::Fault> check_values(std::size_t given, std::size_t devices, bool is_set_by_robot,
                                         const wire::Show& show, const char* field) {
@@ -140,7 +140,7 @@ bool is_removal(const wire::DirectorAct& act) {
   return request != nullptr && request->kind == wire::Request::Kind::remove;
 }
 
-/// What is wrong with an act on an entity that is there.
+/// Checks an act on an entity that is there.
 std::optional<wire::Fault> check_act(const simulation::Simulation& world, std::size_t entity,
                                      const wire::DirectorAct& act) {
   if (const auto* show = std::get_if<wire::Show>(&act)) {
@@ -168,8 +168,8 @@ wire::Fault at(std::size_t act, wire::Fault fault) {
 
 Directing::Directing(World& world, network::Server& server, Callers& callers,
                      Population& population, reports::Console& console)
-    : world_(world), desk_(server), callers_(callers), population_(population), console_(console) {
-  desk_.check_by([this](const wire::Direction& direction) { return check(direction); });
+    : world_(world), directors_(server), callers_(callers), population_(population), console_(console) {
+  directors_.check_by([this](const wire::Direction& direction) { return check(direction); });
 }
 
 /// All acts are on entities that are there at the tick which is answered; those that the Direction itself
@@ -204,7 +204,7 @@ std::optional<wire::Fault> Directing::check(const wire::Direction& direction) co
 }
 
 std::optional<reports::Summary::Result> Directing::result() const {
-  for (const network::Directed& each : desk_.directions()) {
+  for (const network::Directed& each : directors_.directions()) {
     if (each.direction.finish) {
       return reports::Summary::Result{each.director, *each.direction.finish};
     }
@@ -242,13 +242,13 @@ std::optional<wire::Fault> Directing::apply(const wire::DirectorAct& act, Names&
 void Directing::act() {
   Names names(world_.simulation);
   bool has_changed = false;
-  for (const network::Directed& each : desk_.directions()) {
+  for (const network::Directed& each : directors_.directions()) {
     for (std::size_t i = 0; i < each.direction.acts.size(); ++i) {
       auto fault = apply(each.direction.acts[i], names);
       has_changed = true;
       if (!fault) continue;
       note_left_out(each.director, fault->message);
-      desk_.warn(each.director, at(i, std::move(*fault)));
+      directors_.warn(each.director, at(i, std::move(*fault)));
     }
   }
   if (has_changed) callers_.note_change();

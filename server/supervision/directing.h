@@ -28,7 +28,7 @@ class Directing {
   /// told.
   void act();
   /// A director subscribed to contacts.
-  bool wants_contacts() const { return desk_.wants_contacts(); }
+  bool wants_contacts() const { return directors_.wants_contacts(); }
 
  private:
   class Names;
@@ -37,7 +37,7 @@ class Directing {
   void note_left_out(const std::string& director, const std::string& why);
 
   World& world_;
-  network::DirectorsDesk desk_;
+  network::ServerDirectors directors_;
   Callers& callers_;
   Population& population_;
   reports::Console& console_;

@@ -65,9 +65,9 @@ std::string script_of(const World& world, const scene::Entity& entity,
 }  // namespace
 
 scene::OpenFile opener(const processes::AllowedFiles& allowed, const std::string& scene_file,
-                       Spawned* act) {
+                       Spawned* spawned) {
   const auto scene_folder = std::filesystem::path(scene_file).parent_path();
-  return [&allowed, act, scene_folder](const std::filesystem::path& path, std::size_t max_size) {
+  return [&allowed, spawned, scene_folder](const std::filesystem::path& path, std::size_t max_size) {
     std::vector<std::filesystem::path> candidates{path};
     for (const auto& folder : allowed.folders) {
       candidates.push_back(folder / path.lexically_relative(scene_folder));
@@ -76,7 +76,7 @@ scene::OpenFile opener(const processes::AllowedFiles& allowed, const std::string
       if (processes::is_below(allowed.folders, candidate)) {
         auto opened = scene::open_file(candidate, max_size);
         const auto* file = std::get_if<scene::File>(&opened);
-        if (file && act) act->files.emplace_back(path.string(), file->text);
+        if (file && spawned) spawned->files.emplace_back(path.string(), file->text);
         return opened;
       }
     }
@@ -130,18 +130,18 @@ std::variant<Population::Candidate, wire::Fault> Population::read(
                     "spawn more.",
                     most_spawned));
   }
-  const network::DirectorsDesk directors(server_);
+  const network::ServerDirectors directors(server_);
   const auto is_used = [&](const std::string& id) { return is_taken(id) || directors.has(id); };
   Candidate candidate;
-  candidate.act = {xml, {}, {}};
+  candidate.spawned = {xml, {}, {}};
   scene::Addition& addition = candidate.addition;
   try {
     addition = world_.additions.read(xml, world_.scene, size_left_ - std::min(size_left_, earlier.size),
-                                     is_used, opener(allowed_, world_.path, &candidate.act));
+                                     is_used, opener(allowed_, world_.path, &candidate.spawned));
     const scene::Entity& entity = addition.entity;
     if (addition.ok()) {
       candidate.script = processes::spawned_script(world_.scene, entity, world_.path, allowed_);
-      candidate.act.script = candidate.script.path;
+      candidate.spawned.script = candidate.script.path;
       if (candidate.script.details) console_.notice(*candidate.script.details);
       if (candidate.script.fault) {
         addition.problems.push_back({scene::Problem::Severity::fault,
@@ -198,7 +198,7 @@ std::optional<wire::Fault> Population::spawn(const std::string& xml) {
                             std::string(error.what()).substr(0, longest_message));
   }
   for (const scene::Problem& notice : candidate.addition.problems) console_.problem(notice);
-  callers_.tell(candidate.act);
+  callers_.tell(candidate.spawned);
   ++spawned_;
   sizes_[xml] = candidate.addition.size;
   size_left_ -= candidate.addition.size;
@@ -246,7 +246,7 @@ std::optional<wire::Fault> Population::remove(const std::string& id) {
   return std::nullopt;
 }
 
-/// Of an element that was spawned, its model written out [bytes].
+/// Size of an element that was spawned, its model written out [bytes].
 std::size_t Population::size_of(const std::string& xml) const {
   const auto is_free = [](const std::string&) { return false; };  // it is what is there
   const auto read = world_.additions.read(xml, world_.scene, settings_.max_size, is_free, opener(allowed_, world_.path));

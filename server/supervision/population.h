@@ -15,9 +15,9 @@
 #include "processes/spawned_scripts.h"
 #include "reports/console.h"
 #include "scene/additions.h"
-#include "supervision/act.h"
 #include "supervision/callers.h"
 #include "supervision/world.h"
+#include "supervision/world_change.h"
 
 namespace ziggurat::supervision {
 
@@ -29,7 +29,7 @@ wire::Fault no_entity(std::string field, const std::string& id, const simulation
 /// The entity of that id that is in the world, into Layout::entities.
 std::optional<std::size_t> entity_named(const simulation::Simulation& world, const std::string& id);
 
-/// What is about to be spawned before something else.
+/// Spawns that precede another one in the same tick.
 struct EarlierSpawns {
   std::size_t count = 0;  ///< entities
   std::size_t size = 0;   ///< of their elements, models written out [bytes]
@@ -51,7 +51,7 @@ class Population {
   struct Candidate {
     scene::Addition addition;
     processes::SpawnedScript script;
-    Spawned act;
+    Spawned spawned;
   };
   /// Reads an element. @param is_taken  whether an id is that of an entity that will be there then
   std::variant<Candidate, wire::Fault> read(const std::string& xml,

@@ -25,7 +25,7 @@ std::vector<std::string> clients_without_restore(network::Server& server) {
     if (!robot.can_restore && !is_known) clients.push_back(robot.holder);
   }
   for (const network::DirectorStatus& director :
-       network::DirectorsDesk(server).status()) {
+       network::ServerDirectors(server).status()) {
     if (!director.can_restore) clients.push_back(director.client);
   }
   return clients;
@@ -43,12 +43,12 @@ std::string list_of(const std::vector<std::string>& clients) {
 
 }  // namespace
 
-/// Waits for a restore that was asked for before: what that goes back to is found already, but a recording has it behind
-/// a snapshot that is taken now, which may have the same name.
+/// Takes a snapshot. It waits for a restore that was asked for before. The state of that restore is
+/// found already, but in a recording it would follow this snapshot, which may have the same name.
 Reply Supervision::snapshot(const network::Call& call) {
   if (resetting_) return Reply::later;
   if (auto fault = snapshots_.keep(call.request.text, world_)) return fail(call, std::move(*fault));
-  callers_.tell(Kept{call.request.text});
+  callers_.tell(SnapshotTaken{call.request.text});
   return done(call);
 }
 

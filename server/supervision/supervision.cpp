@@ -55,7 +55,7 @@ Selection select(const std::vector<std::string>& patterns, const simulation::Sim
   return selection;
 }
 
-/// What is wrong with the reason of a shutdown, if anything.
+/// Fault of the reason of a shutdown, if it has one.
 std::optional<wire::Fault> fault_of_reason(const std::string& reason) {
   constexpr std::size_t longest = 1024;  // [bytes]
   if (reason.size() <= longest) return std::nullopt;
@@ -98,10 +98,10 @@ Supervision::Supervision(const Settings& settings, World& world, network::Server
       population_(population),
       snapshots_(settings.snapshot_folder, settings.build) {}
 
-bool Supervision::is_standing() const { return server_.pause() == network::Pause::standing; }
+bool Supervision::is_halted() const { return server_.pause() == network::Pause::halted; }
 
 void Supervision::serve() {
-  paused_.update(is_standing());
+  paused_.update(is_halted());
   if (stepping_ && !callers_.can_hear(*stepping_)) end_steps();
   for (network::Call& call : callers_.take()) waiting_.push_back(std::move(call));
   answer_waiting(waiting_, callers_, [this](const network::Call& call) { return handle(call); });
@@ -152,15 +152,15 @@ Reply Supervision::handle(const network::Call& call) {
 }
 
 Reply Supervision::pause(const network::Call& call) {
-  const bool waits = !is_standing() && is_gathered_;
+  const bool waits = !is_halted() && is_gathered_;
   if (waits && network::need_of(server_, call.request.held_up) == network::Need::answer) return fail(call, held_up("pause"));
   const bool was_asked = server_.pause() != network::Pause::none || steps_left_ > 0;
   steps_left_ = 0;
   server_.set_paused(true);
-  if (!was_asked) callers_.tell(Paused{});  // it may be handled again until the world stands
-  paused_.update(is_standing());
+  if (!was_asked) callers_.tell(Paused{});  // it may be handled again until the world is halted
+  paused_.update(is_halted());
   // Before tick 0 nothing moves: the world will stand there.
-  if (!is_standing() && is_gathered_) return Reply::later;
+  if (!is_halted() && is_gathered_) return Reply::later;
   write_outputs(settings_);
   return done(call);
 }
@@ -171,23 +171,23 @@ Reply Supervision::resume(const network::Call& call) {
   steps_left_ = 0;
   server_.set_paused(false);
   callers_.tell(Resumed{});
-  paused_.update(is_standing());
+  paused_.update(is_halted());
   return done(call);
 }
 
-/// The world is paused again, when the tick in hand is complete at the latest.
+/// The world is paused again, when the current tick is complete at the latest.
 void Supervision::end_steps() {
   stepping_.reset();
   if (steps_left_ == 0) return;
   steps_left_ = 0;
   server_.set_paused(true);
-  paused_.update(is_standing());
+  paused_.update(is_halted());
 }
 
 Reply Supervision::step(const network::Call& call) {
   if (stepping_ && stepping_->peer == call.peer && stepping_->session == call.session &&
       stepping_->request.id == call.request.id) {
-    const bool is_over = steps_left_ == 0 && is_standing();
+    const bool is_over = steps_left_ == 0 && is_halted();
     if (!is_over) return Reply::later;
     stepping_.reset();
     write_outputs(settings_);
@@ -206,12 +206,12 @@ Reply Supervision::step(const network::Call& call) {
                 wire::make_fault(ErrorCode::out_of_state, {},
                                  "The world is not paused; send a Pause request before a Step."));
   }
-  // It will stand: at tick 0, or when the tick in hand is complete.
-  if (!is_gathered_ || !is_standing()) return Reply::later;
+  // It will stand: at tick 0, or when the current tick is complete.
+  if (!is_gathered_ || !is_halted()) return Reply::later;
   stepping_ = call;
   steps_left_ = call.request.ticks;
   server_.set_paused(false);
-  paused_.update(is_standing());
+  paused_.update(is_halted());
   return Reply::later;
 }
 
@@ -273,7 +273,7 @@ Reply Supervision::done(const network::Call& call) {
 }
 
 void Supervision::published() {
-  paused_.update(is_standing());
+  paused_.update(is_halted());
   if (steps_left_ > 0 && --steps_left_ == 0) server_.set_paused(true);
 }
 
@@ -285,7 +285,7 @@ wire::Status Supervision::status() const {
   status.tick = state.tick;
   status.time_ns = state.time_ns;
   // Before tick 0 a world that was paused stands, though robots may be without controller.
-  const bool is_paused = is_gathered_ ? is_standing() : server_.pause() != network::Pause::none;
+  const bool is_paused = is_gathered_ ? is_halted() : server_.pause() != network::Pause::none;
   status.phase = is_paused      ? wire::Status::Phase::paused
                  : is_gathered_ ? wire::Status::Phase::running
                                 : wire::Status::Phase::gathering;

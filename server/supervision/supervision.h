@@ -18,7 +18,7 @@
 
 namespace ziggurat::supervision {
 
-/// How long a paced run has been paused: its schedule shifts by that.
+/// Time that a paced run has been paused: its schedule shifts by that.
 class PauseTimer {
  public:
   using clock = std::chrono::steady_clock;
@@ -39,7 +39,7 @@ class Supervision {
     bool is_hardware_in_the_loop = false;
     std::string snapshot_folder;  ///< where snapshots are written to and read from; empty: nowhere
     std::string build;            ///< of this program
-    std::function<void()> write_outputs = {};  ///< all of them, before somebody is told that the world stands; may be empty
+    std::function<void()> write_outputs = {};  ///< all of them, before somebody is told that the world is halted; may be empty
   };
 
   /// Everything but the settings must outlive this.
@@ -68,7 +68,7 @@ class Supervision {
   wire::Status status() const;
 
  private:
-  bool is_standing() const;
+  bool is_halted() const;
   Reply handle(const network::Call& call);
   Reply pause(const network::Call& call);
   Reply resume(const network::Call& call);

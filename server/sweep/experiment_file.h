@@ -10,7 +10,7 @@ namespace ziggurat::sweep {
 
 struct ExperimentFile {
   Experiment experiment;  ///< without seeds, if the file has none
-  // How it is run; the command line may say otherwise.
+  // Settings of the runs; the command line may replace them.
   std::string out;                 ///< path; empty: the file has none
   std::optional<unsigned> jobs;    ///< runs at a time
   std::optional<double> timeout;   ///< wall time of a run [s]

@@ -56,7 +56,7 @@ std::vector<Result> read_ledgers(std::span<const fs::path> paths, std::size_t ru
                                       path.string(), static_cast<std::int64_t>(result.run), runs));
       }
       auto& known = by_run[result.run];
-      // Of a run that failed here and finished there, the end counts.
+      // A run that failed here and finished there counts as finished.
       if (known.run == 0 || known.outcome != Outcome::finished) known = std::move(result);
     }
   }
@@ -77,7 +77,7 @@ std::string read_file(const fs::path& path) {
 void write_file(const fs::path& path, const std::string& text) {
   fs::path draft = path;
   draft += fmt::format(".{}.new", ::getpid());
-  // What another user has put there, as a link to a file of ours, is not written to.
+  // A file that another user has put there, as a link to a file of ours, is never written to.
   ::unlink(draft.c_str());
   const int file = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
   if (file < 0) fail_at(draft);

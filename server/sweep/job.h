@@ -18,7 +18,7 @@ namespace ziggurat::sweep {
 /// Which runs keep a recording.
 enum class Record { none, failed, all };
 
-/// How runs are executed; changes no result.
+/// Settings of the execution of runs; they change no result.
 struct Settings {
   std::string program;            ///< path of `ziggurat`
   std::string version;            ///< of it

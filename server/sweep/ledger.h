@@ -39,7 +39,8 @@ class Ledger {
   /// of them if SQLite can't have as many columns. @throws LedgerError
   void make_view(const Experiment& experiment);
 
-  /// That the file is still where it was opened. @throws LedgerError, which says what is gone and what to do
+  /// Checks that the file is still where it was opened.
+  /// @throws LedgerError, which says what is gone and what to do
   void check_place() const;
 
  private:

@@ -35,7 +35,8 @@ std::vector<Group> group(const Experiment& experiment, std::span<const Result> r
                          std::span<const std::size_t> axes, std::span<const std::string> measures,
                          double confidence);
 
-/// What can be averaged: the metrics, ticks, simulated_s, wall_s, …; metrics first, by name.
+/// Names of columns that can be averaged: the metrics, ticks, simulated_s, wall_s, …; metrics
+/// first, by name.
 std::vector<std::string> measures_of(std::span<const Result> results);
 /// A metric or another number of a run; not a number if the run has none.
 double value_of(const Result& result, const std::string& measure);

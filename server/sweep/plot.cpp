@@ -55,7 +55,7 @@ bool is_number(const std::string& text) {
   return end != text.c_str() && *end == '\0' && std::isfinite(value);
 }
 
-/// Where the values of an axis stand: as numbers, otherwise side by side.
+/// Positions of an axis' values: as numbers, otherwise side by side.
 struct Abscissa {
   bool is_numeric = false;
   const std::vector<std::string>& values;

@@ -40,7 +40,7 @@ scene::Variation variation(const Experiment& experiment, std::size_t index) {
   return variation;
 }
 
-/// What the reader says of `--set` was written as `--axis` here.
+/// Messages of the reader about `--set` name `--axis` here.
 void name_option(std::vector<scene::Problem>& problems) {
   for (scene::Problem& problem : problems) {
     for (std::size_t at = 0; (at = problem.text.find("--set '", at)) != std::string::npos;) {

@@ -30,8 +30,8 @@ void refuse_if_queued(const Folder& folder);
 /// @throws text::UsageError if sbatch fails
 std::string submit_to_slurm(const Folder& folder, const std::string& script);
 
-/// What squeue tells of the folder's job, as `Slurm job 7: 3 RUNNING, 2 PENDING`; nothing if there is
-/// none, it is over, or squeue is not there.
+/// State of the folder's job from squeue, as `Slurm job 7: 3 RUNNING, 2 PENDING`. Nothing if there
+/// is none, it is over, or squeue is not there.
 std::optional<std::string> slurm_status(const Folder& folder);
 
 }  // namespace ziggurat::sweep

@@ -1,5 +1,5 @@
 #pragma once
-// Who may connect to a viewer's port, and what they may do (docs/viewing.md, docs/security.md).
+// Access control of a viewer's port (docs/viewing.md, docs/security.md).
 
 #include <cstdint>
 #include <optional>
@@ -22,16 +22,16 @@ struct Rules {
 };
 
 /// The parts of a request that decide. Of HTTP, `origin` does not matter.
-struct Asker {
+struct RequestHead {
   std::string_view host;                   ///< of `Host`; empty: there is none
   std::optional<std::string_view> origin;  ///< of `Origin`
   std::string_view target;                 ///< path and query
 };
 
-enum class Access { refused, look, steer };
+enum class Permission { refused, look, steer };
 
-/// Of a WebSocket handshake.
-Access access_of(const Rules& rules, const Asker& asker);
+/// Permission of a WebSocket handshake.
+Permission permission_of(const Rules& rules, const RequestHead& head);
 
 /// The value of `token` in a query; nothing: it has none.
 std::optional<std::string> token_in(std::string_view target);

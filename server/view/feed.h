@@ -1,6 +1,6 @@
 #pragma once
-// What is to be shown, on its way from the run's thread to that of the server, which encodes it. The
-// run's thread only copies; the newest tick wins.
+// Ticks on their way from the run's thread to the server's thread, which encodes them. The run's
+// thread only copies; the newest tick wins.
 
 #include <cstdint>
 #include <deque>
@@ -16,7 +16,7 @@
 
 namespace ziggurat::view {
 
-/// What a tick is encoded for: ids of channels, ascending.
+/// Channels that a tick is encoded for: ids, ascending.
 struct Wanted {
   std::vector<std::uint32_t> tick;     ///< for messages of each tick
   std::vector<std::uint32_t> latched;  ///< for latched messages and commands
@@ -65,7 +65,7 @@ class Feed {
   std::optional<channels::Layers> next_layers_;
   std::vector<std::unique_ptr<channels::TickCopy>> free_;  // whose memory is used again
 
-  // Of the server's thread:
+  // Members of the server's thread:
   std::shared_ptr<const channels::PopulationCopy> population_;  // that channels_ refers to
   channels::Channels channels_;
   std::vector<channels::Message> messages_;  // of one tick; keeps its memory

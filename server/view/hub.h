@@ -1,5 +1,5 @@
 #pragma once
-// The viewers: what each subscribes to, and what waits for it. No sockets here.
+// Viewers with their subscriptions and send queues. No sockets here.
 
 #include <cstdint>
 #include <map>
@@ -13,17 +13,17 @@
 
 #include "channels/channel.h"
 #include "channels/message.h"
-#include "view/desk.h"
 #include "view/known_channels.h"
 #include "view/messages.h"
-#include "view/output.h"
+#include "view/send_queue.h"
+#include "view/viewer_requests.h"
 
 namespace ziggurat::view {
 
 struct Viewer {
   std::uint64_t id = 0;
   bool may_steer = false;
-  Output output;
+  SendQueue send_queue;
   std::unordered_map<std::uint32_t, std::uint32_t> channels;  ///< subscription -> channel
   std::unordered_map<std::uint32_t, std::uint32_t> subscriptions;  ///< channel -> subscription
   KnownChannels known;
@@ -42,8 +42,8 @@ class Hub {
   static constexpr std::size_t largest_queued = std::size_t{64} << 10;  ///< a call behind others [bytes]
 
   /// @param parameters  at the start
-  /// @param desk  must outlive this
-  Hub(Introduction introduction, std::vector<Parameter> parameters, Desk& desk);
+  /// @param requests  must outlive this
+  Hub(Introduction introduction, std::vector<Parameter> parameters, ViewerRequests& requests);
 
   Viewer& add(bool may_steer);
   void remove(std::uint64_t viewer);
@@ -51,7 +51,7 @@ class Hub {
   std::size_t size() const { return viewers_.size(); }
 
   void receive(Viewer& viewer, std::string_view message, bool is_text);
-  /// What the viewer is to be sent next: answers, changes of the channels, then ticks.
+  /// Next item to send to the viewer: answers, changes of the channels, then ticks.
   std::optional<Item> next(Viewer& viewer);
 
   /// @param list  all channels of now, ascending by id
@@ -60,7 +60,7 @@ class Hub {
   void show(std::int64_t time_ns, std::span<const channels::Message> messages);
   void set_parameter(const Parameter& parameter);
   /// @param text  JSON of an answer, or a sentence why it was refused
-  void answer(const Call& call, bool is_done, const std::string& text);
+  void answer(const ViewerCall& call, bool is_done, const std::string& text);
 
   /// Calls visit(viewer) for each.
   template <class Visit>
@@ -78,14 +78,14 @@ class Hub {
   void handle(Viewer& viewer, const CallService& message);
   void handle(Viewer& viewer, const Wrong& message);
   void send(Viewer& viewer, Item item);
-  std::string set(const Parameter& wish);
+  std::string set(const Parameter& parameter);
   const channels::Channel* channel(std::uint32_t id) const;
   void count_subscribers(std::vector<std::uint32_t> fresh);
   Item graph() const;
 
   Introduction introduction_;
   std::vector<Parameter> parameters_;
-  Desk& desk_;
+  ViewerRequests& requests_;
   std::uint64_t next_viewer_ = 1;
   std::map<std::uint64_t, std::unique_ptr<Viewer>> viewers_;
   std::vector<channels::Channel> channels_;

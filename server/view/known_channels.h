@@ -1,6 +1,6 @@
 #pragma once
-// Which channels a viewer knows, and what it is still to be told of them. Lists are made when they can be sent, so that a
-// viewer that does not read holds none.
+// Channels that a viewer knows, and changes that it is still to be sent. Lists are made when they
+// can be sent, so that a viewer that does not read holds none.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "channels/channel.h"
-#include "view/output.h"
+#include "view/send_queue.h"
 
 namespace ziggurat::view {
 

@@ -209,7 +209,7 @@ std::vector<double> numbers(const Json& json, const char* name) {
 }
 
 /// Fields of the request that are there.
-void read_fields(const Json& json, Call& call) {
+void read_fields(const Json& json, ViewerCall& call) {
   wire::Request& request = call.request;
   switch (request.kind) {
     case Kind::none: {
@@ -274,13 +274,13 @@ Incoming read_binary(std::string_view bytes) {
                      std::string(bytes.substr(head + length))};
 }
 
-std::variant<Call, std::string> read_call(const CallService& from) {
+std::variant<ViewerCall, std::string> read_call(const CallService& from) {
   if (from.service == 0 || from.service > services.size()) return "There is no such service.";
   const Service& service = services[from.service - 1];
   if (from.encoding != "json") {
     return fmt::format("The encoding of {} must be json.", service.name);
   }
-  Call call{.service = from.service, .number = from.call, .request = {}, .speed = {}};
+  ViewerCall call{.service = from.service, .number = from.call, .request = {}, .speed = {}};
   call.request.kind = service.kind;
   call.request.id = from.call;
   const auto json = from.payload.empty() ? Json::object() : parse(from.payload);

@@ -1,5 +1,5 @@
 #pragma once
-// How large a Command can be that its session needs: a larger one only costs time of the tick.
+// Size limit of a Command for its session: a larger one only costs time of the tick.
 
 #include <cstddef>
 

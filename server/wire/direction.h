@@ -1,5 +1,5 @@
 #pragma once
-// What directors do to the world, as plain data.
+// Acts of directors on the world, as plain data.
 
 #include <array>
 #include <cstdint>
@@ -50,7 +50,7 @@ struct Direction {
   std::optional<std::string> finish;  ///< the run ends with this result
 };
 
-/// What is wrong with a Direction, whatever the world is. Its tick is not checked.
+/// Checks a Direction without regard to the world or its tick.
 std::optional<Fault> check(const v1::Direction& direction);
 /// @param direction  checked
 Direction read(const v1::Direction& direction);

@@ -48,7 +48,7 @@ inline constexpr std::uint32_t minor_with_directors = 4;
 
 enum class Role { unspecified, controller, supervisor, observer, director };
 
-/// What a director wants to be told at each tick.
+/// Parts of the world that a director is sent at each tick.
 struct Subscription {
   bool poses = false, links = false, joints = false, leds = false, tags = false, magnets = false,
        radio_messages = false, contacts = false;
@@ -147,7 +147,7 @@ struct Refusal {
   std::string holder;  ///< robot_taken: name of the client that has it
 };
 
-/// What Welcome tells a session about itself.
+/// Description of a session in its Welcome.
 struct Welcome {
   std::string_view token;
   std::uint32_t minor = 0;  ///< of the protocol, as agreed
@@ -189,7 +189,7 @@ struct End {
   std::uint64_t tick = 0;  ///< the last one
 };
 
-/// What Welcome tells every session about the run.
+/// Description of the run in every Welcome.
 struct Run {
   const world::Layout& layout;
   const std::vector<scene::Controller>& controllers;  ///< of the scene

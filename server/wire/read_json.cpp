@@ -120,7 +120,7 @@ class Reader final : public nlohmann::json_sax<json> {
     return put({*levels_.back().message, *field}, value) ||
            complain(fmt::format("'{}' can't have that value", name_));
   }
-  /// Of the fields of which a message has one at most.
+  /// Whether no other field of the same oneof is set.
   bool is_only_one_of_its_kind() {
     const Message& owner = *levels_.back().message;
     const auto* choice = known()->real_containing_oneof();

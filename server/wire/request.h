@@ -47,7 +47,7 @@ struct Request {
   double joint_velocity = 0;          ///< set_joint: as given [m/s] or [rad/s]
 };
 
-/// Of wall time [s].
+/// Percentiles of wall time [s].
 struct Latency {
   double p50 = 0, p99 = 0, max = 0;
 };
@@ -67,7 +67,7 @@ struct SessionStatus {
   std::string director;  ///< its id
 };
 
-/// How well the physics' solver did since the world began.
+/// Convergence of the physics' solver since the world began.
 struct SolverStatus {
   std::uint64_t islands = 0;        ///< of bodies that touch, solved over all substeps
   std::uint64_t not_converged = 0;  ///< of them

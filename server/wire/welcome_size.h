@@ -1,5 +1,5 @@
 #pragma once
-// Whether clients decode what a Welcome would describe.
+// Memory that clients need to decode a Welcome.
 
 #include <cstddef>
 #include <span>

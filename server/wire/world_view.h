@@ -1,5 +1,5 @@
 #pragma once
-// What a director is told: the world's true state, of the entities that it subscribed to.
+// World view of a director: the true state of the entities that it subscribed to.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 #include "scene/scene.h"
 #include "wire/messages.h"
-#include "wire/sensed.h"
+#include "wire/reading_size.h"
 #include "world/contact.h"
 #include "world/layout.h"
 #include "world/state.h"
@@ -57,7 +57,7 @@ bool fill(WorldView& view, const Truth& truth, const std::vector<scene::Controll
           std::size_t limit, v1::WorldLayout& to);
 
 /// The parts of a state whose number or size is not that of devices alone.
-Sensed sensed_by(const WorldView& view, const Truth& truth);
+ReadingSize size_of_readings(const WorldView& view, const Truth& truth);
 /// The state in the order of the view; `to` is clear.
 void fill(const WorldView& view, const Truth& truth, v1::WorldState& to);
 

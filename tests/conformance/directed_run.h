@@ -96,7 +96,7 @@ struct Directing : ::testing::Test {
     const wire::Truth truth = boxes.truth();
     network::publish(peers.barrier, peers.observations, peers.payloads, &truth);
   }
-  /// What "p" was told since it was last asked.
+  /// Messages to "p" since the last call.
   std::vector<v1::ServerMessage> told() { return std::exchange(peers.inboxes["p"], {}); }
   Ids answered() {
     Ids ids;

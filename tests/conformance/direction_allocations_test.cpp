@@ -1,4 +1,4 @@
-// What the server asks about directors at each tick takes no memory.
+// Questions of the server about directors at each tick take no memory.
 
 #include "allocations/allocations.h"
 

@@ -1,5 +1,5 @@
-// What directors are told and answer (docs/protocol.md, R3 to R11). What their acts do to a world is tested by
-// tests/scenes/directing_test.py.
+// Messages to directors and their answers (docs/protocol.md, R3 to R11). The effect of their acts
+// on a world is tested by tests/scenes/directing_test.py.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What is kept of metrics (docs/protocol.md: S14).
+// Metrics that are kept (docs/protocol.md: S14).
 
 #include <gtest/gtest.h>
 

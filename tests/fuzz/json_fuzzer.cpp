@@ -1,6 +1,6 @@
 // Any text, with a `{` in front, is read as a client's message in JSON and as a server's. A message
-// that can be read must be the one that protobuf reads, and must be writable as JSON, and readable
-// again as the same kind of message.
+// that can be read must be the one that protobuf reads. It must also be writable as JSON, and
+// readable again as the same kind of message.
 
 #include <string>
 #include <vector>

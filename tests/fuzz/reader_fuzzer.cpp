@@ -61,7 +61,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const replay::RecordingFile open("recording", mcap::bytes_of(recorded.bytes()));
   recorded.edit({data, size});
   const auto all = [](const std::string&) { return true; };
-  // What is slow has its turn less often, and so do inputs that are like those that had it.
+  // Slow readers have their turn less often, and so do readers of similar inputs.
   const auto turn = std::accumulate(data, data + size, std::uint8_t{0});
   switch (turn) {
     case 0:

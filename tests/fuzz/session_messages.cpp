@@ -1,4 +1,4 @@
-// What peers are sent, which is checked, and what they send.
+// Messages to peers, which are checked, and messages from peers.
 
 #include <string>
 

@@ -1,6 +1,7 @@
 #pragma once
-// A small world with much of what has a state: a robot with an arm, a tag, a magnet, a battery, a radio and
-// sensors with noise, another magnet beside it, and boxes that fall on a floor.
+// A small world with much of the state that worlds can have. It has a robot with an arm, a tag, a
+// magnet, a battery, a radio and sensors with noise. Another magnet is beside it, and boxes fall on
+// a floor.
 
 #include <cstddef>
 #include <cstdint>

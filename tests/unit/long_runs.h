@@ -1,5 +1,6 @@
 #pragma once
-// How much of the longest tests runs: a share of the rates and seeds in the normal run, all with ZIGGURAT_TEST_ALL=1.
+// Share of the longest tests that runs: a part of the rates and seeds in the normal run, all with
+// ZIGGURAT_TEST_ALL=1.
 
 #include <algorithm>
 #include <cmath>

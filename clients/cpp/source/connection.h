@@ -14,7 +14,7 @@
 
 namespace ziggurat {
 
-// Of the protocol.
+// Version of the protocol.
 inline constexpr std::uint32_t version_major = 1;
 inline constexpr std::uint32_t version_minor = 4;
 

@@ -25,7 +25,7 @@ std::optional<std::string_view> layout_in(std::string_view content, const google
   return v1::sole_field(content, v1::ServerMessage::kWorldLayoutFieldNumber);
 }
 
-/// What is wrong with the cost of a message; empty: nothing.
+/// Fault of a message whose decoding costs too much; empty: none.
 std::string excess(std::string_view content, const google::protobuf::Message& message) {
   if (content.size() <= cheap) return {};
   const auto& type = *message.GetDescriptor();

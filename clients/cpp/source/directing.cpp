@@ -98,7 +98,7 @@ void Directing::warn(const v1::Error& error) {
   warnings_.push_back(text::printable_part(where + error.message()));
 }
 
-/// What was asked for and not yet sent was for the world before.
+/// Drops acts that were not sent yet: they were for the world before.
 void Directing::reset() {
   draft_.clear_acts();
   draft_.clear_finish();

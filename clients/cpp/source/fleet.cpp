@@ -10,7 +10,7 @@
 namespace ziggurat {
 
 Fleet::Fleet(const v1::Welcome& welcome) : robots_(size(welcome.robots_size())) {
-  // What a server allows at least (T4); half of smaller messages.
+  // Limit that every server allows at least (T4); half of smaller messages.
   log_.max_bytes = std::min<std::size_t>(welcome.max_message_bytes() / 2,
                                          (std::size_t{256} << 10) + robots_.size() * (std::size_t{2} << 10));
   for (std::size_t i = 0; i < robots_.size(); ++i) {

@@ -1,5 +1,6 @@
 #pragma once
-// Where a connection without encryption goes: a socket's path on this machine, or a port of a host.
+// Endpoint of a connection without encryption: a socket's path on this machine, or a port of a
+// host.
 
 #include <sys/socket.h>
 
@@ -16,7 +17,7 @@ struct SocketAddress {
   socklen_t size = 0;  // [bytes]; 0: there is none
 };
 
-/// That a server can listen at it: no port without a number and no other way than these is waited for.
+/// Checks that a server can listen at it. It must be one of these forms, and its port a number.
 /// @throws std::invalid_argument that says what an endpoint is
 void check_endpoint(const std::string& endpoint);
 

@@ -36,7 +36,7 @@ PlainStream::~PlainStream() {
     ::poll(&waiting, 1, 10);
     flush();
   }
-  // What has arrived is read: the server would take an unread rest for a broken connection.
+  // Input is read to its end: the server would take an unread rest for a broken connection.
   while (is_connected() && Clock::now() < end && fill()) filled_ = taken_ = 0;
   close();
 }
@@ -114,7 +114,7 @@ void PlainStream::flush() {
     const ssize_t count = ::send(socket_, rest.data(), rest.size(), MSG_NOSIGNAL);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) {
-      // What the server sent before it closed the connection may still be read.
+      // Input that the server sent before it closed the connection may still be read.
       is_broken_ = errno != EAGAIN && errno != EWOULDBLOCK;
       break;
     }

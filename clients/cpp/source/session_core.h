@@ -1,6 +1,6 @@
 #pragma once
-// What sessions of controllers and directors have in common: Hello and Welcome, ticks and their answers, the end,
-// and the way back after a lost connection.
+// Core of the sessions of controllers and directors: Hello and Welcome, ticks and their answers,
+// the end, and the way back after a lost connection.
 
 #include <exception>
 

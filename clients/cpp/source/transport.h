@@ -1,5 +1,5 @@
 #pragma once
-// How a client's messages go to the server and back. Both ways speak ZeroMQ's wire protocol.
+// Transport of a client's messages to the server and back. Both ways speak ZeroMQ's wire protocol.
 
 #include <chrono>
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace ziggurat {
 
-/// What waits to be sent when a connection ends is tried for so long at most.
+/// Longest time for which waiting output is still sent when a connection ends.
 constexpr std::chrono::milliseconds longest_linger{1000};
 
 class Transport {
@@ -42,11 +42,11 @@ class Transport {
   virtual void linger() = 0;
 };
 
-/// Of a server: an Observation of 1 GiB (docs/protocol.md, D5) and what is around it. A longer one closes the
-/// connection when its size is known [bytes].
+/// Longest message of a server: an Observation of 1 GiB (docs/protocol.md, D5) with its envelope. A
+/// longer one closes the connection when its size is known [bytes].
 inline constexpr std::size_t longest_message = (std::size_t{1} << 30) + (std::size_t{1} << 20);
 
-/// What a client without keys is told at a protected endpoint.
+/// Advice for a client without keys at a protected endpoint.
 inline constexpr const char* keys_are_missing =
     "refused key? The endpoint is protected, and this client has no keys; set the server's public key "
     "and a secret key";

@@ -25,7 +25,7 @@ void fill(const SessionOptions& options, v1::Hello& hello) {
   }
 }
 
-/// How long a connection is silent at most unless it is lost (docs/protocol.md, M3); 0 = any time.
+/// Longest silence of a connection that is not lost (docs/protocol.md, M3); 0 = any time.
 std::chrono::milliseconds longest_silence(const v1::Welcome& welcome, const SessionOptions& options) {
   // The end of a local connection is always told, so a server that is silent there is slow.
   if (welcome.wall_heartbeat_ms() == 0 || options.endpoint.starts_with("ipc://")) return {};

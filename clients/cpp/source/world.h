@@ -37,7 +37,7 @@ class World {
     const Entity* entity = nullptr;
     std::size_t number = 0;
   };
-  /// How many of each kind all entities have together.
+  /// Number of parts of each kind that all entities have together.
   struct Counts {
     std::size_t links = 0, joints = 0, leds = 0, directional_leds = 0, tags = 0, magnets = 0, radios = 0;
   };
@@ -57,7 +57,7 @@ class World {
   Counts counts_;
   bool has_new_layout_ = false, has_changed_ = false;
 
-  // Of the present tick, empty if the director did not ask for them.
+  // State at the current tick, empty if the director did not ask for it.
   std::vector<Pose> poses_;
   std::vector<LinkState> links_;
   std::vector<JointState> joints_;

@@ -20,7 +20,7 @@ constexpr std::pair<std::string_view, const char*> names[] = {
 
 int do_nothing(lua_State*) { return 0; }
 
-/// What scripts switch on before they read it.
+/// Whether scripts switch the device on before they read it.
 bool is_switched(std::string_view name) {
   return name.starts_with("colored_blob_") || name == "distance_scanner";
 }

@@ -37,7 +37,7 @@ struct ProgramOptions {
   bool quiet = false;
 };
 
-/// What the arguments request: a run, or only a text.
+/// Request of the arguments: a run, or only a text.
 struct Request {
   ProgramOptions options;
   std::string text;  ///< of --help or --version; empty otherwise

@@ -84,7 +84,7 @@ void Runner::finish() {
   }
 }
 
-// What the script holds is given back: its memory, its open files.
+// Frees the memory and the open files of the script.
 void Runner::end(Seat& seat) {
   destroy(seat);
   seat.controller.reset();

@@ -24,7 +24,7 @@ bool is_called_with_colon(lua_State* state) {
   return is_field;
 }
 
-/// What to write instead.
+/// Advice for the call.
 const char* hint(lua_State* state) {
   return is_called_with_colon(state) ? "; write a dot, not a colon, before the function's name" : "";
 }

@@ -74,7 +74,7 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
   return text;
 }
 
-/// Where a module may be: the templates of `path` with its name in place of each '?'.
+/// Search for a module: the templates of `path` with its name in place of each '?'.
 struct Search {
   std::string found;  ///< the first file that exists; empty if none does
   std::string tried;  ///< a line for each that does not

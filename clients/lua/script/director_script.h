@@ -28,8 +28,8 @@ class DirectorScript final : public Script {
   /// After the last tick: destroy().
   Failure destroy();
 
-  /// Where the script asked for the act that an error is about: `FILE:LINE: `; empty if that is not known. Of what was
-  /// asked for since the last call of step() or reset() began.
+  /// Place in the script of the act that an error is about: `FILE:LINE: `; empty if that is not
+  /// known. Only acts since the begin of the last call of step() or reset() are known.
   /// @param field  of the error
   std::string before_error_of(std::string_view field) const { return places_.before_error_of(field); }
 

@@ -110,7 +110,7 @@ const Property* property_at(lua_State* state, int index) {
   return property_named(check_text(state, index));
 }
 
-/// Of the entity at index 1; null if it is not in the world.
+/// Entity of the table at index 1; null if it is not in the world.
 const Entity* entity_of(lua_State* state) {
   lua_pushliteral(state, "id");
   lua_rawget(state, 1);

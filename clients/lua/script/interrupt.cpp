@@ -28,7 +28,7 @@ std::atomic<lua_State*> running{nullptr};  // the coroutine that runs now
 static_assert(std::atomic<bool>::is_always_lock_free &&
               std::atomic<lua_State*>::is_always_lock_free);
 
-// Of the running call. Written by the thread that runs scripts, and by its signal handler.
+// State of the running call. Written by the thread that runs scripts, and by its signal handler.
 struct Watch {
   const char* robot = "";
   const char* script = "";  // its file

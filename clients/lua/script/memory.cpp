@@ -35,7 +35,7 @@ void BoundedState::note_place(Budget& budget) {
   }
 }
 
-// What has left the pool stays outside, and so does what begins when it is full.
+// Blocks that have left the pool stay outside, and so do blocks that are made when it is full.
 void* BoundedState::resize(BlockPool& pool, void* block, std::size_t old_size, std::size_t new_size) {
   const bool pooled = pool.owns(block);
   if (block != nullptr && !pooled) return std::realloc(block, new_size);

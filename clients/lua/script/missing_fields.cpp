@@ -90,7 +90,7 @@ bool is_about(std::string_view error, const std::string& field) {
   return contains(error, "nil value") && contains(error, " '" + field + "')");
 }
 
-/// What io.open said, for an error about a nil value.
+/// Message of io.open, for an error about a nil value.
 std::string of_opening(lua_State* state, std::string_view error) {
   if (!contains(error, "nil value") && !contains(error, "got nil")) return {};
   std::string text;

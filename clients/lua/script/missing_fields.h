@@ -14,7 +14,7 @@ namespace ziggurat::lua {
 /// @param kind, id  of whom it belongs to: `robot`, `r0`
 void watch_missing_fields(lua_State* state, const char* name, const char* kind, const char* id);
 
-/// What was read before does not count any more: the script is called again.
+/// Forgets the fields that were read before: the script is called again.
 void forget_missing_fields(lua_State* state);
 
 /// io.open has returned nil, and the message at that index; 0: it has opened a file. May raise a Lua error.

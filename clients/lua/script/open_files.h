@@ -6,7 +6,7 @@
 
 namespace ziggurat::lua {
 
-/// What a script may have open if the process may open enough.
+/// Number of files that a script may have open if the process may open enough.
 inline constexpr std::size_t most_open_files = 32;
 
 /// May raise a Lua error, as all functions here.

@@ -43,7 +43,7 @@ class Script {
   Script(const Script&) = delete;
   Script& operator=(const Script&) = delete;
 
-  /// What the script logged, also in a call that failed. The caller clears it.
+  /// Log lines of the script, also of a call that failed. The caller clears them.
   LogLines& log() { return log_; }
   std::size_t used_memory() const { return state_.used_bytes(); }  ///< [bytes]
 

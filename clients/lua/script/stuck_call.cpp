@@ -15,7 +15,7 @@ struct Leavable {
   lua_CFunction function = nullptr;  // of Lua; the same in each state
 };
 
-// Those that compute for long, and those that they may call again and again.
+// Library functions that may compute for long, or that these call again and again.
 Leavable leavable[] = {
     {"string", "byte"},   {"string", "char"},   {"string", "find"},      {"string", "format"}, {"string", "gmatch"},
     {"string", "gsub"},   {"string", "len"},    {"string", "lower"},     {"string", "match"},  {"string", "pack"},
@@ -25,7 +25,7 @@ Leavable leavable[] = {
     {"utf8", "offset"},   {"_G", "rawequal"},   {"_G", "rawget"},        {"_G", "rawlen"},     {"_G", "rawset"},
     {"_G", "select"},     {"_G", "tostring"},   {"_G", "type"}};
 
-// What string.gmatch returns.
+// Iterator that string.gmatch returns.
 constexpr Leavable search{"string", "gmatch"};
 
 // Read and written by the thread that runs scripts, and by its signal handler.

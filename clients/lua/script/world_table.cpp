@@ -173,7 +173,7 @@ void push_element(lua_State* state, std::size_t i) {
   }
 }
 
-/// That the entity has devices of that kind, and a list a value for each.
+/// Checks that the entity has devices of that kind, and a list a value for each.
 void check_devices(lua_State* state, std::size_t count, const char* devices) {
   if (count == 0) luaL_error(state, "'%s' has no %s", lua_tostring(state, 1), devices);
   if (lua_type(state, 2) != LUA_TTABLE || lua_rawlen(state, 2) == count) return;

@@ -11,7 +11,7 @@
 
 namespace ziggurat::lua {
 
-/// What the table refers to. All of it outlives the state and does not move.
+/// Parts of the world that the table refers to. All of it outlives the state and does not move.
 struct WorldParts {
   Director& director;
   LogLines& log;

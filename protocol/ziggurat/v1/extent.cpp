@@ -158,7 +158,7 @@ class Memory {
         std::ranges::count_if(field.content, [](char byte) { return static_cast<unsigned char>(byte) < 0x80; }));
   }
 
-  /// Of an empty message [bytes].
+  /// Size of an empty message [bytes].
   std::size_t size_of(const Descriptor& type) {
     constexpr std::size_t unknown = 256;
     const auto [at, is_new] = sizes_.try_emplace(&type, unknown);

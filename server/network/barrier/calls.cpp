@@ -34,7 +34,7 @@ std::optional<wire::Fault> check_entities(const std::vector<std::string>& entiti
       fmt::format("The request names {} entities; {} are allowed.", entities.size(), most_ids));
 }
 
-/// What keeping it takes, about.
+/// Approximate memory that the request takes [bytes].
 std::size_t bytes_of(const wire::Request& request) {
   std::size_t bytes = sizeof request + request.text.size() +
                       sizeof(double) * (request.position.size() + request.orientation.size());

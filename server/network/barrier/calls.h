@@ -20,7 +20,7 @@ std::optional<wire::Fault> check_request(const wire::Request& request, wire::Rol
 
 class Calls {
  public:
-  // Of a session; a single request may have more bytes.
+  // Limits for the requests of a session; a single request may have more bytes.
   static constexpr std::size_t most_unanswered = 64;
   static constexpr std::size_t most_unanswered_bytes = 8 * mebibyte;
 

@@ -1,5 +1,5 @@
 #pragma once
-// How sessions end and robots leave (docs/protocol.md, section 5).
+// End of sessions, and departure of robots (docs/protocol.md, section 5).
 
 #include <cstddef>
 #include <span>

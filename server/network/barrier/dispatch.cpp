@@ -8,7 +8,7 @@
 #include "network/barrier/departure.h"
 #include "network/barrier/directing.h"
 #include "network/barrier/exchange.h"
-#include "network/barrier/talk.h"
+#include "network/barrier/peer_messages.h"
 #include "wire/fault.h"
 
 namespace ziggurat::network {
@@ -39,8 +39,8 @@ bool handle_request(Barrier& barrier, Session& session) {
     answer_fault(barrier, session.connection, &session, std::move(*fault), id);
     return false;
   }
-  session.contact.faults = 0;
-  return session.role == wire::Role::director && session.turn.owes;
+  session.liveness.faults = 0;
+  return session.role == wire::Role::director && session.pending_answer.is_owed;
 }
 
 std::size_t size_of(const Received& received) { return received.bytes.size() + received.skipped; }
@@ -103,8 +103,8 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
   Connection& connection = barrier.connections.receive_from(id, barrier.now);
   Session* session = barrier.sessions.find(connection.session);
   if (session != nullptr) {
-    session->contact.last_received = barrier.now;
-    session->contact.heartbeats = 0;
+    session->liveness.last_received = barrier.now;
+    session->liveness.heartbeats = 0;
   }
   const auto encoding =
       received.is_single_frame ? wire::encoding_of(received.bytes) : received.several_frames;
@@ -144,7 +144,7 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
         barrier, id, nullptr,
         make_fault(ErrorCode::out_of_state, {}, "The first message of a session must be Hello."));
   }
-  stand_if_paused(barrier);
+  halt_if_paused(barrier);
 }
 
 bool can_hear(const Barrier& barrier, const Call& call) {

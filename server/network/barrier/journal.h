@@ -1,5 +1,5 @@
 #pragma once
-// What the program that runs the server will be told of peers and robots.
+// Report to the program that runs the server: events of peers and robots.
 
 #include <cstddef>
 #include <cstdint>
@@ -36,7 +36,7 @@ class Journal {
   void drop(std::string text) { report_.dropped.push_back(std::move(text)); }
   /// A deadline stops the run. The first sentence counts.
   void stop(std::string text);
-  /// Where lines that controllers log are appended.
+  /// Lines that controllers have logged; append new ones.
   std::vector<wire::LogLine>& log() { return report_.log; }
   /// Forgets what robots behind the first `count` logged, and how they failed or departed.
   void shrink(std::size_t count);

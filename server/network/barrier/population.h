@@ -17,11 +17,11 @@ namespace ziggurat::network {
 /// @param of_others  as Config::deadline_of_others
 void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Deadline>& deadlines,
           const Config::Deadline& of_others = {});
-/// Robots have come: those of the layout that were not known. The tick in hand does not wait for
+/// Robots have come: those of the layout that were not known. The current tick does not wait for
 /// them.
 /// @param scripts  of them, as Run::scripts
-/// @param senses   of the tick in hand, theirs included
-void add_robots(Barrier& barrier, std::span<const std::string> scripts, const Senses& senses);
+/// @param readings   of the current tick, theirs included
+void add_robots(Barrier& barrier, std::span<const std::string> scripts, const TickReadings& readings);
 /// These robots have left the world.
 /// @param why  a sentence for their sessions; empty: they are not told
 void remove_robots(Barrier& barrier, std::span<const std::size_t> robots, const std::string& why);

@@ -49,8 +49,8 @@ Key key_of(Bytes bytes) {
   return key;
 }
 
-/// What boxes between two keys are sealed and opened with: to find it out costs more than all else. None if the other
-/// key is one of few that no client makes.
+/// Shared key that seals and opens the boxes between two keys; computing it is the most expensive
+/// step. None if the other key is a weak one, which no client makes.
 std::optional<Key> shared_by(const Key& theirs, const Key& ours) {
   Key shared;
   const int result = ::crypto_box_beforenm(shared.data(), theirs.data(), ours.data());

@@ -12,7 +12,7 @@ constexpr const char* not_a_frame = "a frame of its is none of ZMTP 3";
 
 std::string_view mechanism_for(const CurveKeys* keys) { return keys == nullptr ? "NULL" : "CURVE"; }
 
-/// What a client is told to be instead of what its metadata say.
+/// Reason to refuse a client because of its metadata; empty: it is accepted.
 std::string refusal_of(const Metadata& metadata) {
   constexpr std::size_t longest_type = 16;
   if (!metadata.is_valid) return "its metadata are none of ZMTP 3";

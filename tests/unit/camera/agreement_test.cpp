@@ -89,7 +89,7 @@ class BothDetectors {
 
   bool clear(const Vector3& eye, const Vector3& target) const {
     std::size_t left = 1;
-    return devices::Sight{rays_, 0, nullptr, nullptr, {}, left}.clear(eye, target);
+    return devices::OcclusionTest{rays_, 0, nullptr, nullptr, {}, left}.clear(eye, target);
   }
 
   std::map<int, std::array<Vector2, 4>> simulated() {

@@ -216,10 +216,10 @@ TEST(Cameras, ReadingsAreHashedAndFollowTheLeds) {
   EXPECT_EQ(with->observations().leds.at(0).color, 0x00FF00u);
 }
 
-TEST(Sight, TooManyLinesEndWithASentence) {
+TEST(OcclusionTest, TooManyLinesEndWithASentence) {
   const physics::Rays rays(scene::Physics{});
   std::size_t left = 2;
-  const devices::Sight sight{rays, 0, nullptr, nullptr, {}, left};
+  const devices::OcclusionTest sight{rays, 0, nullptr, nullptr, {}, left};
   for (int line = 0; line < 2; ++line) EXPECT_TRUE(sight.clear({0, 0, 1}, {1, 0, 1}));
   EXPECT_THROW(sight.clear({0, 0, 1}, {1, 0, 1}), std::runtime_error);
 }

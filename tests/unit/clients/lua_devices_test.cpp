@@ -1,4 +1,4 @@
-// What scripts find below `robot`, table by table. A script's fault fails its assert.
+// Tables below `robot` in scripts, one by one. A script's fault fails its assert.
 
 #include "lua_devices.h"
 
@@ -226,7 +226,7 @@ TEST_F(Devices, PositioningIsPositionAngleAndAxis) {
   EXPECT_RUNS(step());
 }
 
-/// Of a robot that turns on the spot, as a quaternion that is integrated without end has it.
+/// Orientation of a robot that turns on the spot, as a quaternion that is integrated without end.
 TEST_F(Devices, PositioningHasOneFormOfEachRotation) {
   robot_.set_positioning(true);
   EXPECT_RUNS(start(R"lua(

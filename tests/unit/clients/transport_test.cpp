@@ -36,7 +36,7 @@ TEST(Transport, AConnectionThatIsRefusedTellsTheSender) {
   SessionOptions without_keys;
   without_keys.endpoint = server.get(zmq::sockopt::last_endpoint);
   const auto transport = make_transport(without_keys);
-  // What is sent before the refusal is known goes into a queue that ZeroMQ then drops.
+  // Messages before the refusal is known go into a queue that ZeroMQ then drops.
   const auto send_for_long = [&] {
     comes_true([&] {
       transport->send(1, [](char* to) { *to = 0; });

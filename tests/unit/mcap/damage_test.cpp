@@ -53,7 +53,7 @@ TEST(Damage, DefinitionsInLargeChunksTakeTheirOwnSizeOnly) {
   EXPECT_EQ(scanned.contents.chunks.size(), 1U);
 }
 
-/// How many messages are in chunks that end there or before.
+/// Number of messages in chunks that end there or before.
 std::size_t messages_before(const Reader& whole, std::size_t size) {
   std::size_t count = 0;
   for (const ChunkIndex& chunk : whole.contents().chunks) {

@@ -64,7 +64,7 @@ TEST(Accepting, GoesOnByItselfAfterACrowd) {
   EXPECT_TRUE(serve(socket, patience.timeout));
 }
 
-/// What a server answers to a client that says something and, perhaps, that it says no more.
+/// Answer of a server to a client that sends these bytes and, perhaps, closes its sending side.
 std::string answer_to(Socket& socket, const std::string& said, bool ends) {
   const posix::Descriptor client = connect_and_send(socket.endpoints().front(), said);
   if (ends) ::shutdown(client.number(), SHUT_WR);

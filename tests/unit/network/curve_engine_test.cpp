@@ -1,5 +1,5 @@
-// What a peer with the right keys can do with them: boxes again, in another order, of another length or
-// direction, and steps of the handshake where they do not belong. All end the connection.
+// Attacks of a peer that has the right keys. It sends boxes again, in another order, of another
+// length or direction, or steps of the handshake at the wrong time. All end the connection.
 
 #include <gtest/gtest.h>
 #include <zmq.h>

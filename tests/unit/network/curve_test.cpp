@@ -156,7 +156,7 @@ struct Protected : Keys {
     options.connect_timeout = milliseconds{700};
     return options;
   }
-  /// Of a controller of one robot that wishes for a deadline policy.
+  /// Options of a controller of one robot that asks for a deadline policy.
   Options wishing(const Server& server, const std::string& key, const std::string& robot,
                   Deadline::Action action) const {
     Options wish = options(server, key);

@@ -1,4 +1,5 @@
-// How much time others than controllers and supervisors have: much of what is idle, and a small share of the ticks'.
+// Time that the server gives to others than controllers and supervisors: much of the idle time, and
+// a small share of the ticks'.
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -67,7 +68,8 @@ std::string repeated(int count, const std::string& frame) {
 const std::string ping = "\x04\x07\x04PING\0\0"s, pong = "\x04\x05\x04PONG"s;
 const std::string short_message = "\0\1x"s, longer_message = "\0\2xx"s;
 
-/// How many PINGs of a connection are answered before the message of another that came behind them.
+/// Number of PINGs of one connection that are answered before the message of another that came
+/// behind them.
 std::size_t answered_before_other(Standing standing) {
   Crowd crowd;
   const posix::Descriptor busy = crowd.join("busy", standing), other = crowd.join("other", Standing::controller);

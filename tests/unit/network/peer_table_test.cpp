@@ -1,4 +1,4 @@
-// How long connections may be there without session, and what all of them may take together.
+// Age limits of connections without session, and the memory limits of all connections.
 
 #include <gtest/gtest.h>
 #include <malloc.h>

@@ -11,7 +11,7 @@
 
 namespace ziggurat::network {
 
-/// What a ZeroMQ client without keys sends, all at once and without reading an answer.
+/// Bytes that a ZeroMQ client without keys sends, all at once and without reading an answer.
 inline std::string greeting_and(int messages, const std::string& content) {
   using namespace std::string_literals;
   std::string bytes = "\xFF\0\0\0\0\0\0\0\x01\x7F\x03\0NULL"s + std::string(48, '\0');

@@ -23,7 +23,7 @@ using namespace std::string_literals;
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-/// What the server tells people first, until then as it serves.
+/// First notice of the server, which serves until then.
 std::string line_of(Socket& socket) {
   Received received;
   for (const auto end = Clock::now() + patience.timeout; Clock::now() < end;) {

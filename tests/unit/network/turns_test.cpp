@@ -107,8 +107,8 @@ TEST(Turns, OtherDescriptorsAreLookedAtWhileMessagesWait) {
   EXPECT_EQ(socket.poll(patience.timeout, std::array{reader.number()}), Socket::Ready::woken);
 }
 
-/// Of this user's own processes, though others without session have all places, and their entrance
-/// is closed meanwhile.
+/// Processes of this user can connect even if others without session have all places, and their
+/// entrance is closed.
 TEST(Turns, ThePrivateEntranceStaysOpenWhenOthersHaveAllPlaces) {
   rlimit usual{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &usual), 0);

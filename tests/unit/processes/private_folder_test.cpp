@@ -108,7 +108,7 @@ TEST(PrivateFolder, IsShortEvenIfTheRuntimeFolderIsNot) {
   EXPECT_LT(folder.path().size(), 100u);
 }
 
-/// How many are left of those of a process that is killed while it makes one after another.
+/// Number of folders that remain of a process that is killed while it makes one after another.
 std::ptrdiff_t left_after_kills(const PrivateFolder& parent, int kills) {
   for (int i = 0; i < kills; ++i) {
     const pid_t process = ::fork();

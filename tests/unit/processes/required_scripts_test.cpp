@@ -19,7 +19,8 @@ struct RequiredScripts : ::testing::Test {
   TemporaryFolder folder;
   std::vector<fs::path> left_out;
 
-  /// What is added to main.lua with this text, as paths in the folder. There are a.lua, b.lua and sub/c.lua.
+  /// Files added to main.lua with this text, as paths in the folder. There are a.lua, b.lua and
+  /// sub/c.lua.
   std::vector<std::string> added(const std::string& text) {
     fs::create_directory(folder / "sub");
     for (const char* name : {"a.lua", "b.lua", "sub/c.lua", "notes.txt"}) write(name, "");

@@ -23,7 +23,7 @@ namespace {
 using google::protobuf::Message;
 constexpr std::size_t no_bound = ~std::size_t{0} / 4;
 
-/// What this process has of the system's memory for objects [bytes].
+/// Memory that this process holds for objects [bytes].
 std::size_t allocated() {
   const struct mallinfo2 info = ::mallinfo2();
   return info.uordblks + info.hblkhd;

@@ -1,4 +1,4 @@
-// What is drawn over the world if a view asks for it.
+// Layers over the world if a view asks for them.
 #include <gtest/gtest.h>
 
 #include <set>

@@ -53,7 +53,7 @@ inline v1::RunStart start() {
   return start;
 }
 
-/// What is recorded of a run.
+/// Recorded inputs and states of a run.
 struct Recording {
   std::vector<v1::Inputs> inputs;
   std::vector<std::vector<world::LinkState>> links;

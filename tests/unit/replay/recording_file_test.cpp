@@ -178,7 +178,7 @@ std::string repeated(std::string_view piece, std::size_t count) {
   return all;
 }
 
-/// What is told of it; empty: nothing was.
+/// Sentence of the fault; empty: there was none.
 std::string fault_of(const std::function<void()>& read) {
   try {
     read();

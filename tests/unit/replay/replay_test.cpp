@@ -16,7 +16,7 @@ using testing::eventful_run;
 using testing::OwnWorld;
 using testing::Recording;
 
-/// How many states are the same, from the first on.
+/// Number of states that are the same, from the first on.
 std::size_t same_states(const Recording& recording) {
   OwnWorld world;
   Replay replay = world.replay(recording);
@@ -74,7 +74,7 @@ TEST(Replay, RepeatsSnapshotsAndRestores) {
   EXPECT_NE(error_of(run.recording).find("no snapshot"), std::string::npos);
 }
 
-/// What was done, also where a world that did not move has no room: what is shown is what was recorded.
+/// Shows recorded poses. Acts are applied also where a world that did not move has no free place.
 TEST(Replay, ShowsRecordedPosesWithoutSimulating) {
   testing::Recorder run;
   for (int i = 0; i < 3; ++i) run.step();

@@ -25,7 +25,7 @@ struct ClientsFile : ::testing::Test {
     std::ofstream(file) << "";
     ::chmod(file.c_str(), 0600);
   }
-  /// Whose the file is: a test that root runs gives it to another user.
+  /// Owner of the file: a test that root runs gives it to another user.
   uid_t owner() const {
     constexpr uid_t other = 12345;
     if (::geteuid() != root) return ::geteuid();

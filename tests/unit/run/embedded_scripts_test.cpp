@@ -34,7 +34,7 @@ TEST(EmbeddedScripts, NoNameLeavesTheFolder) {
   EXPECT_EQ(written, (std::set<std::string>{"a.lua", "b.lua", "c.lua", "d.lua", "e.lua", "f.lua"}));
 }
 
-/// Of the one director that such a scene has.
+/// Script of the only director of such a scene.
 std::string script_of_director(const std::string& script, const std::string& scene_path,
                                const std::vector<std::string>& names) {
   replay::EmbeddedFiles files;

@@ -9,9 +9,9 @@
 namespace ziggurat::run {
 namespace {
 
-bool is_refused(const std::string& gate, const GateGround& ground) {
+bool is_refused(const std::string& gate, const GateContext& context) {
   try {
-    check_gate(reports::parse_gate(gate), ground);
+    check_gate(reports::parse_gate(gate), context);
   } catch (const text::UsageError&) {
     return true;
   }

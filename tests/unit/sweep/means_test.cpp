@@ -9,7 +9,7 @@
 namespace ziggurat::sweep {
 namespace {
 
-// Of the tables of Student's t, two-sided 95 %: 12.706 for 1 degree of freedom, 2.776 for 4; 99 %: 4.604.
+// Values of Student's t, two-sided 95 %: 12.706 for 1 degree of freedom, 2.776 for 4; 99 %: 4.604.
 TEST(Estimate, HasTheIntervalOfStudentsT) {
   const std::vector<double> values = {1, 2, 3, 4, 5};  // mean 3, s² = 2.5
   const Estimate e = estimate(values, 0.95);

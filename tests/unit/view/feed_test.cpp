@@ -42,7 +42,7 @@ struct Watched {
   }
   void show_tick() { feed.show(moment(), {ids, {}, false}); }
   void show_all() { feed.show(moment(), {ids, ids, false}); }
-  /// What the viewer gets: topics with their ticks, as "/poses 3".
+  /// Messages that the viewer receives: topics with their ticks, as "/poses 3".
   std::vector<std::string> sent() {
     feed.pass_on(hub);
     std::vector<std::string> all;
@@ -71,8 +71,8 @@ struct Watched {
   }
 
   ShownWorld world;
-  Desk desk;
-  Hub hub{{"1", "s", "id", false}, {}, desk};
+  ViewerRequests requests;
+  Hub hub{{"1", "s", "id", false}, {}, requests};
   Viewer& viewer = hub.add(false);
   Feed feed;
   std::vector<std::uint32_t> ids;

@@ -37,8 +37,8 @@ struct Bench {
     }
     return all;
   }
-  Desk desk;
-  Hub hub{{"1", "s", "id", false}, {{"real_time_factor", 1.0}, {"phase", std::string("x")}}, desk};
+  ViewerRequests requests;
+  Hub hub{{"1", "s", "id", false}, {{"real_time_factor", 1.0}, {"phase", std::string("x")}}, requests};
 };
 
 using Sent = std::vector<std::string>;
@@ -48,9 +48,9 @@ TEST(Hub, IntroducesItselfAndSendsWhatIsSubscribed) {
   Viewer& viewer = bench.hub.add(true);
   EXPECT_EQ(bench.sent(viewer), (Sent{"serverInfo", "advertiseServices", "advertise"}));
   bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":2}]})");
-  const auto news = bench.desk.take();
-  EXPECT_EQ(news.wanted, std::vector<std::uint32_t>{2});
-  EXPECT_EQ(news.fresh, std::vector<std::uint32_t>{2});
+  const auto changes = bench.requests.take();
+  EXPECT_EQ(changes.wanted, std::vector<std::uint32_t>{2});
+  EXPECT_EQ(changes.fresh, std::vector<std::uint32_t>{2});
   bench.hub.show(5, std::vector{message_of(1, "world"), message_of(2, "poses")});
   EXPECT_EQ(bench.sent(viewer), Sent{"poses"});
   Viewer& second = bench.hub.add(false);
@@ -59,7 +59,7 @@ TEST(Hub, IntroducesItselfAndSendsWhatIsSubscribed) {
   EXPECT_EQ(bench.sent(second), Sent{"poses"}) << "the newest at once";
   bench.say(viewer, R"({"op":"unsubscribe","subscriptionIds":[9]})");
   bench.hub.remove(second.id);
-  EXPECT_TRUE(bench.desk.take().wanted.empty());
+  EXPECT_TRUE(bench.requests.take().wanted.empty());
 }
 
 TEST(Hub, NonsenseIsAnsweredAndEndsAtLast) {
@@ -85,7 +85,7 @@ TEST(Hub, NonsenseIsAnsweredAndEndsAtLast) {
     bench.sent(viewer);
   }
   EXPECT_TRUE(viewer.is_over);
-  EXPECT_TRUE(bench.desk.take().calls.empty());
+  EXPECT_TRUE(bench.requests.take().calls.empty());
 }
 
 TEST(Hub, TheHundredthNonsenseInARowIsTheLast) {
@@ -111,7 +111,7 @@ TEST(Hub, CallsNeedTheTokenAndAreAnsweredOnce) {
   EXPECT_EQ(bench.sent(looker), Sent{"serviceCallFailure"});
   Viewer& viewer = bench.hub.add(true);
   bench.hub.receive(viewer, call, false);
-  const auto calls = bench.desk.take().calls;
+  const auto calls = bench.requests.take().calls;
   ASSERT_EQ(calls.size(), 1u);
   EXPECT_EQ(calls[0].request.kind, wire::Request::Kind::move);
   EXPECT_EQ(calls[0].request.text, "b");
@@ -120,7 +120,7 @@ TEST(Hub, CallsNeedTheTokenAndAreAnsweredOnce) {
   bench.hub.answer(calls[0], false, "no");
   EXPECT_EQ(bench.sent(viewer), Sent{"serviceCallFailure"});
   for (int i = 0; i < 100; ++i) bench.hub.receive(viewer, call, false);
-  EXPECT_EQ(bench.desk.take().calls.size(), Hub::most_unanswered);
+  EXPECT_EQ(bench.requests.take().calls.size(), Hub::most_unanswered);
 }
 
 TEST(Hub, ChannelsComeAndGo) {
@@ -131,7 +131,7 @@ TEST(Hub, ChannelsComeAndGo) {
   bench.hub.set_channels(
       {{1, "/world", Kind::world, &schema, 0}, {3, "/tf", Kind::transforms, &schema, 0}});
   EXPECT_EQ(bench.sent(viewer), (Sent{"unadvertise", "advertise"}));
-  EXPECT_TRUE(bench.desk.take().wanted.empty());
+  EXPECT_TRUE(bench.requests.take().wanted.empty());
   bench.hub.show(6, std::vector{message_of(2, "poses")});
   EXPECT_TRUE(bench.sent(viewer).empty());
 }
@@ -175,7 +175,7 @@ TEST(Hub, ALongListOfChannelsIsMadeInPartsAsTheViewerReads) {
     bench.hub.set_channels(large_channels(1, 1));
     bench.hub.set_channels(large_channels(1, 4));
   }
-  EXPECT_LT(idle.output.size(), 1000u) << "nothing but serverInfo waits for one that does not read";
+  EXPECT_LT(idle.send_queue.size(), 1000u) << "nothing but serverInfo waits for one that does not read";
   EXPECT_EQ(told(bench, idle, "advertise"), (std::vector<std::vector<std::uint32_t>>{{1, 2, 3}, {4}}));
   const auto gone = nlohmann::json::parse(bench.hub.next(viewer)->head).at("channelIds");
   EXPECT_LE(gone.size(), 12u) << "each channel is told to be gone once";
@@ -273,7 +273,7 @@ TEST(Hub, ALargeCallWaitsForTheAnswersOfOthers) {
   const std::string large = R"({"xml":")" + std::string(Hub::largest_queued, 'x') + "\"}";
   const std::string spawn = call_of(7, large);
   for (int i = 0; i < 3; ++i) bench.hub.receive(viewer, spawn, false);
-  EXPECT_EQ(bench.desk.take().calls.size(), 1U);
+  EXPECT_EQ(bench.requests.take().calls.size(), 1U);
   EXPECT_EQ(bench.sent(viewer), (Sent{"serviceCallFailure", "serviceCallFailure"}));
   EXPECT_FALSE(viewer.is_over);
 }
@@ -289,7 +289,7 @@ TEST(Hub, JsonWithVeryManyValuesIsNotRead) {
   bench.hub.receive(viewer, call_of(6, numbers + "]}"), false);
   const std::string text = R"({"xml":"\",[[[)" + std::string(200'000, ',') + "\"}";
   bench.hub.receive(viewer, call_of(7, text), false);
-  const auto calls = bench.desk.take().calls;
+  const auto calls = bench.requests.take().calls;
   ASSERT_EQ(calls.size(), 1U) << "commas of a text are no values";
   EXPECT_EQ(calls[0].request.text.size(), 200'005U);
 }

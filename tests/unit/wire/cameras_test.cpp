@@ -1,4 +1,4 @@
-// What cameras see, on its way to a client.
+// Camera readings on their way to a client.
 
 #include "wire/device_wire.h"
 #include "wire/observation.h"
@@ -99,15 +99,15 @@ TEST_F(DeviceWire, PicturesCountToo) {
   EXPECT_FALSE(outbox.observation(roster, often, long_payloads));
 }
 
-/// What is counted of an observation holds for the message that is made of it.
+/// Expects the counted sizes of an observation in the message that is made of it.
 void expect_counted(const Roster& roster, const world::Observations& seen, const std::vector<std::string>& texts) {
   Outbox outbox;
   ASSERT_TRUE(outbox.observation(roster, seen, texts));
-  const Sensed sensed = sensed_by(roster, seen, texts);
+  const ReadingSize size = size_of_readings(roster, seen, texts);
   const std::string bytes = outbox.message().observation().SerializeAsString();
   constexpr std::size_t no_bound = v1::most_decoded, other_readings = 4096;
-  EXPECT_LE(v1::decoded_size(bytes, *v1::Observation::descriptor(), no_bound), sensed.memory + other_readings);
-  EXPECT_LT(sensed.memory, no_bound);
+  EXPECT_LE(v1::decoded_size(bytes, *v1::Observation::descriptor(), no_bound), size.memory + other_readings);
+  EXPECT_LT(size.memory, no_bound);
 }
 
 TEST_F(DeviceWire, ClientsDecodeAllThatASessionIsToldOfItsCameras) {

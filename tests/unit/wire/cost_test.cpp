@@ -42,7 +42,7 @@ TEST(Cost, AMessageOfEmptyPartsIsNotDecoded) {
   EXPECT_EQ(inbox.parse(json + "\"\"]}}"), Inbox::Kind::malformed);
 }
 
-/// What this process has of the system's memory for objects [bytes].
+/// Memory that this process holds for objects [bytes].
 std::size_t allocated() {
   const struct mallinfo2 info = ::mallinfo2();
   return info.uordblks + info.hblkhd;

@@ -1,4 +1,4 @@
-// What the worst messages cost that are decoded: bench/results/disturbances.md has the figures.
+// Cost of the worst messages that are decoded: bench/results/disturbances.md has the figures.
 
 #include <google/protobuf/util/json_util.h>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace ziggurat::wire {
 namespace {
 
-/// Of this thread [s].
+/// Processor time of this thread [s].
 double processor_time() {
   timespec time{};
   ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -58,7 +58,7 @@ std::string long_messages_in_binary(const CommandLimits& limits) {
   return message.SerializeAsString();
 }
 
-/// Of a robot with every device of which a Command has values, and a radio.
+/// Layout of a robot with a radio and every device that a Command has values for.
 world::Layout equipped() {
   world::Layout layout;
   layout.radios.resize(1);

@@ -6,7 +6,7 @@
 
 #include "wire/device_wire.h"
 #include "wire/devices.h"
-#include "wire/zero.h"
+#include "wire/reset_commands.h"
 #include "world/limits.h"
 
 namespace ziggurat::wire {
@@ -105,7 +105,7 @@ TEST_F(DeviceWire, RobotsThatLeftKeepTheirColorsAndAreOtherwiseZero) {
   commands.magnet_currents = {1, 2, 3, 4};
   commands.led_colors = {1, 2, 3, 4};
   commands.range_and_bearing_data.assign(12, 9);
-  zero(run.layout(), 2, commands);
+  reset_commands(run.layout(), 2, commands);
   EXPECT_EQ(commands.magnet_currents, (std::vector<double>{1, 2, 0, 0}));
   EXPECT_EQ(commands.led_colors, (std::vector<world::Color>{1, 2, 3, 4}));
   EXPECT_EQ(commands.range_and_bearing_data,

@@ -1,4 +1,4 @@
-// What the conformance tests do not see: bytes, packing.
+// Bytes and packing, which the conformance tests do not see.
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include "wire/equipped_run.h"
 #include "wire/inbox.h"
 #include "wire/outbox.h"
+#include "wire/reset_commands.h"
 #include "wire/roster.h"
-#include "wire/zero.h"
 #include "ziggurat/v1/envelope.h"
 #include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"

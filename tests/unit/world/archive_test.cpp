@@ -16,7 +16,7 @@ struct Camera {
     layout.cameras[0].resolution = {4, 2};
     observations.images.push_back({0, {}});
   }
-  /// What is wrong with a picture of so many bytes; empty: nothing.
+  /// Fault of a picture of so many bytes; empty: none.
   std::string fault_of(std::size_t size) {
     observations.images[0].rgb.assign(size, 7);
     std::vector<std::byte> bytes;

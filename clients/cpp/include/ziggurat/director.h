@@ -19,9 +19,9 @@
 
 namespace ziggurat {
 
-/// Of a director: what it is told.
+/// Options of a director: the parts of the world that it is sent.
 struct DirectorOptions : SessionOptions {
-  /// What a director can be told of entities; the numbers are the protocol's.
+  /// Properties of entities that a director can be sent; the numbers are the protocol's.
   enum class Group { poses = 1, links, joints, leds, tags, magnets, radio_messages, contacts };
   static constexpr std::array all_groups = {Group::poses,   Group::links,          Group::joints,
                                             Group::leds,    Group::tags,           Group::magnets,
@@ -64,8 +64,8 @@ class Director {
   std::uint64_t missed() const noexcept;   ///< ticks that did not wait for this director's answer
   std::uint64_t resumes() const noexcept;  ///< how often a lost connection was replaced
 
-  /// What could not be done since the last call, as an entity that was spawned where another one stands: the
-  /// rest was done.
+  /// Acts since the last call that failed, such as a spawn at a place that is taken; all other acts
+  /// were done.
   std::vector<std::string> take_warnings();
 
   const std::string& id() const noexcept;  ///< in the scene
@@ -78,7 +78,7 @@ class Director {
 
   // --- The world after the tick ---
 
-  /// Those that are in the world, in scene order; spawned ones behind.
+  /// Entities that are in the world, in scene order; spawned ones behind.
   std::span<Entity* const> entities() const noexcept;
   /// Whether that list is not what it was at the tick before.
   bool entities_have_changed() const noexcept;
@@ -89,7 +89,8 @@ class Director {
   std::span<const Contact> contacts() const noexcept;
   std::span<const RadioMessage> radio_messages() const noexcept;
 
-  // --- What is done before the next tick: at most 10 000 acts, with texts of 2 MiB together, else std::length_error.
+  // --- Acts before the next tick: at most 10 000, with texts of 2 MiB together, else
+  // std::length_error.
   // --- Numbers that are not finite are std::invalid_argument.
 
   /// The entity is at rest at the pose, its joints in their initial positions; no orientation = the present one. Where

@@ -20,7 +20,7 @@ struct Pose {
   std::array<double, 4> orientation;  ///< unit quaternion w, x, y, z
 };
 
-/// Of a link's frame, in the world's.
+/// State of a link's frame, in the world's.
 struct LinkState {
   std::array<double, 3> position;          ///< [m]
   std::array<double, 4> orientation;       ///< unit quaternion w, x, y, z
@@ -45,7 +45,7 @@ class Entity {
   /// It is not in the world any more: its states mean nothing.
   bool is_removed() const noexcept { return is_removed_; }
 
-  /// Of its origin. @throws std::logic_error if the director did not ask for poses
+  /// Pose of its origin. @throws std::logic_error if the director did not ask for poses
   const Pose& pose() const;
 
   std::span<const std::string> link_ids() const noexcept { return links_.ids; }  ///< of one body: ""

@@ -5,7 +5,7 @@
 
 namespace ziggurat {
 
-/// What an encoder measures or a motor controls.
+/// Quantity that an encoder measures or a motor controls.
 enum class JointMode {
   disabled,  ///< the encoder is 0; targets have no effect
   position,  ///< [m] (prismatic) or [rad] (revolute), from the assembled pose

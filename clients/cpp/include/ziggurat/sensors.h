@@ -19,7 +19,7 @@ class ProximitySensor {
   const std::string& anchor() const noexcept { return anchor_; }
   /// Start of the ray in the anchor's frame: x, y, z [m].
   const std::array<double, 3>& position() const noexcept { return position_; }
-  /// Of the ray in the anchor's frame: x, y, z, of length 1.
+  /// Direction of the ray in the anchor's frame: x, y, z, of length 1.
   const std::array<double, 3>& direction() const noexcept { return direction_; }
   double range() const noexcept { return range_; }  ///< length of the ray [m]
   /// Direction of the ray about the robot's +z from +x, in (-pi, pi] [rad]. Only the foot-bot's own
@@ -63,7 +63,7 @@ struct Battery {
 class Imu {
  public:
   const std::string& id() const noexcept { return id_; }
-  /// Where it is fixed: id of a link, or `origin`.
+  /// Anchor that it is fixed to: id of a link, or `origin`.
   const std::string& anchor() const noexcept { return anchor_; }
   /// In the anchor's frame: x, y, z [m].
   const std::array<double, 3>& position() const noexcept { return position_; }

@@ -15,7 +15,7 @@
 
 namespace ziggurat {
 
-/// What happens if the session has not answered an observation within a wall time.
+/// Deadline for the answer to an observation, and the consequence of a miss; wall time.
 struct Deadline {
   enum class Action {
     wait = 1,  ///< the world waits forever
@@ -71,7 +71,7 @@ struct SessionOptions {
   void read_environment();
 };
 
-/// Of a controller: the robots.
+/// Options of a controller: its robots.
 struct Options : SessionOptions {
   // The robots that match all of these; if none is set, all robots of the scene.
   std::string controller;           ///< robots of this controller of the scene
@@ -92,7 +92,7 @@ std::string find_server();
 /// there is none. @throws std::invalid_argument if it is not hexadecimal
 std::string take_session_token();
 
-/// What an observation is for.
+/// Purpose of an observation.
 enum class Event {
   init,   ///< the first of the session; at tick 0, before any physics, readings are 0
   step,   ///< a tick passed

@@ -71,7 +71,7 @@ struct ServerStatus {
   };
   std::vector<Phase> budget;  ///< where the wall time of a tick goes
   double uptime = 0;          ///< [s, wall]
-  /// How well contacts were solved since the world began; without islands: not known.
+  /// Convergence of the contact solver since the world began; without islands: not known.
   struct Solver {
     std::uint64_t islands = 0;        ///< of bodies that touch, solved over all substeps
     std::uint64_t not_converged = 0;  ///< of them

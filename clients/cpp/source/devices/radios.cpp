@@ -3,7 +3,7 @@
 
 namespace ziggurat {
 
-/// What the robots of a session receive and send by radio.
+/// Radio messages that the robots of a session receive and send.
 class RadioTraffic final : public Channel {
  public:
   /// @param max_bytes  that the session may send at one tick

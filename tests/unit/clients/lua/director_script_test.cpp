@@ -69,7 +69,7 @@ Directed run(const std::string& script, std::uint64_t ticks = 1,
   return directed;
 }
 
-/// What a script of one line in init() logs; its failure if it fails.
+/// Log of a script of one line in init(); its failure if it fails.
 std::string logged(const std::string& line) {
   const Directed directed = run("function init() " + line + " end");
   if (!directed.is_well) return directed.leave.message();

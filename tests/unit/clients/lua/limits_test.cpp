@@ -5,14 +5,14 @@
 #include "script/interrupt.h"
 #include "script_fixture.h"
 
-// Of the leak sanitizer; null without it.
+// Functions of the leak sanitizer; null without it.
 extern "C" void __lsan_disable() __attribute__((weak));
 extern "C" void __lsan_enable() __attribute__((weak));
 
 namespace ziggurat::lua {
 namespace {
 
-/// What is allocated meanwhile is no leak: the state of a call that is left is never freed.
+/// Memory that is allocated meanwhile is no leak: the state of a call that is left is never freed.
 struct LeavesState {
   LeavesState() {
     if (__lsan_disable) __lsan_disable();

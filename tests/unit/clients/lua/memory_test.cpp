@@ -51,7 +51,7 @@ TEST(BlockPool, WithoutMemoryHasNoBlock) {
   EXPECT_FALSE(pool.owns(&pool));
 }
 
-/// What a program gives back, where its blocks grow, shrink and end by turns.
+/// Memory that a program gives back, where its blocks grow, shrink and end by turns.
 std::string run(const BoundedState& state) {
   luaL_openlibs(state.get());
   constexpr char program[] =

@@ -1,4 +1,4 @@
-// What a script that is not trusted cannot do.
+// Limits of a script that is not trusted.
 
 #include <sys/resource.h>
 
@@ -36,7 +36,7 @@ class Sandbox : public ScriptTest {
     options_.folders = &*folders_;
   }
 
-  /// What an expression with IN and OUT, the folder and the one above, is worth in a script.
+  /// Value of an expression in a script, with IN and OUT: the folder and the one above.
   std::string value(const std::string& expression) {
     const auto lines = logged("local OUT = '" + folder().string() +
                               "/' local IN = OUT .. 'inside/' log((" + expression + "))");
