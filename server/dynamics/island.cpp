@@ -68,7 +68,7 @@ void add(const SolverResult& outcome, Report& report) {
   report.most_iterations = std::max(report.most_iterations, outcome.iterations);
   report.most_augmented_lagrangian_steps = std::max(report.most_augmented_lagrangian_steps, outcome.augmented_lagrangian_steps);
   report.most_interior_point_steps = std::max(report.most_interior_point_steps, outcome.interior_point_steps);
-  report.most_sweeps = std::max(report.most_sweeps, outcome.sweeps);
+  report.most_passes = std::max(report.most_passes, outcome.passes);
   report.residual = std::max(report.residual, outcome.residual);
 }
 
@@ -374,8 +374,8 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   }
   if (rebounding) bound_energy(problem_, work_, restitution_energy_, displacement_);
   bound_gain(problem_, work_, before, grounded, is_part);
-  const bool swept = outcome.sweeps > 0 && outcome.augmented_lagrangian_steps == 0;
-  update_sleep(first_tree, last_tree, rests, swept ? outcome.residual : 0);
+  const bool is_heap = outcome.passes > 0 && outcome.augmented_lagrangian_steps == 0;
+  update_sleep(first_tree, last_tree, rests, is_heap ? outcome.residual : 0);
 }
 
 }  // namespace ziggurat::dynamics

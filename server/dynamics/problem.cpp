@@ -409,7 +409,7 @@ bool Problem::become_displacement() {
     if (constraint.law == Constraint::Law::off) continue;
     if (constraint.kind == Constraint::Kind::servo && !holds(constraint)) {
       constraint.law = Constraint::Law::off;
-      constraint.impulse.fill(0);  // sweeps start from all impulses
+      constraint.impulse.fill(0);  // Gauss-Seidel starts from all impulses
       continue;
     }
     const double after = gap_after(constraint);
