@@ -348,7 +348,6 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   if (free > 0) clear_contact_impulses(problem_, is_free_);
   write_impulses(problem_, contacts_, servos_, limits_);
   if (free > 0 && integrate_free_trees(first_tree, last_tree, first_item, last_item) && !problem_.leaves_trees_penetrating()) return update_sleep(first_tree, last_tree, false);
-  const double before = energy_if_passive(problem_);
   compute_energy_errors(problem_, work_, energy_errors_);
   apply_velocities(problem_, is_free_, displacement_);
   wait_for_friction(problem_, contacts_, only_contacts_, displacement_);
@@ -373,7 +372,6 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
     }
   }
   if (rebounding) bound_energy(problem_, work_, restitution_energy_, displacement_);
-  bound_gain(problem_, work_, before, grounded, is_part);
   const bool is_heap = outcome.passes > 0 && outcome.augmented_lagrangian_steps == 0;
   update_sleep(first_tree, last_tree, rests, is_heap ? outcome.residual : 0);
 }

@@ -88,7 +88,6 @@ class System {
   /// Largest number of parts that step() may ask for, see geometric_stiffness.h and
   /// gyroscopic_stiffness.h. 1: none.
   int most_parts = 1;
-  bool is_part = false;  ///< step() takes one of these parts
   IslandsToSubdivide islands_to_subdivide;      ///< by the last step()
   /// Trees whose rotation until impact is large: their islands are divided, because a contact acts
   /// along lines of the step's beginning. To be set before step().
