@@ -201,7 +201,6 @@ class System {
   std::vector<IslandItem> items_, item_order_;
   std::vector<unsigned char> has_servos_, is_free_;  // of each tree of an island
   UnconstrainedVelocities free_velocities_;
-  std::vector<int> only_contacts_;  // memory of a function
   std::vector<double> saved_state_, displacement_;
   IslandEnergyErrors energy_errors_;
   RestitutionEnergy restitution_energy_;
