@@ -197,15 +197,6 @@ void aim_rebounds(Problem& problem) {
   }
 }
 
-/// Whether a servo of a solved problem is saturated, or a limit holds: then fast bodies are not
-/// fast for the whole substep.
-bool is_strained(const Problem& problem) {
-  return std::ranges::any_of(problem.constraints, [](const Constraint& constraint) {
-    return (constraint.kind == Constraint::Kind::servo && constraint.impulse[0] != 0 && !constraint.is_unsaturated()) ||
-           (constraint.kind == Constraint::Kind::limit && constraint.impulse[0] > 0);
-  });
-}
-
 /// Gives restitution to contacts that close within the substep by motors, pushes or other impacts:
 /// from the closing velocity without these contacts, from the beginning on.
 /// @param problem  solved
@@ -217,16 +208,14 @@ bool aim_what_is_thrown(Problem& problem, VelocitySolver& solver) {
     if (!rebounds || constraint.impulse[0] == 0 || constraint.gap <= restitution_threshold * problem.time_step) continue;
     thrown.push_back(&constraint);
   }
-  if (thrown.empty() || is_strained(problem)) return false;
+  if (thrown.empty()) return false;
   for (Constraint* constraint : thrown) {
     constraint->law = Constraint::Law::off;
     constraint->impulse.fill(0);
   }
   solver.solve(problem);
-  const bool is_known = !is_strained(problem);
   for (Constraint* constraint : thrown) {
     constraint->law = Constraint::Law::contact;
-    if (!is_known) continue;
     double u[Constraint::most_rows];
     problem.constraint_velocity(*constraint, u);
     const double time = u[0] < -restitution_threshold ? -constraint->gap / u[0] : HUGE_VAL, rest = problem.time_step - time;
