@@ -432,14 +432,4 @@ bool Problem::become_displacement() {
   return true;
 }
 
-void Problem::leave_rebounds() {
-  for (Constraint& constraint : constraints) {
-    constraint.impulse.fill(0);
-    if (!constraint.has_impact || constraint.lower == 0) continue;
-    constraint.lower = 0;
-    constraint.target_velocity[0] -= constraint.target_gap;
-  }
-  std::fill(velocity.begin(), velocity.end(), 0.0);
-}
-
 }  // namespace ziggurat::dynamics

@@ -118,8 +118,6 @@ struct Problem {
   /// [rad], without momentum and friction.
   /// @return  false if there is no penetration
   bool become_displacement();
-  /// Removes the target gaps of impacts from a displacement problem, and starts it anew.
-  void leave_rebounds();
 
  private:
   int add_columns(const Tree& tree, int rows);

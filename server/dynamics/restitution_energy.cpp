@@ -242,23 +242,6 @@ void bound_restitution(Problem& problem, VelocitySolver& solver, Workspace& work
   if (pushed != 0 && push_throughout(problem, out.start, out.change)) out.throughout = unpushed;
 }
 
-bool lifts_too_much(const Problem& problem, Workspace& work, const RestitutionEnergy& rebound,
-                    const std::vector<double>& step) {
-  for (Tree* tree : problem.trees) velocity_kinematics(*tree);
-  double lift = 0, now = energy(problem.trees);
-  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    const Tree& tree = *problem.trees[i];
-    work.scratch.resize(tree.dofs);
-    external_forces(tree, work, work.scratch, false, true);
-    for (int k = 0; k < tree.dofs; ++k) {
-      const std::size_t index = problem.offset[i] + k;
-      lift -= work.scratch[k] * problem.velocity[index];
-      now -= work.scratch[k] * step[index];
-    }
-  }
-  return lift > 0 && now + lift - rebound.most_energy > rounding * (std::abs(now) + lift);
-}
-
 void bound_way(Problem& problem, const RestitutionEnergy& rebound) {
   double share = 1;
   // A ball that is struck and strikes another one may be as fast after as before, and move all the same.

@@ -27,14 +27,6 @@ bool rebounds(const Problem& problem);
 /// @param problem  solved, its trees as they were
 void bound_restitution(Problem& problem, VelocitySolver& solver, Workspace& work, RestitutionEnergy& out);
 
-/// Whether the displacement to the target gaps lifts bodies by more than their energy allows:
-/// several points of a mechanism that rebound at different times.
-/// @param problem  the displacement problem, solved, its trees with their final velocities; moves
-///                 them
-/// @param step     displacements without it, of each dof [rad], [m]
-bool lifts_too_much(const Problem& problem, Workspace& work, const RestitutionEnergy& rebound,
-                    const std::vector<double>& step);
-
 /// Scales the displacement to the target gaps down to the distance that the change of velocity
 /// allows. Points that strike at different times may ask for a large rotation.
 /// @param problem  the displacement problem, solved, its trees with their final velocities
