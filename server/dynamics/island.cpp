@@ -309,7 +309,6 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   const bool grounded = has_world_friction(problem_), rests = is_supported_by_world(problem_) && !has_moving_motors(problem_);
   if (problem_.become_displacement()) {
     solver_.solve_displacement(problem_);
-    if (rebounding) bound_way(problem_, restitution_energy_);
     for (std::size_t i = 0; i < displacement_.size(); ++i) displacement_[i] += problem_.velocity[i];
     add_lift_energy(problem_, work_, energy_errors_);
   }

@@ -9,8 +9,7 @@
 namespace ziggurat::dynamics {
 namespace {
 
-constexpr double rounding = 1e-9;       // of the energy
-constexpr double more_than_moved = 1.02;  // the square of how much farther than its speeds say it may be moved
+constexpr double rounding = 1e-9;  // of the energy
 
 /// Gives the trees what pushes them, without gravity, as it acts: at once, before any impact.
 /// @param start   velocities at the substep's beginning, of each dof: in, without it; out, with it
@@ -130,12 +129,6 @@ bool is_grounded(const Problem& problem) {
   });
 }
 
-/// By how much a coordinate's unit moves points of its tree, squared: a turn, by the size that its inertia is that of.
-double square_of_lever(const Problem& problem, std::size_t tree, int dof) {
-  const Tree& of = *problem.trees[tree];
-  return problem.mass_of(tree)[dof * of.dofs + dof] / problem.total_mass[tree];
-}
-
 /// Takes an energy from all speeds, as far as they have it.
 void scale_velocities(const Problem& problem, double excess) {
   const double all = kinetic_energy(problem);
@@ -208,18 +201,6 @@ void blend(Problem& problem, const Iterate& without, double share) {
   }
 }
 
-/// The square of the fastest that a tree's root moves, before or after [m^2/s^2].
-double square_of_fastest(const Problem& problem, const RestitutionEnergy& rebound) {
-  double most = 0;
-  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    const Tree& tree = *problem.trees[i];
-    for (const double* v : {tree.v.data(), rebound.start.data() + problem.offset[i]}) {
-      if (tree.has_floating_base) most = std::max(most, v[3] * v[3] + v[4] * v[4] + v[5] * v[5]);
-    }
-  }
-  return most;
-}
-
 }  // namespace
 
 bool rebounds(const Problem& problem) {
@@ -240,33 +221,6 @@ void bound_restitution(Problem& problem, VelocitySolver& solver, Workspace& work
   out.most_energy = unpushed + pushed + work_held(problem, out.change, out.after);
   out.throughout.reset();
   if (pushed != 0 && push_throughout(problem, out.start, out.change)) out.throughout = unpushed;
-}
-
-void bound_way(Problem& problem, const RestitutionEnergy& rebound) {
-  double share = 1;
-  // A ball that is struck and strikes another one may be as fast after as before, and move all the same.
-  const double of_turns = problem.has_sequential_impacts ? 4 * square_of_fastest(problem, rebound) : 0;
-  double depth = problem.allowed_overlap;  // what overlaps is moved apart by up to that
-  for (const Constraint& constraint : problem.constraints) depth = std::max(depth, -constraint.gap);
-  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    const Tree& tree = *problem.trees[i];
-    const double* way = problem.velocity.data() + problem.offset[i];
-    const double* start = rebound.start.data() + problem.offset[i];
-    for (int k = 0, last = 0; k < tree.dofs; k = last) {  // how it turns, how it moves, and each joint by itself
-      last = k < tree.dof_count[0] ? std::min(k + 3, tree.dof_count[0]) : k + 1;
-      double square = 0, change = 0;
-      for (int j = k; j < last; ++j) {
-        square += way[j] * way[j];
-        change += (tree.v[j] - start[j]) * (tree.v[j] - start[j]);
-      }
-      if (tree.has_floating_base && k == 3) change = std::max(change, of_turns);
-      // Before it struck, for a part of the substep, it had the other velocity.
-      const double most = more_than_moved * problem.time_step * problem.time_step * change +
-                          4 * depth * depth / square_of_lever(problem, i, k);
-      if (square > most) share = std::min(share, std::sqrt(most / square));
-    }
-  }
-  for (double& way : problem.velocity) way *= share;
 }
 
 void bound_energy(const Problem& problem, Workspace& work, RestitutionEnergy& rebound, const std::vector<double>& step) {

@@ -27,11 +27,6 @@ bool rebounds(const Problem& problem);
 /// @param problem  solved, its trees as they were
 void bound_restitution(Problem& problem, VelocitySolver& solver, Workspace& work, RestitutionEnergy& out);
 
-/// Scales the displacement to the target gaps down to the distance that the change of velocity
-/// allows. Points that strike at different times may ask for a large rotation.
-/// @param problem  the displacement problem, solved, its trees with their final velocities
-void bound_way(Problem& problem, const RestitutionEnergy& rebound);
-
 /// Takes what the rebounds gained all the same, at the substep's end: where bodies turn far, or what undoes overlaps
 /// lifts them. Needs velocity_kinematics(), and leaves the trees moved.
 /// @param step  displacements of the substep, of each dof [rad], [m]
