@@ -299,7 +299,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   }
   add(outcome, report_);
   const bool rebounding = rebounds(problem_);
-  if (rebounding) bound_restitution(problem_, solver_, work_, restitution_energy_);
+  if (rebounding) compute_energy_bound(problem_, solver_, work_, restitution_energy_);
   if (rebounding) is_free_.assign(is_free_.size(), free = 0);  // its energy is bounded as a whole
   if (free > 0) clear_contact_impulses(problem_, is_free_);
   write_impulses(problem_, contacts_, servos_, limits_);

@@ -148,66 +148,13 @@ double way_back(double a, double b, double energy) {
   return std::min(1.0, way);
 }
 
-/// Work of all contacts and limits in the substep, as a quadratic function of the share of the
-/// rebound: value at 0, first derivative, half of the second.
-struct Work {
-  double none = 0, slope = 0, curve = 0;  // [J]
-  double size = 0;                        // of what is summed
-};
-
-/// @param start  velocities at the beginning, of each dof
-Work work_of_contacts(const Problem& problem, const Iterate& without,
-                      const std::vector<double>& start) {
-  Work out;
-  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
-    const Constraint& constraint = problem.constraints[i];
-    if (constraint.kind == Constraint::Kind::servo) continue;
-    double before[Constraint::most_rows], least[Constraint::most_rows], most[Constraint::most_rows];
-    problem.constraint_velocity(constraint, most, problem.velocity.data());
-    problem.constraint_velocity(constraint, least, without.velocity.data());
-    problem.constraint_velocity(constraint, before, start.data());
-    if (constraint.has_impact) before[0] = constraint.restitution_velocity;
-    for (int r = 0; r < constraint.rows; ++r) {
-      const double g = without.impulses[i][r], more = constraint.impulse[r] - g;
-      const double u = before[r] + least[r], faster = most[r] - least[r];
-      out.none += g * u / 2;
-      out.slope += (g * faster + more * u) / 2;
-      out.curve += more * faster / 2;
-      out.size += std::abs(constraint.impulse[r]) * (std::abs(before[r]) + std::abs(most[r]));
-    }
-  }
-  return out;
-}
-
-/// The largest share of the way at which contacts do not give energy.
-double share_without_gain(const Problem& problem, const Iterate& without,
-                          const std::vector<double>& start) {
-  const Work work = work_of_contacts(problem, without, start);
-  if (work.none + work.slope + work.curve <= rounding * work.size) return 1;
-  if (work.none >= 0 || work.curve <= 0) return 0;
-  const double root = std::sqrt(work.slope * work.slope - 4 * work.curve * work.none);
-  return std::clamp((root - work.slope) / (2 * work.curve), 0.0, 1.0);
-}
-
-void blend(Problem& problem, const Iterate& without, double share) {
-  for (std::size_t k = 0; k < problem.velocity.size(); ++k) {
-    problem.velocity[k] = without.velocity[k] + share * (problem.velocity[k] - without.velocity[k]);
-  }
-  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
-    for (int r = 0; r < problem.constraints[i].rows; ++r) {
-      double& impulse = problem.constraints[i].impulse[r];
-      impulse = without.impulses[i][r] + share * (impulse - without.impulses[i][r]);
-    }
-  }
-}
-
 }  // namespace
 
 bool rebounds(const Problem& problem) {
   return std::ranges::any_of(problem.constraints, [&](const Constraint& constraint) { return problem.rebounded(constraint); });
 }
 
-void bound_restitution(Problem& problem, VelocitySolver& solver, Workspace& work, RestitutionEnergy& out) {
+void compute_energy_bound(Problem& problem, VelocitySolver& solver, Workspace& work, RestitutionEnergy& out) {
   solver.solve_without_rebound(problem, out.without);
   out.start.clear();
   for (const Tree* tree : problem.trees) {
@@ -215,8 +162,6 @@ void bound_restitution(Problem& problem, VelocitySolver& solver, Workspace& work
   }
   out.before = out.start;
   const double pushed = push(problem, work, out.start, out.change, out.after);
-  const double share = share_without_gain(problem, out.without, out.start);
-  if (share < 1) blend(problem, out.without, share);
   const double unpushed = energy(problem.trees) + work_of_servos(problem, out.without);
   out.most_energy = unpushed + pushed + work_held(problem, out.change, out.after);
   out.throughout.reset();

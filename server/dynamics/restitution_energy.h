@@ -1,7 +1,7 @@
 #pragma once
 // Energy bound of restitution. Newton's law at each point can add energy where several points
-// strike at once, friction turns the body, or it rotates far within the substep. An island takes
-// the largest share of its rebound that adds none.
+// strike at once, friction turns the body, or it rotates far within the substep. The gain is taken
+// back at the substep's end.
 
 #include <optional>
 #include <vector>
@@ -23,12 +23,12 @@ struct RestitutionEnergy {
 /// Whether a contact of the island pushes and rebounds; to be called when its problem is solved.
 bool rebounds(const Problem& problem);
 
-/// Weakens rebounds until the work of all contacts is no gain.
+/// Energy that the island may have at the substep's end: that of its beginning, and the work of
+/// pushes and servos.
 /// @param problem  solved, its trees as they were
-void bound_restitution(Problem& problem, VelocitySolver& solver, Workspace& work, RestitutionEnergy& out);
+void compute_energy_bound(Problem& problem, VelocitySolver& solver, Workspace& work, RestitutionEnergy& out);
 
-/// Takes what the rebounds gained all the same, at the substep's end: where bodies turn far, or what undoes overlaps
-/// lifts them. Needs velocity_kinematics(), and leaves the trees moved.
+/// Takes what the rebounds gained, at the substep's end. Needs velocity_kinematics(), and leaves the trees moved.
 /// @param step  displacements of the substep, of each dof [rad], [m]
 void bound_energy(const Problem& problem, Workspace& work, RestitutionEnergy& rebound, const std::vector<double>& step);
 
