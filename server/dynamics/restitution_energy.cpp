@@ -13,12 +13,11 @@ constexpr double rounding = 1e-9;  // of the energy
 
 /// Gives the trees what pushes them, without gravity, as it acts: at once, before any impact.
 /// @param start   velocities at the substep's beginning, of each dof: in, without it; out, with it
-/// @param change  out: of each dof;  @param fall  out: likewise by gravity, of what is pushed
+/// @param change  out: of each dof
 /// @return        its work [J]
-double push(const Problem& problem, Workspace& work, std::vector<double>& start, std::vector<double>& change, std::vector<double>& fall) {
+double push(const Problem& problem, Workspace& work, std::vector<double>& start, std::vector<double>& change) {
   double sum = 0;
   change.assign(start.size(), 0);
-  fall.assign(start.size(), 0);
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];
     const int n = tree.dofs;
@@ -32,27 +31,6 @@ double push(const Problem& problem, Workspace& work, std::vector<double>& start,
     faster = mass.llt().solve(impulse);
     sum += impulse.dot(before + faster / 2);
     before += faster;
-    external_forces(tree, work, work.scratch, false, true);
-    const Eigen::VectorXd weight = problem.time_step * Eigen::Map<const Eigen::VectorXd>(work.scratch.data(), n);
-    Eigen::Map<Eigen::VectorXd>(fall.data() + problem.offset[i], n) = mass.llt().solve(weight);
-  }
-  return sum;
-}
-
-/// Work of pushes that contacts without restitution take up: they transmit load, and hold bodies in
-/// place.
-/// @param change, fall  see push(): an impulse that holds both is divided among them
-double work_held(const Problem& problem, const std::vector<double>& change, const std::vector<double>& fall) {
-  double sum = 0;
-  for (const Constraint& constraint : problem.constraints) {
-    if (constraint.kind != Constraint::Kind::contact || problem.rebounded(constraint)) continue;
-    double u[Constraint::most_rows], others[Constraint::most_rows];
-    problem.constraint_velocity(constraint, u, change.data());
-    problem.constraint_velocity(constraint, others, fall.data());
-    for (int r = 0; r < constraint.rows; ++r) {
-      const double share = u[r] * others[r] > 0 ? u[r] / (u[r] + others[r]) : 1;
-      sum += std::min(0.0, share * constraint.impulse[r] * u[r] / 2);
-    }
   }
   return sum;
 }
@@ -161,9 +139,9 @@ void compute_energy_bound(Problem& problem, VelocitySolver& solver, Workspace& w
     out.start.insert(out.start.end(), tree->v.begin(), tree->v.end());
   }
   out.before = out.start;
-  const double pushed = push(problem, work, out.start, out.change, out.after);
+  const double pushed = push(problem, work, out.start, out.change);
   const double unpushed = energy(problem.trees) + work_of_servos(problem, out.without);
-  out.most_energy = unpushed + pushed + work_held(problem, out.change, out.after);
+  out.most_energy = unpushed + pushed;
   out.throughout.reset();
   if (pushed != 0 && push_throughout(problem, out.start, out.change)) out.throughout = unpushed;
 }
