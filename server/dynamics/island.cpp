@@ -320,7 +320,7 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
       displace_unconstrained(*problem_.trees[i], by);
     }
   }
-  if (rebounding) bound_energy(problem_, work_, restitution_energy_, displacement_);
+  if (rebounding) bound_energy(problem_, work_, restitution_energy_);
   const bool is_heap = outcome.passes > 0 && outcome.augmented_lagrangian_steps == 0;
   update_sleep(first_tree, last_tree, rests, is_heap ? outcome.residual : 0);
 }

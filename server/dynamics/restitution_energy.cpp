@@ -11,13 +11,9 @@ namespace {
 
 constexpr double rounding = 1e-9;  // of the energy
 
-/// Gives the trees what pushes them, without gravity, as it acts: at once, before any impact.
-/// @param start   velocities at the substep's beginning, of each dof: in, without it; out, with it
-/// @param change  out: of each dof
-/// @return        its work [J]
-double push(const Problem& problem, Workspace& work, std::vector<double>& start, std::vector<double>& change) {
+/// Work of pushes, without gravity: they act at once, before any impact [J].
+double work_of_pushes(const Problem& problem, Workspace& work) {
   double sum = 0;
-  change.assign(start.size(), 0);
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];
     const int n = tree.dofs;
@@ -27,10 +23,8 @@ double push(const Problem& problem, Workspace& work, std::vector<double>& start,
     if (force.isZero(0)) continue;
     const Eigen::VectorXd impulse = problem.time_step * force;
     const Eigen::MatrixXd mass = Eigen::Map<const Eigen::MatrixXd>(problem.mass_of(i), n, n);
-    Eigen::Map<Eigen::VectorXd> before(start.data() + problem.offset[i], n), faster(change.data() + problem.offset[i], n);
-    faster = mass.llt().solve(impulse);
-    sum += impulse.dot(before + faster / 2);
-    before += faster;
+    const Eigen::Map<const Eigen::VectorXd> before(tree.v.data(), n);
+    sum += impulse.dot(before + mass.llt().solve(impulse) / 2);
   }
   return sum;
 }
@@ -48,35 +42,6 @@ double work_of_servos(const Problem& problem, const Iterate& without) {
     for (const int k : constraint.dofs_a) {
       const double along = problem.jacobian[constraint.jacobian_a + k], most = usual * along * after[k];  // it may be stopped at once, as by a limit
       sum += std::min(usual * along * (before[k] + after[k]) / 2, most) + more * along * after[k];
-    }
-  }
-  return sum;
-}
-
-/// Whether pushes are small beside the speeds of all impacts: then they act throughout the substep, see restitution_timing.cpp.
-/// @param start, change  see push(): out
-bool push_throughout(const Problem& problem, const std::vector<double>& start, const std::vector<double>& change) {
-  return !problem.has_sequential_impacts && std::ranges::all_of(problem.constraints, [&](const Constraint& constraint) {
-    if (!problem.rebounded(constraint)) return true;
-    double u[Constraint::most_rows], kick[Constraint::most_rows];
-    problem.constraint_velocity(constraint, u, start.data());
-    problem.constraint_velocity(constraint, kick, change.data());
-    return kick[0] == 0 || std::abs(kick[0]) < kick[0] - u[0];
-  });
-}
-
-/// Work of distributed pushes along the displacement, less the surplus of an impulse at the
-/// substep's beginning.
-/// @param step  of each dof [rad], [m]
-double work_throughout(const Problem& problem, Workspace& work, const RestitutionEnergy& rebound, const std::vector<double>& step) {
-  double sum = 0;
-  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    const Tree& tree = *problem.trees[i];
-    work.scratch.resize(tree.dofs);
-    external_forces(tree, work, work.scratch, true, false);
-    for (int k = 0; k < tree.dofs; ++k) {
-      const std::size_t index = problem.offset[i] + k;
-      sum += work.scratch[k] * (step[index] - problem.time_step / 2 * (tree.v[k] - rebound.before[index]));
     }
   }
   return sum;
@@ -134,22 +99,10 @@ bool rebounds(const Problem& problem) {
 
 void compute_energy_bound(Problem& problem, VelocitySolver& solver, Workspace& work, RestitutionEnergy& out) {
   solver.solve_without_rebound(problem, out.without);
-  out.start.clear();
-  for (const Tree* tree : problem.trees) {
-    out.start.insert(out.start.end(), tree->v.begin(), tree->v.end());
-  }
-  out.before = out.start;
-  const double pushed = push(problem, work, out.start, out.change);
-  const double unpushed = energy(problem.trees) + work_of_servos(problem, out.without);
-  out.most_energy = unpushed + pushed;
-  out.throughout.reset();
-  if (pushed != 0 && push_throughout(problem, out.start, out.change)) out.throughout = unpushed;
+  out.most_energy = energy(problem.trees) + work_of_servos(problem, out.without) + work_of_pushes(problem, work);
 }
 
-void bound_energy(const Problem& problem, Workspace& work, RestitutionEnergy& rebound, const std::vector<double>& step) {
-  if (rebound.throughout) {
-    rebound.most_energy = std::min(rebound.most_energy, *rebound.throughout + work_throughout(problem, work, rebound, step));
-  }
+void bound_energy(const Problem& problem, Workspace& work, RestitutionEnergy& rebound) {
   const double now = energy(problem.trees), excess = now - rebound.most_energy;
   const double kinetic = kinetic_energy(problem);
   if (excess <= rounding * (kinetic + std::abs(now))) return;

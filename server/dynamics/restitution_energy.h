@@ -3,7 +3,6 @@
 // strike at once, friction turns the body, or it rotates far within the substep. The gain is taken
 // back at the substep's end.
 
-#include <optional>
 #include <vector>
 
 #include "dynamics/newton.h"
@@ -13,10 +12,7 @@ namespace ziggurat::dynamics {
 /// Energy bound of an island's impacts in a substep.
 struct RestitutionEnergy {
   double most_energy = 0;  ///< kinetic and potential, at the substep's end [J]
-  std::optional<double> throughout;   ///< the same without pushes, where these act throughout the substep [J]
   Iterate without;        ///< the solution without rebound
-  std::vector<double> before;         ///< velocities at the substep's beginning, of each dof
-  std::vector<double> start;          ///< velocities at the substep's beginning, with what pushes give, of each dof
   std::vector<double> after, change;  ///< memory of functions
 };
 
@@ -29,7 +25,6 @@ bool rebounds(const Problem& problem);
 void compute_energy_bound(Problem& problem, VelocitySolver& solver, Workspace& work, RestitutionEnergy& out);
 
 /// Takes what the rebounds gained, at the substep's end. Needs velocity_kinematics(), and leaves the trees moved.
-/// @param step  displacements of the substep, of each dof [rad], [m]
-void bound_energy(const Problem& problem, Workspace& work, RestitutionEnergy& rebound, const std::vector<double>& step);
+void bound_energy(const Problem& problem, Workspace& work, RestitutionEnergy& rebound);
 
 }  // namespace ziggurat::dynamics
