@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 
 namespace ziggurat::dynamics {
@@ -401,36 +400,6 @@ double energy(std::span<Tree* const> trees) {
     }
   }
   return sum;
-}
-
-double energy_if_passive(const Problem& problem) {
-  const auto acts = [](const Wrench& push) { return !push.moment.isZero(0) || !push.force.isZero(0); };
-  const auto drives = [](const Constraint& constraint) { return constraint.kind == Constraint::Kind::servo; };
-  const auto has_joints = [](const Tree* tree) { return tree->dofs > tree->dof_count[0]; };
-  const auto is_pushed = [&](const Tree* tree) { return std::ranges::any_of(tree->external, acts); };
-  const bool is_passive = std::ranges::any_of(problem.trees, has_joints) && std::ranges::none_of(problem.constraints, drives) &&
-                          std::ranges::none_of(problem.trees, is_pushed);
-  return is_passive ? energy(problem.trees) : std::numeric_limits<double>::infinity();
-}
-
-void bound_gain(const Problem& problem, Workspace& work, double before, bool grounded, bool is_part) {
-  constexpr double much = 0.02;
-  if (before == std::numeric_limits<double>::infinity()) return;
-  double kinetic = 0, mass = 0;
-  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    kinetic += kinetic_energy(*problem.trees[i]);
-    mass += problem.total_mass[i];
-  }
-  const double along = problem.time_step * problem.weight * std::sqrt(2 * kinetic / mass) / 2;
-  const double allowed = is_part ? least * kinetic : along + much * kinetic;
-  const double gain = energy(problem.trees) - before;
-  if (!(gain > allowed)) return;
-  if (!grounded) return remove_kinetic_energy(problem.trees, work, gain);
-  const double share = velocity_scale(kinetic, gain);
-  for (Tree* tree : problem.trees) {
-    for (double& speed : tree->v) speed *= share;
-    velocity_kinematics(*tree);
-  }
 }
 
 }  // namespace ziggurat::dynamics

@@ -62,15 +62,4 @@ void remove_kinetic_energy(std::span<Tree* const> trees, Workspace& work, double
 /// The energy of all trees, kinetic and potential [J]; needs velocity_kinematics().
 double energy(std::span<Tree* const> trees);
 
-/// Energy at the step's beginning of an island with joints but without servos and external wrenches
-/// [J]; infinity for others.
-double energy_if_passive(const Problem& problem);
-
-/// Removes the energy that such an island gained, after its trees have moved. So links that snap
-/// taut or are struck within a step can't accelerate others without bound.
-/// @param before    see energy_if_passive()
-/// @param grounded  see correct_energy(); otherwise momentum stays
-/// @param is_part   no gain is left; otherwise as much as the error of a whole step
-void bound_gain(const Problem& problem, Workspace& work, double before, bool grounded, bool is_part);
-
 }  // namespace ziggurat::dynamics

@@ -63,8 +63,8 @@ void unwhiten(const double* c, int n, double* x) {
   }
 }
 
-/// Rows that sweeps solve for.
-int swept_rows(const Constraint& constraint) {
+/// Rows that passes solve for.
+int rows_in_pass(const Constraint& constraint) {
   if (constraint.law == Constraint::Law::off) return 0;
   return constraint.law == Constraint::Law::contact ? constraint.rows : 1;
 }
@@ -90,7 +90,7 @@ void GaussSeidel::factor(const Problem& problem) {
 }
 
 void GaussSeidel::add(const Problem& problem, const Constraint& constraint, int index) {
-  const int rows = swept_rows(constraint);
+  const int rows = rows_in_pass(constraint);
   if (rows == 0) return;
   const int trees[] = {constraint.a, constraint.b}, jacobians[] = {constraint.jacobian_a, constraint.jacobian_b};
   int size[2] = {}, at[2] = {};
@@ -160,7 +160,7 @@ void GaussSeidel::start(const Problem& problem) {
 
 /// A contact with sliding friction: the normal impulse, then friction at the speed that it leaves.
 template <int A, int B>
-void GaussSeidel::sweep_sliding(const Rows& point, const Sides& sides) {
+void GaussSeidel::solve_sliding(const Rows& point, const Sides& sides) {
   const int na = size_of<A>(sides.size_a), nb = size_of<B>(sides.size_b), width = na + nb;
   double* const wa = sides.a;
   double* const wb = sides.b;
@@ -194,7 +194,7 @@ void GaussSeidel::sweep_sliding(const Rows& point, const Sides& sides) {
 
 /// Any other constraint: the normal impulse or the only one, then friction of all kinds.
 template <int A, int B>
-void GaussSeidel::sweep_other(const Rows& point, const Sides& sides) {
+void GaussSeidel::solve_other(const Rows& point, const Sides& sides) {
   const int na = size_of<A>(sides.size_a), nb = size_of<B>(sides.size_b);
   double* g = impulses_.data() + point.impulse;
   const auto row = [&](int r) { return rows_.data() + point.first + r * (na + nb); };
@@ -228,7 +228,7 @@ void GaussSeidel::sweep_other(const Rows& point, const Sides& sides) {
 
 /// All points of two trees, whose velocities stay in registers meanwhile if they are single bodies.
 template <int A, int B>
-void GaussSeidel::sweep_pair(const TreePair& pair) {
+void GaussSeidel::solve_pair(const TreePair& pair) {
   constexpr bool known = A >= 0;
   Sides sides{w_.data() + pair.a, w_.data() + pair.b, pair.size_a, pair.size_b};
   [[maybe_unused]] double a[known ? A + 1 : 1], b[known ? B + 1 : 1];
@@ -238,7 +238,7 @@ void GaussSeidel::sweep_pair(const TreePair& pair) {
   }
   for (int i = pair.first; i < pair.last; ++i) {
     const Rows& point = points_[i];
-    point.rows == 3 ? sweep_sliding<A, B>(point, sides) : sweep_other<A, B>(point, sides);
+    point.rows == 3 ? solve_sliding<A, B>(point, sides) : solve_other<A, B>(point, sides);
   }
   if constexpr (known) {
     std::copy_n(a, A, w_.data() + pair.a);
@@ -246,21 +246,21 @@ void GaussSeidel::sweep_pair(const TreePair& pair) {
   }
 }
 
-void GaussSeidel::sweep() {
+void GaussSeidel::pass() {
   for (const TreePair& pair : pairs_) {
     if (pair.size_a == 6 && pair.size_b == 6) {
-      sweep_pair<6, 6>(pair);
+      solve_pair<6, 6>(pair);
     } else if (pair.size_a == 6 && pair.size_b == 0) {
-      sweep_pair<6, 0>(pair);
+      solve_pair<6, 0>(pair);
     } else {
-      sweep_pair<-1, -1>(pair);
+      solve_pair<-1, -1>(pair);
     }
   }
 }
 
-/// The step along the direction of the sweeps before, by the rule of Polak and Ribiere; lengths are
+/// The step along the direction of the passes before, by the rule of Polak and Ribiere; lengths are
 /// those of w, the roots of twice the kinetic energy. Impulses may leave their bounds by it, until
-/// the next sweep.
+/// the next pass.
 void GaussSeidel::accelerate() {
   double square = 0, mixed = 0;
   for (std::size_t i = 0; i < w_.size(); ++i) {

@@ -1,11 +1,11 @@
 #pragma once
-// Projected Gauss-Seidel sweeps, accelerated, for islands whose matrix is too expensive to factor,
+// Projected Gauss-Seidel passes, accelerated, for islands whose matrix is too expensive to factor,
 // and for those for which no other method converged.
 //
 // Each contact in turn takes the impulses of its law with all others fixed (non-smooth
-// Gauss-Seidel: M. Jean, Comput. Methods Appl. Mech. Eng. 177, 1999). The change by a sweep is the
+// Gauss-Seidel: M. Jean, Comput. Methods Appl. Mech. Eng. 177, 1999). The change by a pass is the
 // residual of a nonlinear conjugate gradient method (M. Silcowitz-Hansen, S. Niebe, K. Erleben, The
-// Visual Computer 26, 2010). It carries an impact through a heap in fewer sweeps.
+// Visual Computer 26, 2010). It carries an impact through a heap in fewer passes.
 //
 // Velocities are in coordinates w = C^T v with M = C C^T, in which the mass matrix is 1. An impulse
 // g of a row j changes w by j g, and the row's speed is j w. So a contact's data is one array that
@@ -23,8 +23,8 @@ class GaussSeidel {
   /// Takes over a problem with its impulses; velocities follow from them.
   void start(const Problem& problem);
   /// Each constraint once.
-  void sweep();
-  /// The conjugate direction's step, after a sweep and before another.
+  void pass();
+  /// The conjugate direction's step, after a pass and before another.
   void accelerate();
   /// Writes velocities and impulses.
   void finish(Problem& problem) const;
@@ -54,11 +54,11 @@ class GaussSeidel {
     int size_a, size_b;
   };
   template <int A, int B>
-  void sweep_pair(const TreePair& pair);
+  void solve_pair(const TreePair& pair);
   template <int A, int B>
-  void sweep_sliding(const Rows& point, const Sides& sides);
+  void solve_sliding(const Rows& point, const Sides& sides);
   template <int A, int B>
-  void sweep_other(const Rows& point, const Sides& sides);
+  void solve_other(const Rows& point, const Sides& sides);
 
   std::vector<Rows> points_;
   std::vector<TreePair> pairs_;

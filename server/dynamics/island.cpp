@@ -15,9 +15,6 @@
 namespace ziggurat::dynamics {
 namespace {
 
-/// Values in place of the index of the only contact that acts on a tree.
-constexpr int no_contact = -1, several_contacts = -2;
-
 bool has_free_base(const Tree& tree) {
   return tree.links[0].joint == JointType::floating && tree.freedoms == all_freedoms;
 }
@@ -68,7 +65,7 @@ void add(const SolverResult& outcome, Report& report) {
   report.most_iterations = std::max(report.most_iterations, outcome.iterations);
   report.most_augmented_lagrangian_steps = std::max(report.most_augmented_lagrangian_steps, outcome.augmented_lagrangian_steps);
   report.most_interior_point_steps = std::max(report.most_interior_point_steps, outcome.interior_point_steps);
-  report.most_sweeps = std::max(report.most_sweeps, outcome.sweeps);
+  report.most_passes = std::max(report.most_passes, outcome.passes);
   report.residual = std::max(report.residual, outcome.residual);
 }
 
@@ -157,47 +154,6 @@ void apply_velocities(const Problem& problem, const std::vector<unsigned char>& 
       step[problem.offset[i] + k] = free[i] ? 0 : problem.time_step * speed;
       if (!free[i]) tree.v[k] = speed;
     }
-  }
-}
-
-/// Finds the contact that acts on each tree, or notes that several do: of another body, or along
-/// another normal.
-void find_only_contacts(const Problem& problem, std::vector<int>& out) {
-  constexpr double parallel = 1 - 1e-6;  // cosine of the angle between normals
-  out.assign(problem.trees.size(), no_contact);
-  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
-    const Constraint& constraint = problem.constraints[i];
-    if (constraint.kind != Constraint::Kind::contact || constraint.impulse[0] == 0) continue;
-    for (const int tree : {constraint.a, constraint.b}) {
-      if (tree < 0 || out[tree] == several_contacts) continue;
-      const Constraint& first = problem.constraints[out[tree] == no_contact ? i : static_cast<std::size_t>(out[tree])];
-      const bool same = first.a == constraint.a && first.b == constraint.b && first.frame.col(0).dot(constraint.frame.col(0)) > parallel;
-      out[tree] = !same ? several_contacts : out[tree] == no_contact ? static_cast<int>(i) : out[tree];
-    }
-  }
-}
-
-/// Friction between two bodies that meet within the substep acts at the time of impact. So linear
-/// and angular impulse belong together, and angular momentum stays. Bodies with several contacts
-/// are left out, whose friction balances other contacts' impulses.
-/// @param only  memory
-void wait_for_friction(const Problem& problem, std::span<const ContactPoint> contacts, std::vector<int>& only, std::vector<double>& step) {
-  const auto waits = [&](const Constraint& constraint) {
-    if (constraint.kind != Constraint::Kind::contact || constraint.rows < 3 || constraint.impulse[0] == 0 || constraint.a < 0 || constraint.b < 0) return false;
-    return -contacts[constraint.source].offset_to_b.dot(contacts[constraint.source].normal) >= touching_gap;
-  };
-  if (std::ranges::none_of(problem.constraints, waits)) return;
-  find_only_contacts(problem, only);
-  for (const Constraint& constraint : problem.constraints) {
-    if (!waits(constraint) || only[constraint.a] == several_contacts || only[constraint.b] == several_contacts) continue;
-    const Vector3 friction = constraint.frame.col(1) * constraint.impulse[1] + constraint.frame.col(2) * constraint.impulse[2];
-    const double time = constraint.has_impact ? constraint.impact_time : problem.time_step;
-    const auto shift = [&](int index, double sign) {
-      if (!has_free_base(*problem.trees[index])) return;
-      for (int k = 0; k < 3; ++k) step[problem.offset[index] + 3 + k] -= sign * time * friction[k] / problem.total_mass[index];
-    };
-    shift(constraint.a, 1);
-    shift(constraint.b, -1);
   }
 }
 
@@ -343,24 +299,16 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
   }
   add(outcome, report_);
   const bool rebounding = rebounds(problem_);
-  if (rebounding) bound_restitution(problem_, solver_, work_, restitution_energy_);
+  if (rebounding) compute_energy_bound(problem_, solver_, work_, restitution_energy_);
   if (rebounding) is_free_.assign(is_free_.size(), free = 0);  // its energy is bounded as a whole
   if (free > 0) clear_contact_impulses(problem_, is_free_);
   write_impulses(problem_, contacts_, servos_, limits_);
   if (free > 0 && integrate_free_trees(first_tree, last_tree, first_item, last_item) && !problem_.leaves_trees_penetrating()) return update_sleep(first_tree, last_tree, false);
-  const double before = energy_if_passive(problem_);
   compute_energy_errors(problem_, work_, energy_errors_);
   apply_velocities(problem_, is_free_, displacement_);
-  wait_for_friction(problem_, contacts_, only_contacts_, displacement_);
   const bool grounded = has_world_friction(problem_), rests = is_supported_by_world(problem_) && !has_moving_motors(problem_);
   if (problem_.become_displacement()) {
     solver_.solve_displacement(problem_);
-    if (rebounding && lifts_too_much(problem_, work_, restitution_energy_, displacement_)) {
-      problem_.leave_rebounds();
-      solver_.solve_displacement(problem_);
-    } else if (rebounding) {
-      bound_way(problem_, restitution_energy_);
-    }
     for (std::size_t i = 0; i < displacement_.size(); ++i) displacement_[i] += problem_.velocity[i];
     add_lift_energy(problem_, work_, energy_errors_);
   }
@@ -372,10 +320,9 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
       displace_unconstrained(*problem_.trees[i], by);
     }
   }
-  if (rebounding) bound_energy(problem_, work_, restitution_energy_, displacement_);
-  bound_gain(problem_, work_, before, grounded, is_part);
-  const bool swept = outcome.sweeps > 0 && outcome.augmented_lagrangian_steps == 0;
-  update_sleep(first_tree, last_tree, rests, swept ? outcome.residual : 0);
+  if (rebounding) bound_energy(problem_, work_, restitution_energy_);
+  const bool is_heap = outcome.passes > 0 && outcome.augmented_lagrangian_steps == 0;
+  update_sleep(first_tree, last_tree, rests, is_heap ? outcome.residual : 0);
 }
 
 }  // namespace ziggurat::dynamics

@@ -337,7 +337,7 @@ SolverResult VelocitySolver::solve(Problem& problem) {
   const double work = analyse(problem);
   if (work > options.most_factorisation_work) {
     problem.make_rigid();
-    gauss_seidel(problem, outcome, options.most_sweeps);
+    gauss_seidel(problem, outcome, options.most_passes);
     return outcome;
   }
   if (options.suits_newton(problem.trees.size(), work)) {
@@ -347,7 +347,7 @@ SolverResult VelocitySolver::solve(Problem& problem) {
     outcome.converged = damped_augmented_lagrangian(problem, outcome);
     if (!outcome.converged) {
       start_.restore(problem);
-      augmented_lagrangian_after_sweeps(problem, outcome);
+      augmented_lagrangian_after_gauss_seidel(problem, outcome);
     }
     if (outcome.converged) {
       polish(problem, outcome);
@@ -365,7 +365,7 @@ SolverResult VelocitySolver::solve(Problem& problem) {
   if (outcome.converged && found) return outcome;
   const SolverResult before = outcome;  // large impulses of redundant contacts hide a residual
   start_.save(problem);
-  augmented_lagrangian_after_sweeps(problem, outcome);
+  augmented_lagrangian_after_gauss_seidel(problem, outcome);
   if (outcome.residual > before.residual) {
     start_.restore(problem);
     outcome.residual = before.residual;
@@ -388,12 +388,12 @@ void VelocitySolver::solve_without_rebound(Problem& problem, Iterate& out) {
 }
 
 bool VelocitySolver::gauss_seidel(Problem& problem, SolverResult& outcome, int most) {
-  constexpr int between = 10;  // sweeps between two evaluations of the residual
+  constexpr int between = 10;  // passes between two evaluations of the residual
   gauss_seidel_.start(problem);
-  for (int sweep = 1; sweep <= most; ++sweep) {
-    ++outcome.sweeps;
-    gauss_seidel_.sweep();
-    if (sweep % between != 0 && sweep < most) {
+  for (int pass = 1; pass <= most; ++pass) {
+    ++outcome.passes;
+    gauss_seidel_.pass();
+    if (pass % between != 0 && pass < most) {
       gauss_seidel_.accelerate();
       continue;
     }
@@ -419,17 +419,17 @@ void VelocitySolver::polish(Problem& problem, SolverResult& outcome) {
   outcome.residual = before;
 }
 
-/// Sweeps, then the augmented Lagrangian from their result. Sweeps find which contacts hold, stick
+/// Passes, then the augmented Lagrangian from their result. Passes find which contacts hold, stick
 /// and slide. Where these conflict, as rolling friction and the two ends of a line do, only the
 /// augmented Lagrangian converges.
-bool VelocitySolver::augmented_lagrangian_after_sweeps(Problem& problem, SolverResult& outcome) {
+bool VelocitySolver::augmented_lagrangian_after_gauss_seidel(Problem& problem, SolverResult& outcome) {
   gauss_seidel_.start(problem);
-  for (int sweep = 1; sweep <= options.sweeps_before_augmented_lagrangian; ++sweep) {
-    gauss_seidel_.sweep();
-    if (sweep < options.sweeps_before_augmented_lagrangian) gauss_seidel_.accelerate();
+  for (int pass = 1; pass <= options.passes_before_augmented_lagrangian; ++pass) {
+    gauss_seidel_.pass();
+    if (pass < options.passes_before_augmented_lagrangian) gauss_seidel_.accelerate();
   }
   gauss_seidel_.finish(problem);
-  outcome.sweeps += options.sweeps_before_augmented_lagrangian;
+  outcome.passes += options.passes_before_augmented_lagrangian;
   return outcome.converged = damped_augmented_lagrangian(problem, outcome);
 }
 
@@ -441,7 +441,7 @@ void VelocitySolver::solve_displacement(Problem& problem) {
     if (newton(problem, outcome, options.most_iterations)) return;
     start_.restore(problem);
   }
-  gauss_seidel(problem, outcome, options.displacement_sweeps);
+  gauss_seidel(problem, outcome, options.displacement_passes);
   if (outcome.residual > options.displacement_residual && work <= options.most_factorisation_work) damped_augmented_lagrangian(problem, outcome);
 }
 

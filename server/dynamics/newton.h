@@ -4,9 +4,9 @@
 //   Wohlmuth, Comput. Methods Appl. Mech. Eng. 194, 2005), for small islands;
 // - the augmented Lagrangian about the last impulses (R. T. Rockafellar, Math. Oper. Res. 1, 1976):
 //   for larger islands at rest; for small ones with a line search, after a continuation or after
-//   sweeps;
+//   passes;
 // - the interior point method, for larger islands with impacts;
-// - Gauss-Seidel sweeps alone, where a factorisation costs too much.
+// - Gauss-Seidel passes alone, where a factorisation costs too much.
 // All but the last factor one matrix along the contact graph.
 
 #include <algorithm>
@@ -22,7 +22,7 @@ struct SolverResult {
   int iterations = 0;  ///< of Newton's method
   int augmented_lagrangian_steps = 0;    ///< steps of the augmented Lagrangian
   int interior_point_steps = 0;    ///< steps of the interior point method
-  int sweeps = 0;      ///< over all contacts
+  int passes = 0;      ///< over all contacts
   double residual = 0;     ///< worst residual of the contact law [m/s] or [rad/s]
   bool converged = true;
 };
@@ -46,12 +46,12 @@ struct SolverOptions {
   int most_augmented_lagrangian_steps = 8;     ///< full steps of the augmented Lagrangian
   double regularisation = 1e-3;    ///< compliance of its impulses, over the mobility
   int most_interior_point_steps = 40;    ///< steps of the interior point method
-  double most_factorisation_work = 1.2e7;  ///< multiplications of a factorisation; more: sweeps
+  double most_factorisation_work = 1.2e7;  ///< multiplications of a factorisation; more: passes
   std::size_t most_factored_trees = 300;       ///< of an island whose matrix is analysed
-  int most_sweeps = 60;               ///< of islands that are not factored
-  int sweeps_before_augmented_lagrangian = 20;              ///< before patient steps
+  int most_passes = 60;               ///< of islands that are not factored
+  int passes_before_augmented_lagrangian = 20;              ///< before patient steps
   int most_damped_steps = 60;              ///< steps of the augmented Lagrangian with a line search
-  int displacement_sweeps = 20;       ///< of a displacement on which Newton's method fails
+  int displacement_passes = 20;       ///< of a displacement on which Newton's method fails
   double displacement_residual = 1e-5;    ///< [m], [rad] of it; more: the augmented Lagrangian
   double rounding = 1e-7;             ///< relative residual that counts as rounding
   double relative_tolerance = 1e-9;   ///< of the largest speed or speed change in the island
@@ -142,7 +142,7 @@ class VelocitySolver {
   double complementarity_after(const Problem& problem, double step_length) const;
   void interior_point_step(Problem& problem, double step_length);
   bool gauss_seidel(Problem& problem, SolverResult& outcome, int most);
-  bool augmented_lagrangian_after_sweeps(Problem& problem, SolverResult& outcome);
+  bool augmented_lagrangian_after_gauss_seidel(Problem& problem, SolverResult& outcome);
   void polish(Problem& problem, SolverResult& outcome);
 
   BlockMatrix matrix_;

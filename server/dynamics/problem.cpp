@@ -409,7 +409,7 @@ bool Problem::become_displacement() {
     if (constraint.law == Constraint::Law::off) continue;
     if (constraint.kind == Constraint::Kind::servo && !holds(constraint)) {
       constraint.law = Constraint::Law::off;
-      constraint.impulse.fill(0);  // sweeps start from all impulses
+      constraint.impulse.fill(0);  // Gauss-Seidel starts from all impulses
       continue;
     }
     const double after = gap_after(constraint);
@@ -430,16 +430,6 @@ bool Problem::become_displacement() {
   std::fill(momentum.begin(), momentum.end(), 0.0);
   std::fill(velocity.begin(), velocity.end(), 0.0);
   return true;
-}
-
-void Problem::leave_rebounds() {
-  for (Constraint& constraint : constraints) {
-    constraint.impulse.fill(0);
-    if (!constraint.has_impact || constraint.lower == 0) continue;
-    constraint.lower = 0;
-    constraint.target_velocity[0] -= constraint.target_gap;
-  }
-  std::fill(velocity.begin(), velocity.end(), 0.0);
 }
 
 }  // namespace ziggurat::dynamics

@@ -45,7 +45,7 @@ struct Constraint {
   double restitution = 0;           ///< of a contact
   bool has_impact = false;             ///< a contact with an impact within the substep, that rebounds
   double target_gap = 0;                  ///< of an impact: the gap at the substep's end [m]
-  double restitution_velocity = 0;                ///< and the velocity before it that makes its work right [m/s]
+  double restitution_velocity = 0;                ///< and the velocity without it at the substep's end [m/s]
   double impact_time = 0;                   ///< and its time, from the substep's beginning [s]
   Matrix3 frame = Matrix3::Zero();  ///< columns: normal and tangents of a contact
   int source = 0;                   ///< into the contacts, servos or limits of the system
@@ -118,8 +118,6 @@ struct Problem {
   /// [rad], without momentum and friction.
   /// @return  false if there is no penetration
   bool become_displacement();
-  /// Removes the target gaps of impacts from a displacement problem, and starts it anew.
-  void leave_rebounds();
 
  private:
   int add_columns(const Tree& tree, int rows);

@@ -9,17 +9,11 @@
 namespace ziggurat::dynamics {
 namespace {
 
-constexpr double rounding = 1e-9;       // of the energy
-constexpr double more_than_moved = 1.02;  // the square of how much farther than its speeds say it may be moved
+constexpr double rounding = 1e-9;  // of the energy
 
-/// Gives the trees what pushes them, without gravity, as it acts: at once, before any impact.
-/// @param start   velocities at the substep's beginning, of each dof: in, without it; out, with it
-/// @param change  out: of each dof;  @param fall  out: likewise by gravity, of what is pushed
-/// @return        its work [J]
-double push(const Problem& problem, Workspace& work, std::vector<double>& start, std::vector<double>& change, std::vector<double>& fall) {
+/// Work of pushes, without gravity: they act at once, before any impact [J].
+double work_of_pushes(const Problem& problem, Workspace& work) {
   double sum = 0;
-  change.assign(start.size(), 0);
-  fall.assign(start.size(), 0);
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     const Tree& tree = *problem.trees[i];
     const int n = tree.dofs;
@@ -29,31 +23,8 @@ double push(const Problem& problem, Workspace& work, std::vector<double>& start,
     if (force.isZero(0)) continue;
     const Eigen::VectorXd impulse = problem.time_step * force;
     const Eigen::MatrixXd mass = Eigen::Map<const Eigen::MatrixXd>(problem.mass_of(i), n, n);
-    Eigen::Map<Eigen::VectorXd> before(start.data() + problem.offset[i], n), faster(change.data() + problem.offset[i], n);
-    faster = mass.llt().solve(impulse);
-    sum += impulse.dot(before + faster / 2);
-    before += faster;
-    external_forces(tree, work, work.scratch, false, true);
-    const Eigen::VectorXd weight = problem.time_step * Eigen::Map<const Eigen::VectorXd>(work.scratch.data(), n);
-    Eigen::Map<Eigen::VectorXd>(fall.data() + problem.offset[i], n) = mass.llt().solve(weight);
-  }
-  return sum;
-}
-
-/// Work of pushes that contacts without restitution take up: they transmit load, and hold bodies in
-/// place.
-/// @param change, fall  see push(): an impulse that holds both is divided among them
-double work_held(const Problem& problem, const std::vector<double>& change, const std::vector<double>& fall) {
-  double sum = 0;
-  for (const Constraint& constraint : problem.constraints) {
-    if (constraint.kind != Constraint::Kind::contact || problem.rebounded(constraint)) continue;
-    double u[Constraint::most_rows], others[Constraint::most_rows];
-    problem.constraint_velocity(constraint, u, change.data());
-    problem.constraint_velocity(constraint, others, fall.data());
-    for (int r = 0; r < constraint.rows; ++r) {
-      const double share = u[r] * others[r] > 0 ? u[r] / (u[r] + others[r]) : 1;
-      sum += std::min(0.0, share * constraint.impulse[r] * u[r] / 2);
-    }
+    const Eigen::Map<const Eigen::VectorXd> before(tree.v.data(), n);
+    sum += impulse.dot(before + mass.llt().solve(impulse) / 2);
   }
   return sum;
 }
@@ -71,35 +42,6 @@ double work_of_servos(const Problem& problem, const Iterate& without) {
     for (const int k : constraint.dofs_a) {
       const double along = problem.jacobian[constraint.jacobian_a + k], most = usual * along * after[k];  // it may be stopped at once, as by a limit
       sum += std::min(usual * along * (before[k] + after[k]) / 2, most) + more * along * after[k];
-    }
-  }
-  return sum;
-}
-
-/// Whether pushes are small beside the speeds of all impacts: then they act throughout the substep, see restitution_timing.cpp.
-/// @param start, change  see push(): out
-bool push_throughout(const Problem& problem, const std::vector<double>& start, const std::vector<double>& change) {
-  return !problem.has_sequential_impacts && std::ranges::all_of(problem.constraints, [&](const Constraint& constraint) {
-    if (!problem.rebounded(constraint)) return true;
-    double u[Constraint::most_rows], kick[Constraint::most_rows];
-    problem.constraint_velocity(constraint, u, start.data());
-    problem.constraint_velocity(constraint, kick, change.data());
-    return kick[0] == 0 || std::abs(kick[0]) < kick[0] - u[0];
-  });
-}
-
-/// Work of distributed pushes along the displacement, less the surplus of an impulse at the
-/// substep's beginning.
-/// @param step  of each dof [rad], [m]
-double work_throughout(const Problem& problem, Workspace& work, const RestitutionEnergy& rebound, const std::vector<double>& step) {
-  double sum = 0;
-  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    const Tree& tree = *problem.trees[i];
-    work.scratch.resize(tree.dofs);
-    external_forces(tree, work, work.scratch, true, false);
-    for (int k = 0; k < tree.dofs; ++k) {
-      const std::size_t index = problem.offset[i] + k;
-      sum += work.scratch[k] * (step[index] - problem.time_step / 2 * (tree.v[k] - rebound.before[index]));
     }
   }
   return sum;
@@ -130,12 +72,6 @@ bool is_grounded(const Problem& problem) {
   });
 }
 
-/// By how much a coordinate's unit moves points of its tree, squared: a turn, by the size that its inertia is that of.
-double square_of_lever(const Problem& problem, std::size_t tree, int dof) {
-  const Tree& of = *problem.trees[tree];
-  return problem.mass_of(tree)[dof * of.dofs + dof] / problem.total_mass[tree];
-}
-
 /// Takes an energy from all speeds, as far as they have it.
 void scale_velocities(const Problem& problem, double excess) {
   const double all = kinetic_energy(problem);
@@ -155,141 +91,18 @@ double way_back(double a, double b, double energy) {
   return std::min(1.0, way);
 }
 
-/// Work of all contacts and limits in the substep, as a quadratic function of the share of the
-/// rebound: value at 0, first derivative, half of the second.
-struct Work {
-  double none = 0, slope = 0, curve = 0;  // [J]
-  double size = 0;                        // of what is summed
-};
-
-/// @param start  velocities at the beginning, of each dof
-Work work_of_contacts(const Problem& problem, const Iterate& without,
-                      const std::vector<double>& start) {
-  Work out;
-  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
-    const Constraint& constraint = problem.constraints[i];
-    if (constraint.kind == Constraint::Kind::servo) continue;
-    double before[Constraint::most_rows], least[Constraint::most_rows], most[Constraint::most_rows];
-    problem.constraint_velocity(constraint, most, problem.velocity.data());
-    problem.constraint_velocity(constraint, least, without.velocity.data());
-    problem.constraint_velocity(constraint, before, start.data());
-    if (constraint.has_impact) before[0] = constraint.restitution_velocity;
-    for (int r = 0; r < constraint.rows; ++r) {
-      const double g = without.impulses[i][r], more = constraint.impulse[r] - g;
-      const double u = before[r] + least[r], faster = most[r] - least[r];
-      out.none += g * u / 2;
-      out.slope += (g * faster + more * u) / 2;
-      out.curve += more * faster / 2;
-      out.size += std::abs(constraint.impulse[r]) * (std::abs(before[r]) + std::abs(most[r]));
-    }
-  }
-  return out;
-}
-
-/// The largest share of the way at which contacts do not give energy.
-double share_without_gain(const Problem& problem, const Iterate& without,
-                          const std::vector<double>& start) {
-  const Work work = work_of_contacts(problem, without, start);
-  if (work.none + work.slope + work.curve <= rounding * work.size) return 1;
-  if (work.none >= 0 || work.curve <= 0) return 0;
-  const double root = std::sqrt(work.slope * work.slope - 4 * work.curve * work.none);
-  return std::clamp((root - work.slope) / (2 * work.curve), 0.0, 1.0);
-}
-
-void blend(Problem& problem, const Iterate& without, double share) {
-  for (std::size_t k = 0; k < problem.velocity.size(); ++k) {
-    problem.velocity[k] = without.velocity[k] + share * (problem.velocity[k] - without.velocity[k]);
-  }
-  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
-    for (int r = 0; r < problem.constraints[i].rows; ++r) {
-      double& impulse = problem.constraints[i].impulse[r];
-      impulse = without.impulses[i][r] + share * (impulse - without.impulses[i][r]);
-    }
-  }
-}
-
-/// The square of the fastest that a tree's root moves, before or after [m^2/s^2].
-double square_of_fastest(const Problem& problem, const RestitutionEnergy& rebound) {
-  double most = 0;
-  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    const Tree& tree = *problem.trees[i];
-    for (const double* v : {tree.v.data(), rebound.start.data() + problem.offset[i]}) {
-      if (tree.has_floating_base) most = std::max(most, v[3] * v[3] + v[4] * v[4] + v[5] * v[5]);
-    }
-  }
-  return most;
-}
-
 }  // namespace
 
 bool rebounds(const Problem& problem) {
   return std::ranges::any_of(problem.constraints, [&](const Constraint& constraint) { return problem.rebounded(constraint); });
 }
 
-void bound_restitution(Problem& problem, VelocitySolver& solver, Workspace& work, RestitutionEnergy& out) {
+void compute_energy_bound(Problem& problem, VelocitySolver& solver, Workspace& work, RestitutionEnergy& out) {
   solver.solve_without_rebound(problem, out.without);
-  out.start.clear();
-  for (const Tree* tree : problem.trees) {
-    out.start.insert(out.start.end(), tree->v.begin(), tree->v.end());
-  }
-  out.before = out.start;
-  const double pushed = push(problem, work, out.start, out.change, out.after);
-  const double share = share_without_gain(problem, out.without, out.start);
-  if (share < 1) blend(problem, out.without, share);
-  const double unpushed = energy(problem.trees) + work_of_servos(problem, out.without);
-  out.most_energy = unpushed + pushed + work_held(problem, out.change, out.after);
-  out.throughout.reset();
-  if (pushed != 0 && push_throughout(problem, out.start, out.change)) out.throughout = unpushed;
+  out.most_energy = energy(problem.trees) + work_of_servos(problem, out.without) + work_of_pushes(problem, work);
 }
 
-bool lifts_too_much(const Problem& problem, Workspace& work, const RestitutionEnergy& rebound,
-                    const std::vector<double>& step) {
-  for (Tree* tree : problem.trees) velocity_kinematics(*tree);
-  double lift = 0, now = energy(problem.trees);
-  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    const Tree& tree = *problem.trees[i];
-    work.scratch.resize(tree.dofs);
-    external_forces(tree, work, work.scratch, false, true);
-    for (int k = 0; k < tree.dofs; ++k) {
-      const std::size_t index = problem.offset[i] + k;
-      lift -= work.scratch[k] * problem.velocity[index];
-      now -= work.scratch[k] * step[index];
-    }
-  }
-  return lift > 0 && now + lift - rebound.most_energy > rounding * (std::abs(now) + lift);
-}
-
-void bound_way(Problem& problem, const RestitutionEnergy& rebound) {
-  double share = 1;
-  // A ball that is struck and strikes another one may be as fast after as before, and move all the same.
-  const double of_turns = problem.has_sequential_impacts ? 4 * square_of_fastest(problem, rebound) : 0;
-  double depth = problem.allowed_overlap;  // what overlaps is moved apart by up to that
-  for (const Constraint& constraint : problem.constraints) depth = std::max(depth, -constraint.gap);
-  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    const Tree& tree = *problem.trees[i];
-    const double* way = problem.velocity.data() + problem.offset[i];
-    const double* start = rebound.start.data() + problem.offset[i];
-    for (int k = 0, last = 0; k < tree.dofs; k = last) {  // how it turns, how it moves, and each joint by itself
-      last = k < tree.dof_count[0] ? std::min(k + 3, tree.dof_count[0]) : k + 1;
-      double square = 0, change = 0;
-      for (int j = k; j < last; ++j) {
-        square += way[j] * way[j];
-        change += (tree.v[j] - start[j]) * (tree.v[j] - start[j]);
-      }
-      if (tree.has_floating_base && k == 3) change = std::max(change, of_turns);
-      // Before it struck, for a part of the substep, it had the other velocity.
-      const double most = more_than_moved * problem.time_step * problem.time_step * change +
-                          4 * depth * depth / square_of_lever(problem, i, k);
-      if (square > most) share = std::min(share, std::sqrt(most / square));
-    }
-  }
-  for (double& way : problem.velocity) way *= share;
-}
-
-void bound_energy(const Problem& problem, Workspace& work, RestitutionEnergy& rebound, const std::vector<double>& step) {
-  if (rebound.throughout) {
-    rebound.most_energy = std::min(rebound.most_energy, *rebound.throughout + work_throughout(problem, work, rebound, step));
-  }
+void bound_energy(const Problem& problem, Workspace& work, RestitutionEnergy& rebound) {
   const double now = energy(problem.trees), excess = now - rebound.most_energy;
   const double kinetic = kinetic_energy(problem);
   if (excess <= rounding * (kinetic + std::abs(now))) return;

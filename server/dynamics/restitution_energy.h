@@ -1,9 +1,8 @@
 #pragma once
 // Energy bound of restitution. Newton's law at each point can add energy where several points
-// strike at once, friction turns the body, or it rotates far within the substep. An island takes
-// the largest share of its rebound that adds none.
+// strike at once, friction turns the body, or it rotates far within the substep. The gain is taken
+// back at the substep's end.
 
-#include <optional>
 #include <vector>
 
 #include "dynamics/newton.h"
@@ -13,36 +12,19 @@ namespace ziggurat::dynamics {
 /// Energy bound of an island's impacts in a substep.
 struct RestitutionEnergy {
   double most_energy = 0;  ///< kinetic and potential, at the substep's end [J]
-  std::optional<double> throughout;   ///< the same without pushes, where these act throughout the substep [J]
   Iterate without;        ///< the solution without rebound
-  std::vector<double> before;         ///< velocities at the substep's beginning, of each dof
-  std::vector<double> start;          ///< velocities at the substep's beginning, with what pushes give, of each dof
   std::vector<double> after, change;  ///< memory of functions
 };
 
 /// Whether a contact of the island pushes and rebounds; to be called when its problem is solved.
 bool rebounds(const Problem& problem);
 
-/// Weakens rebounds until the work of all contacts is no gain.
+/// Energy that the island may have at the substep's end: that of its beginning, and the work of
+/// pushes and servos.
 /// @param problem  solved, its trees as they were
-void bound_restitution(Problem& problem, VelocitySolver& solver, Workspace& work, RestitutionEnergy& out);
+void compute_energy_bound(Problem& problem, VelocitySolver& solver, Workspace& work, RestitutionEnergy& out);
 
-/// Whether the displacement to the target gaps lifts bodies by more than their energy allows:
-/// several points of a mechanism that rebound at different times.
-/// @param problem  the displacement problem, solved, its trees with their final velocities; moves
-///                 them
-/// @param step     displacements without it, of each dof [rad], [m]
-bool lifts_too_much(const Problem& problem, Workspace& work, const RestitutionEnergy& rebound,
-                    const std::vector<double>& step);
-
-/// Scales the displacement to the target gaps down to the distance that the change of velocity
-/// allows. Points that strike at different times may ask for a large rotation.
-/// @param problem  the displacement problem, solved, its trees with their final velocities
-void bound_way(Problem& problem, const RestitutionEnergy& rebound);
-
-/// Takes what the rebounds gained all the same, at the substep's end: where bodies turn far, or what undoes overlaps
-/// lifts them. Needs velocity_kinematics(), and leaves the trees moved.
-/// @param step  displacements of the substep, of each dof [rad], [m]
-void bound_energy(const Problem& problem, Workspace& work, RestitutionEnergy& rebound, const std::vector<double>& step);
+/// Takes what the rebounds gained, at the substep's end. Needs velocity_kinematics(), and leaves the trees moved.
+void bound_energy(const Problem& problem, Workspace& work, RestitutionEnergy& rebound);
 
 }  // namespace ziggurat::dynamics

@@ -197,26 +197,6 @@ void aim_rebounds(Problem& problem) {
   }
 }
 
-/// Whether two contacts press a tree from opposite sides: it can't be where both would have it rebound to.
-bool squeeze(const Constraint& one, const Constraint& other) {
-  constexpr double opposite = -0.5;  // cosine of the angle between them
-  const auto side = [](const Constraint& constraint, int tree) { return constraint.a == tree ? 1.0 : constraint.b == tree ? -1.0 : 0.0; };
-  for (const int tree : {one.a, one.b}) {
-    if (tree < 0) continue;
-    if (side(one, tree) * side(other, tree) * one.frame.col(0).dot(other.frame.col(0)) < opposite) return true;
-  }
-  return false;
-}
-
-/// Whether a servo of a solved problem is saturated, or a limit holds: then fast bodies are not
-/// fast for the whole substep.
-bool is_strained(const Problem& problem) {
-  return std::ranges::any_of(problem.constraints, [](const Constraint& constraint) {
-    return (constraint.kind == Constraint::Kind::servo && constraint.impulse[0] != 0 && !constraint.is_unsaturated()) ||
-           (constraint.kind == Constraint::Kind::limit && constraint.impulse[0] > 0);
-  });
-}
-
 /// Gives restitution to contacts that close within the substep by motors, pushes or other impacts:
 /// from the closing velocity without these contacts, from the beginning on.
 /// @param problem  solved
@@ -226,19 +206,16 @@ bool aim_what_is_thrown(Problem& problem, VelocitySolver& solver) {
   for (Constraint& constraint : problem.constraints) {
     const bool rebounds = constraint.kind == Constraint::Kind::contact && constraint.restitution > 0 && !constraint.has_impact;
     if (!rebounds || constraint.impulse[0] == 0 || constraint.gap <= restitution_threshold * problem.time_step) continue;
-    const auto squeezes = [&](const Constraint& other) { return other.has_impact && squeeze(constraint, other); };
-    if (std::ranges::none_of(problem.constraints, squeezes)) thrown.push_back(&constraint);
+    thrown.push_back(&constraint);
   }
-  if (thrown.empty() || is_strained(problem)) return false;
+  if (thrown.empty()) return false;
   for (Constraint* constraint : thrown) {
     constraint->law = Constraint::Law::off;
     constraint->impulse.fill(0);
   }
   solver.solve(problem);
-  const bool is_known = !is_strained(problem);
   for (Constraint* constraint : thrown) {
     constraint->law = Constraint::Law::contact;
-    if (!is_known) continue;
     double u[Constraint::most_rows];
     problem.constraint_velocity(*constraint, u);
     const double time = u[0] < -restitution_threshold ? -constraint->gap / u[0] : HUGE_VAL, rest = problem.time_step - time;

@@ -32,7 +32,7 @@ Row row_of(const Problem& problem, const Constraint& constraint, int tree) {
 struct ImpactSequence {
   double time_step = 0, time = 0;             ///< of the substep, and since its beginning [s]
   std::vector<double> gap, speed, pull;    ///< of each contact [m], [m/s], [m/s^2]
-  std::vector<double> given, worked, met;  ///< impulse, its work, and when it last met [N s], [J], [s]
+  std::vector<double> given, met;  ///< impulse, and when it last met [N s], [s]
   Eigen::MatrixXd responses;               ///< of a contact's speed (row) to an impulse at another [1/kg]
 };
 
@@ -73,12 +73,10 @@ void strike(ImpactSequence& s, std::span<const RestitutionContact> impacts, std:
     if (impulse.minCoeff(&least) >= 0 || count == 1) break;
     together.erase(together.begin() + least);
   }
-  for (std::size_t i = 0; i < together.size(); ++i) s.worked[together[i]] += impulse[i] * s.speed[together[i]] / 2;
   for (std::size_t k = 0; k < s.speed.size(); ++k) {
     for (std::size_t i = 0; i < together.size(); ++i) s.speed[k] += s.responses(k, together[i]) * impulse[i];
   }
   for (std::size_t i = 0; i < together.size(); ++i) {
-    s.worked[together[i]] += impulse[i] * s.speed[together[i]] / 2;
     s.given[together[i]] += impulse[i];
     s.met[together[i]] = s.time;
   }
@@ -88,7 +86,7 @@ ImpactSequence begin(const Problem& problem, std::span<const RestitutionContact>
   ImpactSequence s;
   s.time_step = problem.time_step;
   const auto count = impacts.size();
-  s.given.resize(count), s.worked.resize(count), s.met.resize(count);
+  s.given.resize(count), s.met.resize(count);
   s.responses.resize(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count));
   for (std::size_t i = 0; i < count; ++i) {
     s.gap.push_back(impacts[i].constraint->gap);
@@ -144,7 +142,6 @@ bool resolve_in_time_order(Problem& problem, std::span<const RestitutionContact>
     constraint.impact_time = s.met[i];
     constraint.target_gap = std::max(0.0, s.gap[i]);
     constraint.target_velocity[0] = s.speed[i];
-    constraint.restitution_velocity = 2 * s.worked[i] / s.given[i] - s.speed[i];
   }
   return true;
 }

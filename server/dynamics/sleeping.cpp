@@ -38,11 +38,11 @@ bool is_below_residual(const std::vector<Tree>& trees, std::span<const int> isla
     double own = 0;
     for (const Link& link : trees[number].links) own += link.mass;
     const double its = kinetic_energy(trees[number]);
-    if (!(2 * its <= own * rest.swept_fastest * rest.swept_fastest)) return false;
+    if (!(2 * its <= own * rest.heap_fastest * rest.heap_fastest)) return false;
     energy += its, mass += own;
   }
   constexpr double some = 3;  // several contacts' residuals add up on a body
-  const double most = std::min(some * miss, rest.swept_velocity);
+  const double most = std::min(some * miss, rest.heap_velocity);
   return 2 * energy <= mass * most * most;
 }
 
@@ -201,13 +201,13 @@ bool System::wake_disturbed(double time_step, std::span<ContactPoint> contacts, 
 
 /// Lets an island sleep that has been below the bounds for long enough.
 /// @param carried     whether the world supports it
-/// @param swept_miss  residual of its solution if it was only swept [m/s]; else 0
-void System::update_sleep(int first_tree, int last_tree, bool carried, double swept_miss) {
+/// @param heap_residual  residual of its solution if it was solved by passes only [m/s]; else 0
+void System::update_sleep(int first_tree, int last_tree, bool carried, double heap_residual) {
   if (!sleeping.enabled) return;
   const std::span<const int> island(tree_order_.data() + first_tree,
                                     tree_order_.data() + last_tree);
-  const bool swept = swept_miss > 0;
-  const bool quiet = carried && ((swept && is_below_residual(trees, island, sleeping, swept_miss)) ||
+  const bool is_heap = heap_residual > 0;
+  const bool quiet = carried && ((is_heap && is_below_residual(trees, island, sleeping, heap_residual)) ||
                                  is_slow(trees, island, sleeping));
   double least = HUGE_VAL;
   for (int i = first_tree; i < last_tree; ++i) {
@@ -215,7 +215,7 @@ void System::update_sleep(int first_tree, int last_tree, bool carried, double sw
     sleeper.time_at_rest = quiet ? sleeper.time_at_rest + time_step_ : 0;
     least = std::min(least, sleeper.time_at_rest);
   }
-  if (!quiet || least < (swept ? sleeping.swept_time : sleeping.time)) return;
+  if (!quiet || least < (is_heap ? sleeping.heap_time : sleeping.time)) return;
   for (int i = first_tree; i < last_tree; ++i) {
     const int index = tree_order_[i];
     Tree& tree = trees[index];

@@ -22,7 +22,7 @@ struct Report {
   int most_iterations = 0;  ///< of Newton's method in an island
   int most_augmented_lagrangian_steps = 0;    ///< of the softened problem
   int most_interior_point_steps = 0;    ///< of the interior point method
-  int most_sweeps = 0;      ///< over the contacts of an island
+  int most_passes = 0;      ///< over the contacts of an island
   double residual = 0;          ///< worst residual of the contact law [m/s] or [rad/s]
   int awake = 0;            ///< trees that moved
   int most_evaluations = 0;     ///< of the equations of motion of a tree in free motion
@@ -64,10 +64,10 @@ struct SleepOptions {
   double angular_velocity = 5e-4;  ///< of rotation, and of joints [rad/s] or [m/s]
   double time = 0.3;      ///< [s]
   double force_change = 1e-3;    ///< change that wakes, over weight and force when it fell asleep
-  // Conditions for a heap that was only swept, in whose residual slow motion is lost.
-  double swept_velocity = 1e-3;    ///< root mean square of all its mass [m/s]
-  double swept_fastest = 5e-3;  ///< of a tree [m/s]
-  double swept_time = 0.5;      ///< [s]
+  // Conditions for a heap that was solved by passes only, in whose residual slow motion is lost.
+  double heap_velocity = 1e-3;    ///< root mean square of all its mass [m/s]
+  double heap_fastest = 5e-3;  ///< of a tree [m/s]
+  double heap_time = 0.5;      ///< [s]
 };
 
 /// The two trees of a contact; -1: the world. A ContactPoint takes far more of the cache.
@@ -88,7 +88,6 @@ class System {
   /// Largest number of parts that step() may ask for, see geometric_stiffness.h and
   /// gyroscopic_stiffness.h. 1: none.
   int most_parts = 1;
-  bool is_part = false;  ///< step() takes one of these parts
   IslandsToSubdivide islands_to_subdivide;      ///< by the last step()
   /// Trees whose rotation until impact is large: their islands are divided, because a contact acts
   /// along lines of the step's beginning. To be set before step().
@@ -160,7 +159,7 @@ class System {
   void clear_wrenches();
   bool comes_to_touch(const ContactPoint& contact) const;
   void hash_servo_commands();
-  void update_sleep(int first_tree, int last_tree, bool carried, double swept_miss = 0);
+  void update_sleep(int first_tree, int last_tree, bool carried, double heap_residual = 0);
   void list_awake();
   void build_islands();
   void prefetch_after(std::size_t island) const;
@@ -202,7 +201,6 @@ class System {
   std::vector<IslandItem> items_, item_order_;
   std::vector<unsigned char> has_servos_, is_free_;  // of each tree of an island
   UnconstrainedVelocities free_velocities_;
-  std::vector<int> only_contacts_;  // memory of a function
   std::vector<double> saved_state_, displacement_;
   IslandEnergyErrors energy_errors_;
   RestitutionEnergy restitution_energy_;

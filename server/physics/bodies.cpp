@@ -1,16 +1,10 @@
 #include "physics/bodies.h"
 
-#include "physics/bullet/mechanism.h"
 #include "physics/convert.h"
 
 namespace ziggurat::physics {
 
 using math::Pose;
-
-Body::Body() = default;
-Body::~Body() = default;
-Body::Body(Body&&) noexcept = default;
-Body& Body::operator=(Body&&) noexcept = default;
 
 Pose LinkBody::frame_in_part() const { return in_part * math::inverse(center); }
 
@@ -20,7 +14,7 @@ Pose base_pose(const Body& body) {
 }
 
 btTransform Body::transform(std::size_t part) const {
-  return mechanism ? mechanism->transform(part) : articulation->transform(part);
+  return articulation->transform(part);
 }
 
 btTransform Body::transform(const LinkBody& link) const {
@@ -30,27 +24,18 @@ btTransform Body::transform(const LinkBody& link) const {
 }
 
 void Body::apply_force(std::size_t part, const btVector3& force) {
-  mechanism ? mechanism->apply_force(part, force) : articulation->apply_force(part, force);
+  articulation->apply_force(part, force);
 }
 
 void Body::apply_torque(std::size_t part, const btVector3& torque) {
-  mechanism ? mechanism->apply_torque(part, torque) : articulation->apply_torque(part, torque);
+  articulation->apply_torque(part, torque);
 }
 
-bool Body::sleeps() const { return mechanism ? mechanism->sleeps() : articulation->sleeps(); }
-
-/// A tree of dynamics/ wakes by itself when the forces on it are not those that it rests under.
-void Body::wake() {
-  if (mechanism && mechanism->rigid) mechanism->rigid->activate(true);
-}
-
-void Body::update_poses() {
-  if (mechanism) mechanism->update_poses();
-}
+bool Body::sleeps() const { return articulation->sleeps(); }
 
 void Body::motions(std::vector<Twist>& out) const {
   out.resize(parts.size());
-  mechanism ? mechanism->motions(out) : articulation->motions(out);
+  articulation->motions(out);
 }
 
 Twist Body::motion(const LinkBody& link, std::span<const Twist> parts_motion) const {

@@ -1,11 +1,10 @@
 #pragma once
-// An entity as plug-ins see it: its links, and the parts that move as one. What moves the parts is
-// the core's (newton/ or bullet/); here it is only asked where they are and pushed.
+// An entity as plug-ins see it: its links, and the parts that move as one. The core (newton/)
+// moves the parts; here it is only asked where they are and pushed.
 
 #include <LinearMath/btTransform.h>
 
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -85,15 +84,8 @@ struct Magnet {
   double current = 0;  ///< times the active field
 };
 
-struct Mechanism;  // bullet/mechanism.h
-
 /// An entity in the world. A removed one has no links and no parts.
 struct Body {
-  Body();
-  ~Body();
-  Body(Body&&) noexcept;
-  Body& operator=(Body&&) noexcept;
-
   std::size_t entity = 0;
   std::size_t first_link = 0;   ///< its links' place in State::links
   std::vector<Part> parts;      ///< that of the reference link first
@@ -107,13 +99,9 @@ struct Body {
   std::optional<Turret> turret;
   bool watched = false;  ///< contacts of one of its links are
 
-  std::unique_ptr<Mechanism> mechanism;      ///< in the core that sweeps
-  std::optional<Articulation> articulation;  ///< in the core by Newton's method
+  std::optional<Articulation> articulation;  ///< in the core; none: it was removed
 
-  void archive(math::Archive& archive);  ///< what changes, but for what a core moves
-
-  /// Whether a core moves it.
-  bool present() const { return mechanism || articulation; }
+  void archive(math::Archive& archive);  ///< what changes, but for what the core moves
 
   /// X_WP of a part.
   btTransform transform(std::size_t part) const;
@@ -121,11 +109,7 @@ struct Body {
   btTransform transform(const LinkBody& link) const;
   void apply_force(std::size_t part, const btVector3& force);    ///< at the centre of mass [N]
   void apply_torque(std::size_t part, const btVector3& torque);  ///< [N m]
-  bool sleeps() const;  ///< at rest until something touches it
-  void wake();          ///< what pushes it is to be felt
-
-  /// Must be called once after substeps, before transforms of several links are asked for.
-  void update_poses();
+  bool sleeps() const;  ///< at rest until something touches or pushes it
 
   /// Motion of every part.
   void motions(std::vector<Twist>& out) const;

@@ -1,5 +1,5 @@
 #pragma once
-// Links of an entity, and its rigid parts, before a core moves it.
+// Links of an entity, and its rigid parts, before the core moves it.
 
 #include "physics/bodies.h"
 #include "scene/scene.h"
@@ -13,7 +13,7 @@ bool is_single_part(const scene::Entity& entity);
 /// The plane that an entity stands on, if there is one.
 const scene::Plane* plane_of(const scene::Entity& entity, const scene::Physics& physics);
 
-/// An entity where it stands; no core moves it yet.
+/// An entity where it stands; the core does not move it yet.
 /// @param physics  whether magnets act: then free spherical magnets are carried; what planes hold
 /// @param number   of the entity, into State::origins
 Body make_body(const scene::Entity& entity, const scene::Physics& physics, std::size_t number);

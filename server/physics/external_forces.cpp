@@ -10,7 +10,6 @@ void ExternalForces::before_substep(std::span<Body> bodies, double) {
     if (push.link >= body.links.size()) continue;  // removed
     const LinkBody& link = body.links[push.link];
     if (!link.moves) continue;
-    body.wake();
     const btVector3 force = to_bullet(push.force);
     const btVector3 arm =
         body.transform(link).getOrigin() - body.transform(link.part).getOrigin();

@@ -6,16 +6,6 @@
 
 namespace ziggurat::physics {
 
-void Gravity::before_substep(std::span<Body> bodies, double) {
-  for (Body& body : bodies) {
-    if (body.parts.empty() || body.sleeps()) continue;
-    for (std::size_t i = 0; i < body.parts.size(); ++i) {
-      const Part& part = body.parts[i];
-      if (part.moves) body.apply_force(i, btVector3(0, 0, -g_ * part.mass));
-    }
-  }
-}
-
 void ViscousDamping::body_added(Body& body) {
   const bool damped = std::any_of(body.links.begin(), body.links.end(), [](const LinkBody& link) {
     return link.moves && (link.damping.linear > 0 || link.damping.angular > 0);

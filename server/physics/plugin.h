@@ -1,7 +1,6 @@
 #pragma once
 // The plug-in layer: what acts on bodies besides joints and contacts, and what watches them.
-// Gravity, damping, magnetism, wheels and contact sensing are plug-ins. physics/plugins.cpp lists
-// them.
+// Damping, magnetism, wheels and contact sensing are plug-ins. physics/plugins.cpp lists them.
 
 #include <compare>
 #include <cstdint>

@@ -1,10 +1,6 @@
 #include "physics/shape.h"
 
-#include <BulletCollision/CollisionShapes/btBoxShape.h>
-#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
-#include <BulletCollision/CollisionShapes/btCylinderShape.h>
-#include <BulletCollision/CollisionShapes/btSphereShape.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +16,6 @@ namespace {
 
 using math::Pose;
 using math::Vector3;
-using BulletShape = std::unique_ptr<btCollisionShape>;
 
 Pose above(double height) { return {{0, 0, height}, math::Quaternion::Identity()}; }
 
@@ -38,10 +33,6 @@ Vector3 extents_of(const scene::Box& box) { return box.size / 2; }
 
 double depth_of(const scene::Box& box, const Vector3& point) {
   return (box.size / 2 - point.cwiseAbs()).minCoeff();
-}
-
-BulletShape bullet_of(const scene::Box& box) {
-  return std::make_unique<btBoxShape>(to_bullet(Vector3(box.size / 2)));
 }
 
 contact::Shape contact_of(const scene::Box& box) {
@@ -67,10 +58,6 @@ double depth_of(const scene::Cylinder& cylinder, const Vector3& point) {
                   cylinder.height / 2 - std::abs(point.z()));
 }
 
-BulletShape bullet_of(const scene::Cylinder& cylinder) {
-  return std::make_unique<btCylinderShapeZ>(to_bullet(extents_of(cylinder)));
-}
-
 contact::Shape contact_of(const scene::Cylinder& cylinder) {
   return contact::Cylinder{cylinder.radius, cylinder.height / 2};
 }
@@ -87,10 +74,6 @@ Vector3 extents_of(const scene::Sphere& sphere) { return Vector3::Constant(spher
 
 double depth_of(const scene::Sphere& sphere, const Vector3& point) {
   return sphere.radius - point.norm();
-}
-
-BulletShape bullet_of(const scene::Sphere& sphere) {
-  return std::make_unique<btSphereShape>(sphere.radius);
 }
 
 contact::Shape contact_of(const scene::Sphere& sphere) { return contact::Sphere{sphere.radius}; }
@@ -123,10 +106,6 @@ double depth_of(const scene::Capsule& capsule, const Vector3& point) {
   const double half = half_segment(capsule);
   const Vector3 nearest(0, 0, std::clamp(point.z(), -half, half));
   return capsule.radius - (point - nearest).norm();
-}
-
-BulletShape bullet_of(const scene::Capsule& capsule) {
-  return std::make_unique<btCapsuleShapeZ>(capsule.radius, 2 * half_segment(capsule));
 }
 
 contact::Shape contact_of(const scene::Capsule& capsule) {
@@ -177,8 +156,6 @@ std::unique_ptr<btConvexHullShape> bullet_hull(const scene::Hull& hull) {
   return shape;
 }
 
-BulletShape bullet_of(const scene::Hull& hull) { return bullet_hull(hull); }
-
 contact::Shape contact_of(const scene::Hull& hull) {
   const scene::Polyhedron& polyhedron = *hull.polyhedron;
   const math::Quaternion into = polyhedron.axes.conjugate();
@@ -215,10 +192,6 @@ Vector3 half_extents(const scene::Geometry& geometry) {
 
 double depth(const scene::Geometry& geometry, const Vector3& point) {
   return std::visit([&](const auto& shape) { return depth_of(shape, point); }, geometry);
-}
-
-BulletShape bullet_shape(const scene::Geometry& geometry) {
-  return std::visit([](const auto& shape) { return bullet_of(shape); }, geometry);
 }
 
 contact::Shape contact_shape(const scene::Geometry& geometry) {

@@ -4,10 +4,6 @@
 //
 // S, the frame of a shape, is at its centre of mass, along its principal axes.
 
-#include <BulletCollision/CollisionShapes/btCollisionShape.h>
-
-#include <memory>
-
 #include "physics/contact/shapes.h"
 #include "scene/geometry.h"
 
@@ -27,7 +23,6 @@ math::Vector3 half_extents(const scene::Geometry& geometry);
 double depth(const scene::Geometry& geometry, const math::Vector3& point);
 
 /// In S.
-std::unique_ptr<btCollisionShape> bullet_shape(const scene::Geometry& geometry);
 contact::Shape contact_shape(const scene::Geometry& geometry);
 
 }  // namespace ziggurat::physics

@@ -15,7 +15,7 @@ namespace ziggurat::physics {
 /// Such a link is a sphere at the end of the tree, on a spherical joint at its centre. It has a
 /// magnet at its centre, and lies inside its carrier's shape.
 /// The carrier with all its children must be balanced about its own centre and axes. Others stay
-/// links of the multi-body.
+/// links of the tree.
 /// @param assembled  X_EL of all links
 void carry_turning_magnets(std::vector<LinkBody>& links, const scene::Entity& entity,
                            const std::vector<math::Pose>& assembled);

@@ -20,7 +20,7 @@ struct LinkTouch {
                          ///< against each other, `impulse` is less
 };
 
-/// Convergence of solver="newton" since the world began; of solver="sweeps" nothing is known.
+/// Convergence of the contact solver since the world began.
 struct Convergence {
   std::size_t islands = 0;        ///< solved, over all substeps
   std::size_t not_converged = 0;  ///< of them

@@ -6,8 +6,8 @@
 
 #include "physics/archive.h"
 #include "physics/convert.h"
-#include "physics/core.h"
 #include "physics/magnets.h"
+#include "physics/newton/core.h"
 #include "physics/plugins.h"
 #include "physics/external_forces.h"
 
@@ -41,7 +41,6 @@ struct World::Parts {
     pushes = pushed.get();
     plugins.add(std::move(pushed));
   }
-  ~Parts() { core.take_apart(bodies); }
 
   scene::Physics settings;
   int splits;               // internal substeps per substep
@@ -52,7 +51,7 @@ struct World::Parts {
   std::vector<LinkContact> contacts;  // the same of list_contacts()
 
   std::vector<Body> bodies;
-  Core core;
+  NewtonCore core;
   Plugins plugins;
   ExternalForces* pushes = nullptr;  // one of the plug-ins
 };
@@ -154,7 +153,7 @@ void set_pushes(World& world, std::span<const world::Push> pushes) {
 
 void set_joint(World& world, std::size_t entity, JointIndex joint, double position, double velocity) {
   World::Parts& p = *world.parts_;
-  p.core.set_joint(joint, position, velocity);
+  set_joint(p.core, joint, position, velocity);
   p.plugins.move(p.bodies[entity]);
   p.stepped = std::max(p.stepped, entity + 1);  // its links are no longer where they were placed
 }
@@ -220,7 +219,6 @@ void World::read(std::size_t entity, world::State& state) const {
   state.links.resize(p.link_count);
   Body& body = p.bodies[entity];
   const bool stepped = entity < p.stepped;
-  if (stepped) body.update_poses();
   body.motions(p.motions);
   for (std::size_t i = 0; i < body.links.size(); ++i) {
     const LinkBody& link = body.links[i];
@@ -250,13 +248,11 @@ Convergence World::convergence() const { return parts_->core.convergence(); }
 World::Stiffness World::stiffest_bond() const {
   const Parts& p = *parts_;
   if (!p.settings.magnetism) return {.substep = p.length};
-  const bool divides = p.settings.solver == scene::Solver::newton;
-  const StiffestBond stiffest = physics::stiffest_bond(p.bodies, *p.settings.magnetism, divides);
+  const StiffestBond stiffest = physics::stiffest_bond(p.bodies, *p.settings.magnetism);
   return {.entity = stiffest.entity,
           .product = stiffest.rate * p.length,
           .substep = p.length,
-          .safe = stiffest.safe,
-          .divisible = stiffest.fixed && !divides};
+          .safe = stiffest.safe};
 }
 
 double World::energy() const {

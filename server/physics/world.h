@@ -80,7 +80,6 @@ class World {
   /// Puts a joint of an entity that is present to a position [m] or [rad] and a speed [m/s] or [rad/s]. What hangs on
   /// it follows; its other joints and its root stay as they are.
   /// @param joint  of joint()
-  /// @pre the solver is newton
   friend void set_joint(World& world, std::size_t entity, JointIndex joint, double position, double velocity);
 
   /// Begins to watch what touches a link of an entity added before.
@@ -112,7 +111,6 @@ class World {
     double product = 0;
     double substep = 0;      ///< internal [s]
     double safe = 1;         ///< bonds gain no energy while `product` is below this
-    bool divisible = false;  ///< solver="newton" would divide substeps for such bonds
   };
   Stiffness stiffest_bond() const;
 
@@ -120,7 +118,6 @@ class World {
 
   /// All that the next substep reads, between two substeps. What is read must come from a world in
   /// which the same was added and removed in the same order.
-  /// @pre the solver is newton: Bullet keeps state to itself
   /// @throws math::ArchiveError; then the state is undefined
   friend void archive_fields(math::Archive& archive, World& world);
 

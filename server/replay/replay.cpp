@@ -174,7 +174,7 @@ void Replay::spawn(const std::string& xml) {
     ++changes_;
     if (links_) {  // wherever others were when the world was built
       simulation::repeat(world_.simulation, world_.scene,
-                         {simulation::WorldEdit::Kind::spawn, tick_, entities.size(), {},
+                         {simulation::WorldEdit::Kind::spawn, tick_, entities.size(),
                           std::make_shared<const scene::Entity>(std::move(addition.entity)), xml});
     } else {
       world_.simulation.spawn(world_.scene, addition.entity, xml);
@@ -235,7 +235,6 @@ void Replay::restore_to(const simulation::Snapshot& snapshot) {
   if (links_) {
     world_.simulation.reset(world_.scene, {snapshot.seed, {}});
     for (const simulation::WorldEdit& act : snapshot.history.edits) {
-      if (act.kind == simulation::WorldEdit::Kind::move) continue;
       simulation::repeat(world_.simulation, world_.scene, act);
     }
   } else {

@@ -21,6 +21,9 @@ namespace ziggurat::replay {
 scene::OpenScene read_scene(const v1::RunStart& run, const EmbeddedFiles& files,
                             const scene::Variation& more = {});
 
+/// @throws RecordingError if the run was computed by a core of physics that this version does not have
+void check_core(const v1::RunStart& run, const scene::Scene& scene);
+
 /// Hash of the embedded files and their settings: 16 hexadecimal digits.
 std::string scene_hash(const scene::Scene& scene, const EmbeddedFiles& files);
 

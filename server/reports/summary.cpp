@@ -119,9 +119,9 @@ std::string to_text(const Summary& summary) {
   for (const auto& each : summary.dropped) text += fmt::format("  {}\n", each);
   if (const auto& solver = summary.solver; solver.not_converged > 0) {
     text += fmt::format(
-        "  solver {} did not converge in {} of {} islands; the worst residual is {:.2g} m/s or "
+        "  the solver did not converge in {} of {} islands; the worst residual is {:.2g} m/s or "
         "rad/s\n",
-        summary.solver_name, solver.not_converged, solver.islands, solver.worst_residual);
+        solver.not_converged, solver.islands, solver.worst_residual);
   }
   text += metrics(summary.metrics);
   text += fmt::format("  seed {}, hash {}", summary.seed, math::to_hex(summary.hash));
@@ -179,7 +179,6 @@ std::string to_json(const Summary& summary) {
     json["director"] = summary.result->director;
     json["result"] = summary.result->text;
   }
-  json["solver"]["name"] = summary.solver_name;
   if (summary.solver.islands > 0) {
     json["solver"]["islands"] = summary.solver.islands;
     json["solver"]["not_converged"] = summary.solver.not_converged;

@@ -50,8 +50,7 @@ struct Summary {
   std::uint64_t seed = 0;
   std::uint64_t hash = 0;
   std::size_t robots = 0;
-  std::string solver_name;    ///< as in a scene file
-  wire::SolverStatus solver;  ///< without islands: it does not tell
+  wire::SolverStatus solver;
 
   struct Failure {
     std::string robot;

@@ -296,7 +296,6 @@ void ReplayRun::complete_summary(End end) {
   summary_.wall_s = summary_.physics_s + summary_.recording_s + summary_.pacing_s;
   summary_.seed = world_.seed;
   summary_.hash = replay_.hash();
-  summary_.solver_name = scene::to_text(world_.scene.physics.solver);
   summary_.solver = supervision::solver_status(simulation);
 }
 

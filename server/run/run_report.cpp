@@ -38,7 +38,6 @@ void Run::complete_summary() {
       summary_.physics_s + summary_.exchange_s + summary_.recording_s + summary_.pacing_s;
   summary_.seed = world_.seed;  // a reset may have changed it
   summary_.hash = simulation.hash();
-  summary_.solver_name = scene::to_text(world_.scene.physics.solver);
   summary_.solver = supervision::solver_status(simulation);
   summary_.dropped = watch_.dropped();
   summary_.drops_are_failures = !options_.allow_drops;

@@ -97,7 +97,6 @@ struct Draft {
   std::unordered_map<std::string, std::size_t> model_ids;  ///< id -> index
   BodyDefaults defaults;
   bool has_engine = false;
-  bool told_of_sweeps = false;  ///< that some attributes have no effect with solver="sweeps"
   std::vector<ControllerUse> uses;                           ///< of Scene::controllers, same order
   std::unordered_map<std::string, std::size_t> media;        ///< id -> index
   std::unordered_map<std::string, std::size_t> controllers;  ///< id -> index

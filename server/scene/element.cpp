@@ -124,6 +124,10 @@ Location Element::where() const { return document_->locate(node_.name() - 1); }
 
 bool Element::has(const char* attribute) const { return !find(node_, name_, attribute).empty(); }
 
+std::string_view written(const Element& element, const char* attribute) {
+  return find(element.node_, element.name_, attribute).value();
+}
+
 Location Element::where(const char* attribute) const {
   const pugi::xml_attribute found = find(node_, name_, attribute);
   return found.empty() ? where() : document_->locate_value(found);

@@ -63,6 +63,8 @@ class Element {
   /// Location of an attribute's value, or of the element if it has none of that name.
   Location where(const char* attribute) const;
   bool has(const char* attribute) const;
+  /// Its value as it is written, without reading it; empty if there is none of that name.
+  friend std::string_view written(const Element& element, const char* attribute);
 
   /// Result type of a reader of values.
   template <class Read>
@@ -151,6 +153,8 @@ class Element {
   bool any_child_ = false;
   bool any_text_ = false;
 };
+
+std::string_view written(const Element& element, const char* attribute);
 
 /// Reports that an element lacks an attribute. @param example  of its value
 void missing(const Element& element, const char* attribute, std::string_view example);

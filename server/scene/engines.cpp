@@ -13,7 +13,6 @@ namespace {
 constexpr unsigned most_iterations = 1'000'000;  // substeps of a tick
 constexpr unsigned many_iterations = 10'000;     // beyond which a scene is doubted
 constexpr double strong_gravity = 1000;          // likewise [m/s^2]
-constexpr unsigned most_solver_iterations = 10'000;
 constexpr double usual_gravity = 10.0;  // [m/s^2], the dialect's default of `g`
 constexpr std::array<std::string_view, 3> engine_names{"dynamics3d", "dynamics2d", "pointmass3d"};
 
@@ -57,21 +56,13 @@ void read_magnetism(Draft& draft, Element magnetism) {
 
 void read_dynamics3d(Draft& draft, Element& engine) {
   Physics& physics = draft.scene.physics;
-  const Clock written =
+  const Clock of_scene =
       engine.optional("clock", OneOf<Clock>{{"nominal", Clock::nominal}, {"beta50", Clock::beta50}},
                       Clock::nominal);
-  physics.clock = draft.options.clock.value_or(written);
-  physics.solver = engine.optional(
-      "solver", OneOf<Solver>{{"newton", Solver::newton}, {"sweeps", Solver::sweeps}},
-      usual_solver(physics.clock));
+  physics.clock = draft.options.clock.value_or(of_scene);
+  const std::string_view solver = written(engine, "solver");
+  physics.had_second_core = solver.empty() ? physics.clock == Clock::beta50 : solver == "sweeps";
   physics.max_substep = engine.optional("max_substep", duration);
-  physics.solver_iterations =
-      engine.optional("solver_iterations", Whole{1, most_solver_iterations});
-  if (physics.solver_iterations && physics.solver == Solver::newton) {
-    draft.report.notice(engine.where(),
-                        "solver_iterations has no effect with solver=\"newton\", which runs until "
-                        "it converges; remove it, or write solver=\"sweeps\"");
-  }
   draft.defaults.friction = engine.optional("friction", non_negative);
   draft.defaults.rolling_friction = engine.optional("rolling_friction", non_negative);
   draft.defaults.spinning_friction = engine.optional("spinning_friction", non_negative);
@@ -137,13 +128,6 @@ Surface read_surface(Draft& draft, Element& element, const Surface& usual) {
                        d.spinning_friction.value_or(usual.spinning_friction)),
       element.optional("restitution", non_negative, d.restitution.value_or(usual.restitution))};
   if (out.restitution > 1) element.fault_at("restitution", "is over 1; write a number from 0 to 1");
-  const bool ignored = out.spinning_friction > 0 || out.restitution > 0;
-  if (ignored && draft.scene.physics.solver == Solver::sweeps && !draft.told_of_sweeps) {
-    draft.told_of_sweeps = true;
-    draft.report.notice(element.where(),
-                          "spinning_friction and restitution have no effect with "
-                          "solver=\"sweeps\"; write solver=\"newton\" on <dynamics3d>");
-  }
   return out;
 }
 
@@ -161,7 +145,7 @@ void read_engines(Draft& draft, Element& root) {
   if (!engines) return;
   Physics& physics = draft.scene.physics;
   physics.clock = draft.options.clock.value_or(Clock::nominal);
-  physics.solver = usual_solver(physics.clock);
+  physics.had_second_core = physics.clock == Clock::beta50;
   Ids ids;
   bool has_dynamics3d = false;
   for (Element& engine : engines->children()) {

@@ -20,12 +20,15 @@ constexpr std::string_view noise_of_wheels =
 constexpr std::string_view noise_of_place = "write pos_noise_range, angle_noise_range and axis_noise_range";
 constexpr std::string_view new_name = "that is its name here";
 constexpr std::string_view radios = "scripts use robot.radios";
+constexpr std::string_view one_solver = "there is one solver, which runs until it converges";
 
 constexpr auto words = std::to_array<OldWord>({
     {attribute, "arena", "positional_index", "", "", no_index},
     {attribute, "arena", "positional_grid_size", "", "", no_index},
     {attribute, "dynamics3d", "default_friction", "", "friction", new_name},
     {attribute, "dynamics3d", "debug_file", "", "", "record the run instead"},
+    {attribute, "dynamics3d", "solver", "", "", one_solver},
+    {attribute, "dynamics3d", "solver_iterations", "", "", one_solver},
     {attribute, "dynamics2d", "box_linear_friction", "", "", ground},
     {attribute, "dynamics2d", "box_angular_friction", "", "", ground},
     {attribute, "dynamics2d", "cylinder_linear_friction", "", "", ground},

@@ -32,23 +32,6 @@ enum class Clock {
             ///< of ARGoS 3.0.0-beta50, for scenes whose parameters were tuned under it
 };
 
-/// Physics core that moves the bodies.
-enum class Solver {
-  sweeps,  ///< Bullet's multi-bodies, and sweeps over rows of joints and contacts
-  newton,  ///< equations of motion of our own, contacts by Newton's method
-};
-
-/// Physics core where a scene names no solver. Recorded runs under the slow clock are reproduced by
-/// sweeps.
-constexpr Solver usual_solver(Clock clock) {
-  return clock == Clock::beta50 ? Solver::sweeps : Solver::newton;
-}
-
-/// As in a scene file.
-constexpr const char* to_text(Solver solver) {
-  return solver == Solver::newton ? "newton" : "sweeps";
-}
-
 struct Experiment {
   unsigned ticks_per_second = 10;  ///< >= 1
   double length = 0;               ///< [s] simulated; 0 = until stopped
@@ -70,8 +53,8 @@ struct Surface {
 struct Damping {
   double linear = 0.0;   ///< k for the velocity [1/s and 1/m]
   double angular = 0.0;  ///< k for the angular velocity [1/s and 1]
-  /// Whether each is only what the dialect takes where the file says nothing: without effect with
-  /// solver="newton" at the nominal clock.
+  /// Whether each is only what the dialect takes where the file says nothing: without effect at the
+  /// nominal clock.
   bool usual_linear = false, usual_angular = false;
 };
 
@@ -198,9 +181,10 @@ struct Physics {
   std::string id;
   unsigned iterations = 10;  ///< substeps per tick, >= 1
   Clock clock = Clock::nominal;
-  Solver solver = usual_solver(clock);
-  std::optional<double> max_substep;          ///< [s]: longer substeps are split inside
-  std::optional<unsigned> solver_iterations;  ///< constraint solver sweeps per substep
+  /// Whether earlier versions moved it by a second core: by solver="sweeps", or under beta50 without
+  /// a solver. A recording of theirs can't be repeated.
+  bool had_second_core = false;
+  std::optional<double> max_substep;  ///< [s]: longer substeps are split inside
   std::optional<Floor> floor;
   std::optional<double> gravity;  ///< downward acceleration [m/s^2]
   std::optional<Magnetism> magnetism;

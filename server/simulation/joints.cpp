@@ -36,9 +36,6 @@ std::string text_of_unknown(const scene::Entity& entity, const std::string& id) 
 std::optional<JointFault> fault_of(const Simulation& world, std::size_t entity, const JointMotion& wanted) {
   using Of = JointFault::Of;
   const scene::Entity& of = world.entities()[entity];
-  if (!world.parts_->has_archive) {
-    return JointFault{Of::solver, R"(Joints can be set with solver="newton" on <dynamics3d> only; the scene has solver="sweeps".)"};
-  }
   const auto joint = std::ranges::find(of.joints, wanted.joint, &scene::Joint::id);
   if (joint == of.joints.end() || !scene::has_coordinate(joint->type)) {
     return JointFault{Of::joint, text_of_unknown(of, wanted.joint)};

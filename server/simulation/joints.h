@@ -18,7 +18,7 @@ struct JointMotion {
 
 /// Why a joint can't have a motion.
 struct JointFault {
-  enum class Of { joint, position, velocity, solver };
+  enum class Of { joint, position, velocity };
   Of of = Of::joint;  ///< the part that is wrong
   std::string text;   ///< one sentence, which says what is allowed
 };

@@ -72,7 +72,6 @@ class Simulation::Growing {
 
 Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, world::Layout& made)
     : seed(options.seed),
-      has_archive(scene.physics.solver == scene::Solver::newton),
       ticks_per_second(scene.experiment.ticks_per_second),
       substeps(scene.physics.iterations),
       substep(substep_length(scene)),
@@ -169,7 +168,6 @@ void Simulation::Parts::move(std::size_t entity, const math::Pose& pose) {
 
 void Simulation::move(std::size_t entity, const math::Pose& pose) {
   parts_->move(entity, pose);
-  parts_->note_move(entity, pose);
 }
 
 std::optional<std::size_t> overlapped_by(const Simulation& in, const scene::Entity& entity, const math::Pose& pose,
@@ -186,7 +184,7 @@ void Simulation::spawn(const scene::Scene& scene, const scene::Entity& entity, s
                                entity.id, layout_->entities[*other].id);
     throw scene::SceneError({problem});
   }
-  WorldEdit edit{WorldEdit::Kind::spawn, parts_->state.tick, layout_->entities.size(), {},
+  WorldEdit edit{WorldEdit::Kind::spawn, parts_->state.tick, layout_->entities.size(),
           std::make_shared<const scene::Entity>(entity), std::move(xml)};
   auto& edits = parts_->history.edits;
   if (edits.size() == edits.capacity()) edits.reserve(2 * edits.size() + 1);  // what is done can be written down
@@ -196,7 +194,7 @@ void Simulation::spawn(const scene::Scene& scene, const scene::Entity& entity, s
 
 void Simulation::remove(std::size_t entity) {
   parts_->remove(entity);
-  parts_->history.edits.push_back({WorldEdit::Kind::remove, parts_->state.tick, entity, {}, {}, {}});
+  parts_->history.edits.push_back({WorldEdit::Kind::remove, parts_->state.tick, entity, {}, {}});
 }
 
 const world::Layout& Simulation::layout() const { return *layout_; }
@@ -206,7 +204,6 @@ const world::Observations& Simulation::observations() const { return parts_->obs
 world::Commands& Simulation::commands() { return parts_->commands; }
 
 void Simulation::step() {
-  parts_->note_commands();
   parts_->step();
 }
 
@@ -255,11 +252,10 @@ std::vector<std::string> Simulation::notices() const {
   return {fmt::format(
       "two bodies like '{}' bonded by their magnets swing too fast for substeps of {:.3g} s, and "
       "may "
-      "gain energy (substep times rate is {:.2f}; it is safe below {}); write {}more iterations, "
-      "or "
+      "gain energy (substep times rate is {:.2f}; it is safe below {}); write more iterations, or "
       "max_substep=\"{:.2g}\" on <dynamics3d>",
       parts_->layout.entities[bond.entity].id, bond.substep, bond.product, bond.safe,
-      bond.divisible ? "solver=\"newton\", " : "", 0.9 * bond.substep * bond.safe / bond.product)};
+      0.9 * bond.substep * bond.safe / bond.product)};
 }
 
 std::optional<std::string> slow_notice(const Simulation& simulation) {

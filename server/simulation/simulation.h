@@ -86,7 +86,7 @@ class Simulation {
   /// Hash of the last tick's state and observations.
   std::uint64_t hash() const;
 
-  /// The world as it is, commands included. @throws SnapshotError if that can't be had
+  /// The world as it is, commands included.
   Snapshot snapshot() const;
   /// Puts the world back: what follows is what followed the snapshot, bit for bit, with the same
   /// commands. Entities that came since are gone, those that went are back.
@@ -94,15 +94,13 @@ class Simulation {
   /// @param seed   given: the snapshot is of a scene that may have other values, but the same entities and
   ///               devices; this is the seed from then on, not 0. With another one than the snapshot's all
   ///               that is random is drawn anew
-  /// @param tell  called before each tick of a run that is repeated for it; may be empty
-  /// @throws SnapshotError if it does not fit, or with a seed if its state can't be copied; then
-  ///         nothing changes
+  /// @throws SnapshotError if it does not fit; then nothing changes
   void restore(const scene::Scene& scene, const Snapshot& snapshot,
-               std::optional<std::uint64_t> seed = {}, const std::function<void()>& tell = {});
+               std::optional<std::uint64_t> seed = {});
   /// History of the world since the start, as far as snapshots need it.
   const History& history() const;
-  /// The first field in which the state differs from that of a snapshot: empty if none does, or if
-  /// the state can't be copied.
+  /// The first field in which the state differs from that of a snapshot: empty if none
+  /// does.
   std::string first_difference(const Snapshot& snapshot) const;
 
   /// Notices to the scene's author before the run: sentences, usually none.

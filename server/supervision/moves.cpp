@@ -56,11 +56,9 @@ std::optional<wire::Fault> check_joint(const simulation::Simulation& world, std:
     case Of::position:
       return wire::make_fault(ErrorCode::bad_value, "set_joint.position", fault->text);
     case Of::velocity:
-      return wire::make_fault(ErrorCode::bad_value, "set_joint.velocity", fault->text);
-    case Of::solver:
       break;
   }
-  return wire::make_fault(ErrorCode::out_of_state, "set_joint", fault->text);
+  return wire::make_fault(ErrorCode::bad_value, "set_joint.velocity", fault->text);
 }
 
 namespace {

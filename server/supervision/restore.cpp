@@ -76,10 +76,10 @@ bool Supervision::restart() {
     common = common_robots(world_.simulation.history(), restoring_->snapshot.history,
                            world_.simulation.layout());
   }
-  const auto keep_alive = [this] { network::keep_alive(server_); };
   try {
-    restoring_ ? world_.restore(restoring_->snapshot, keep_alive)
-               : world_.reset(resetting_->request.seed.value_or(world_.seed), keep_alive);
+    restoring_ ? world_.restore(restoring_->snapshot)
+               : world_.reset(resetting_->request.seed.value_or(world_.seed),
+                              [this] { network::keep_alive(server_); });
   } catch (const std::runtime_error& error) {
     fail(*resetting_, make_fault(ErrorCode::bad_value, restoring_ ? "restore.name" : "reset.seed",
                                  error.what()));

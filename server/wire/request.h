@@ -93,7 +93,7 @@ struct Status {
   };
   std::vector<PhaseBudget> budget;
   double wall_uptime_s = 0;
-  SolverStatus solver;  ///< without islands: the solver does not tell
+  SolverStatus solver;
   std::vector<world::Metric> metrics;  ///< last values, in scene order
 };
 

@@ -215,7 +215,7 @@ void contact_points(const Box& box_a, const Box& box_b, const PosedPair& at, Man
     return add_beside(a, b, face, edge, reach, prefer_face, out);
   }
   int axis_a = 0, axis_b = 0;
-  if (support != Support::lowest && find_parallel(a, b, axis_a, axis_b)) {
+  if (find_parallel(a, b, axis_a, axis_b)) {
     const btVector3 towards_b = faces[0].a_to_b + faces[1].a_to_b;
     const Edge one = edge_of(a, axis_a, towards_b), other = edge_of(b, axis_b, -towards_b);
     if (meet_along_edges(one, other, prefer_face, reach, out)) return;

@@ -255,7 +255,7 @@ void clipped_contacts(const Body& a, const Body& b, const PosedPair& at, Manifol
     out.count = 0;
   }
   if (near.distance == -BT_LARGE_FLOAT) return;
-  if (near.apart && at.support != Support::lowest) sharpen(near, face, nearest_sharp(a, b, at, near));
+  if (near.apart) sharpen(near, face, nearest_sharp(a, b, at, near));
   look_across(a, b, near);
   if (near.distance > at.reach) return;
   out.normal = near.b_to_a;

@@ -211,7 +211,7 @@ void reduce(Manifold& contacts, const btTransform& frame) {
   auto& points = contacts.points;
   const Across across(contacts.normal, frame);
   if (contacts.count > 4) keep_four(contacts, steadily_deepest(contacts, across));
-  // A stable order makes the solver sweep the same way each step: by angle about the middle.
+  // A stable order makes the solver go the same way each step: by angle about the middle.
   btVector3 middle(0, 0, 0);
   for (int i = 0; i < contacts.count; ++i) middle += points[i].on_b;
   middle /= btScalar(contacts.count);

@@ -14,7 +14,7 @@ struct PosedPair {
   const btTransform& a;  ///< pose of A
   const btTransform& b;  ///< pose of B
   btScalar reach;        ///< [m]
-  Support support = Support::lowest;
+  Support support = Support::face;
   btScalar useful = BT_LARGE_FLOAT;  ///< see find() [m]
 };
 

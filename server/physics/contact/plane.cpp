@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "physics/contact/pairs.h"
-#include "physics/contact/sort.h"
 
 namespace ziggurat::physics::contact {
 namespace {
@@ -13,14 +12,6 @@ namespace {
 void add(const btVector3& point, const btTransform& plane, btScalar reach, Manifold& out) {
   const btScalar distance = out.normal.dot(point - plane.getOrigin());
   if (distance <= reach) out.add(point - out.normal * distance, distance);
-}
-
-/// Points over one plane: only the lowest of many can carry. Ties keep their order.
-void keep_lowest(Manifold& contacts, int most) {
-  if (contacts.count <= most) return;
-  sort_few(contacts.points.data(), contacts.points.data() + contacts.count,
-           [](const ManifoldPoint& p, const ManifoldPoint& q) { return p.distance < q.distance; });
-  contacts.count = most;
 }
 
 /// Up to this sine of the tilt a cap counts as flat: its rim is then 0.6 % of the radius off.
@@ -80,7 +71,6 @@ void contact_points(const Box& a, const HalfSpace&, const PosedPair& at, Manifol
                            corner & 4 ? half.z() : -half.z()),
         plane, reach, out);
   }
-  if (support == Support::lowest) keep_lowest(out, 4);
 }
 
 void contact_points(const Cylinder& a, const HalfSpace&, const PosedPair& at, Manifold& out) {
@@ -95,7 +85,7 @@ void contact_points(const Cylinder& a, const HalfSpace&, const PosedPair& at, Ma
   const bool flat = down.length2() < flat_tilt * flat_tilt;
   // Flat on its cap the deepest direction is noise: points fixed in the body rest quietly.
   const btVector3 x = pose_a.getBasis().getColumn(0), y = pose_a.getBasis().getColumn(1);
-  if (flat) down = support == Support::lowest ? x : steady(x, y, down);
+  if (flat) down = steady(x, y, down);
   down *= a.radius / down.length();
   const btVector3 across = axis.cross(down);
   const btVector3 lower = pose_a.getOrigin() + to_lower, upper = pose_a.getOrigin() - to_lower;

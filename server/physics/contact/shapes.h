@@ -3,9 +3,8 @@
 // next substep. Functions are pure functions of dimensions and poses; Bullet only lends its vector
 // types.
 //
-// Bullet's own manifolds are not used. They report nothing at positive distance and build a
-// manifold one point per step. So bodies of a centimetre sink, tilt and explode at 10 ms substeps.
-// Here a whole manifold is made each step, with points that are still apart.
+// Bullet's own manifolds are not used: they report nothing at positive distance and are built one
+// point per step. Here a whole manifold is made each step, with points that are still apart.
 
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
 #include <LinearMath/btTransform.h>
@@ -78,7 +77,6 @@ struct Manifold {
 
 /// Which points of a box or a hull carry it on a half-space.
 enum class Support {
-  lowest,  ///< of a box, its four lowest corners, for solver="sweeps"; of a hull, all
   face,    ///< the corners of the face that looks down most: those that land when a plank falls flat
   all      ///< all its corners, for what tumbles
 };
@@ -87,7 +85,7 @@ enum class Support {
 /// @param reach   points farther apart than this are left out [m]
 /// @param useful  where all points would surely be farther apart than this, there may be none [m]
 Manifold find(const Shape& a, const btTransform& pose_a, const Shape& b, const btTransform& pose_b,
-              btScalar reach, Support support = Support::lowest,
+              btScalar reach, Support support = Support::face,
               btScalar useful = BT_LARGE_FLOAT);
 
 /// Whether a point lies in a shape or within `slack` of it.

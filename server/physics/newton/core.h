@@ -1,6 +1,6 @@
 #pragma once
-// The core on dynamics/: a tree per entity, contacts by Newton's method. Its functions are those of
-// physics/core.h.
+// The mechanical core: joints, motors, contacts, and the equations of motion, on dynamics/, with a
+// tree per entity. World adds bodies to it, plug-ins push them, and it moves them on by a substep.
 
 #include <array>
 #include <optional>
@@ -31,21 +31,35 @@ class NewtonCore {
   NewtonCore(const NewtonCore&) = delete;
   NewtonCore& operator=(const NewtonCore&) = delete;
 
+  /// Adds the half-space z <= 0.
   void add_floor(const scene::Surface& surface) { colliders_.add_floor(surface); }
+  /// Builds an entity where it stands and puts it in.
+  /// @param number  its place in the order of adding
+  /// @throws std::bad_alloc; then nothing changes
   Body add(const scene::Entity& entity, std::size_t number);
+  /// Takes a body out; what rested on it falls. Its joints stay, without a coordinate.
   void remove(Body& body);
+  /// Undoes the last add().
   void take_back(Body& body);
+  /// Puts a body to rest where `placed` says, joints as assembled; it remembers no contact.
   void move(Body& body);
+  /// The first entity, in order of adding, that one of the colliders overlaps. The floor doesn't
+  /// count, nor does `except`; touching is not overlapping.
   std::optional<std::size_t> overlapped_by(std::span<const PlacedCollider> colliders,
                                            std::size_t except) const;
 
   JointIndex joint(std::size_t entity, std::size_t joint) const;
   void add_motor(JointIndex joint, scene::JointMode mode, double max_impulse);
   void set_target(JointIndex joint, double target) { joints_[joint.value].target = target; }
-  double position(JointIndex joint) const;
-  double velocity(JointIndex joint) const;
+  double position(JointIndex joint) const;  ///< [m] or [rad]
+  double velocity(JointIndex joint) const;  ///< [m/s] or [rad/s]
 
+  /// Moves all bodies on, with the forces that were applied since the last substep.
+  /// @param time_step  [s]
+  /// @param splits     a motor may give its impulse in so many substeps
+  /// @param stiff      the plug-in that has stiff pairs; null: none
   void substep(std::span<Body> bodies, double time_step, int splits, Plugin* stiff);
+  /// Lists contacts of the last substep, in ascending order.
   void contacts(std::vector<LinkContact>& out) const { contacts_.list_contacts(out); }
   Convergence convergence() const { return convergence_; }
   friend void set_joint(NewtonCore& core, JointIndex joint, double position, double velocity);
@@ -104,7 +118,7 @@ class NewtonCore {
   Convergence convergence_;
 };
 
-/// Puts a joint to a position [m] or [rad] and a speed [m/s] or [rad/s].
+/// Puts a joint to a position [m] or [rad] and a speed [m/s] or [rad/s]; its body remembers no contact.
 void set_joint(NewtonCore& core, JointIndex joint, double position, double velocity);
 
 }  // namespace ziggurat::physics

@@ -125,7 +125,6 @@ void NewtonCore::prepare(std::span<Body> bodies, const SubstepPart& part) {
   system_.allowed_overlap = part.allowed_overlap;
   system_.compliance_factor = part.compliance_factor;
   system_.most_parts = part.most_parts;
-  system_.is_part = part.is_part;
   servos_.clear();
   limits_.clear();
   std::size_t entity = 0;  // joints of an entity stand together

@@ -122,33 +122,6 @@ class Attacks(SceneTest):
             self.assertEqual(supervisor.ask(restore=v1.RestoreRequest(name="good")), "")
         self.end(process)
 
-    def test_a_restore_that_repeats_a_run_is_not_silent(self):
-        """Rule M6: without solver="newton" all ticks are computed again."""
-        boxes = "".join(BOX.format(f"b{i}", f"{i},0,0") for i in range(10))
-        self.scene = self.write("slow.argos", f"""<argos>
-            <framework><experiment length="0" ticks_per_second="10" random_seed="1" /></framework><controllers />
-            <arena size="50,50,10" center="0,0,5">{boxes}</arena>
-            <physics_engines><dynamics3d id="d" solver="sweeps" iterations="3000"><floor /><gravity g="9.8" /></dynamics3d>
-            </physics_engines><media /></argos>""")
-        process = self.start("serve", self.scene, "--endpoint", "tcp://127.0.0.1:*", "--duration", 0, "--paused")
-        self.endpoint = process.stdout.readline().split()[1]
-        with Supervisor(self.endpoint) as supervisor, Supervisor(self.endpoint) as other:
-            begin = time.monotonic()
-            while time.monotonic() - begin < 8:  # repeating them takes less
-                self.assertEqual(supervisor.ask(step=v1.StepRequest(ticks=1)), "")
-            self.assertEqual(supervisor.ask(snapshot=v1.SnapshotRequest(name="late")), "")
-            other.number = 1
-            other.send_message(v1.ClientMessage(request=v1.Request(
-                id=1, restore=v1.RestoreRequest(name="late"))).SerializeToString())
-            silences, begin = [], time.monotonic()
-            while not silences or kind != "response":
-                before = time.monotonic()
-                kind = v1.ServerMessage.FromString(other._receive_frame()).WhichOneof("message")
-                silences.append(time.monotonic() - before)
-            self.assertGreater(time.monotonic() - begin, 2)
-            self.assertLess(max(silences), 1.8)
-        self.end(process)
-
     # --- HTTP -----------------------------------------------------------------------------------
 
     def ask_port(self, port, request):

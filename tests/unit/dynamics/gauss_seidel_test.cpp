@@ -1,4 +1,4 @@
-// Heaps solved by sweeps alone, as large ones are.
+// Heaps solved by passes alone, as large ones are.
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 namespace ziggurat::dynamics {
 namespace {
 
-void sweep_only(System& system) { system.solver().options.most_factorisation_work = 0; }
+void gauss_seidel_only(System& system) { system.solver().options.most_factorisation_work = 0; }
 
 TEST(GaussSeidel, ConvergeForATowerThatStands) {
   testing::Touching world;
@@ -17,7 +17,7 @@ TEST(GaussSeidel, ConvergeForATowerThatStands) {
   for (int i = 0; i < count; ++i) {
     world.add_box(Vector3::Constant(side), mass, testing::at(0, 0, side * (i + 0.5)), 0.7);
   }
-  sweep_only(world.system);
+  gauss_seidel_only(world.system);
   world.system.sleeping.enabled = false;
   Report last;
   for (int i = 0; i < 100; ++i) last = world.step(substep);
@@ -34,12 +34,12 @@ TEST(GaussSeidel, ConvergeForATowerThatStands) {
 
 TEST(GaussSeidel, KeepAPileNearTheContactLaw) {
   testing::Touching world = testing::pile(20);
-  sweep_only(world.system);
+  gauss_seidel_only(world.system);
   double late = 0;
   for (int i = 0; i < 100; ++i) {
     const Report report = world.step(0.01);
     EXPECT_EQ(report.most_interior_point_steps + report.most_iterations + report.most_augmented_lagrangian_steps, 0);
-    EXPECT_LE(report.most_sweeps, world.system.solver().options.most_sweeps);
+    EXPECT_LE(report.most_passes, world.system.solver().options.most_passes);
     if (i >= 70) late = std::max(late, report.residual);
   }
   EXPECT_LT(world.worst.residual, 2e-2);
@@ -53,7 +53,7 @@ TEST(GaussSeidel, KeepAPileNearTheContactLaw) {
 // Its cubes tremble without end, by less than its solutions miss the law.
 TEST(GaussSeidel, LetAHeapSleepThatOnlyTrembles) {
   testing::Touching world = testing::pile(50);
-  sweep_only(world.system);
+  gauss_seidel_only(world.system);
   int substeps = 0;
   while (substeps < 500 && !world.system.is_asleep(0)) ++substeps, world.step(0.01);
   EXPECT_LT(substeps, 500);
@@ -68,7 +68,7 @@ TEST(GaussSeidel, DoNotLetWhatBeginsToSlideSleep) {
   world.planes.push_back({Vector3::Zero(), Vector3::UnitZ()});
   world.add_box(Vector3::Constant(0.05), 0.1, testing::at(0, 0, 0.025), friction);
   world.gravity = Vector3(friction * testing::g + acceleration, 0, -testing::g);
-  sweep_only(world.system);
+  gauss_seidel_only(world.system);
   for (int i = 0; i < 200; ++i) world.step(substep);
   EXPECT_FALSE(world.system.is_asleep(0));
   EXPECT_NEAR(world.tree(0).v[3], 200 * substep * acceleration, 5e-4);

@@ -98,7 +98,7 @@ TEST(Joint, AVelocityServoHoldsItsSpeedUnderLoadUpToItsImpulse) {
 TEST(Joint, TheImpulseOfAServoDoesNotDisplaceWhatOverlaps) {
   // A lift carries a box that overlaps it by 1 mm.
   System system;
-  system.solver().options.newton_work = 0;  // displacements by sweeps
+  system.solver().options.newton_work = 0;  // displacements by passes
   system.trees.push_back(slide(2));
   system.trees.push_back(testing::box({0.1, 0.1, 0.1}, 1, {{0, 0, 0.1}, {1, 0, 0, 0}}));
   std::vector<ContactPoint> contacts;

@@ -63,7 +63,7 @@ TEST(Pile, TwoThatFloatAndTurnGainNothingAsTheyComeApart) {
   }
 }
 
-// Also where Newton's method does not find the displacement: light boxes between heavy ones take very many sweeps.
+// Also where Newton's method does not find the displacement: light boxes between heavy ones take very many passes.
 TEST(Pile, FourFifthsOfEachOverlapGoInASubstep) {
   constexpr int count = 10;
   constexpr double side = 0.1, overlap = 5e-3;

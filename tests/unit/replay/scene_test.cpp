@@ -92,5 +92,22 @@ TEST(EmbeddedScene, HasTheRecordedHash) {
   EXPECT_THROW(read_scene(run, embedded), RecordingError);
 }
 
+TEST(RecordedCore, OfARunThatCanNotBeRepeatedIsToldWithItsVersion) {
+  v1::RunStart run = start();
+  scene::Scene scene;
+  EXPECT_NO_THROW(check_core(run, scene));
+  scene.physics.had_second_core = true;
+  run.mutable_build()->set_version("0.0.9");
+  try {
+    check_core(run, scene);
+    ADD_FAILURE();
+  } catch (const RecordingError& error) {
+    EXPECT_NE(std::string(error.what()).find("solver=\"sweeps\""), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("0.0.9"), std::string::npos) << error.what();
+  }
+  run.set_core(1);
+  EXPECT_NO_THROW(check_core(run, scene));
+}
+
 }  // namespace
 }  // namespace ziggurat::replay

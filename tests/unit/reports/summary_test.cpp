@@ -65,19 +65,15 @@ TEST(Summary, JsonHasTheRatesAndTheHashInFull) {
 
 TEST(Summary, TellsWhereTheSolverDidNotConverge) {
   Summary summary;
-  summary.solver_name = "sweeps";
-  const auto swept = nlohmann::json::parse(to_json(summary));
-  EXPECT_EQ(swept["solver"], (nlohmann::json{{"name", "sweeps"}}));
-  summary.solver_name = "newton";
+  EXPECT_FALSE(nlohmann::json::parse(to_json(summary)).contains("solver"));
   summary.solver = {1000, 0, 1e-9};
   EXPECT_EQ(to_text(summary).find("converge"), std::string::npos);
   summary.solver = {1000, 3, 0.25};
   const auto json = nlohmann::json::parse(to_json(summary));
-  EXPECT_EQ(json["solver"]["name"], "newton");
   EXPECT_EQ(json["solver"]["islands"], 1000);
   EXPECT_EQ(json["solver"]["not_converged"], 3);
   EXPECT_EQ(json["solver"]["worst_residual"], 0.25);
-  EXPECT_NE(to_text(summary).find("solver newton did not converge in 3 of 1000 islands"),
+  EXPECT_NE(to_text(summary).find("the solver did not converge in 3 of 1000 islands"),
             std::string::npos);
 }
 

@@ -31,9 +31,11 @@ TEST(OldWords, WithoutEffectAreNotices) {
   read_with_notice(text, "4:21: positional_index of <arena> has no effect here: bodies are found by their place");
   read_with_notice(text, "4:45: positional_grid_size of <arena> has no effect here");
   text = {};
-  text.engines = R"(<physics_engines><dynamics3d id="d" debug_file="x"><virtual_magnetism k="1"/><srocs/>)"
+  text.engines = R"(<physics_engines><dynamics3d id="d" debug_file="x" solver="newton" solver_iterations="9"><virtual_magnetism k="1"/><srocs/>)"
                  R"(</dynamics3d></physics_engines>)";
   read_with_notice(text, "debug_file of <dynamics3d> has no effect here: record the run instead");
+  read_with_notice(text, "solver of <dynamics3d> has no effect here: there is one solver");
+  read_with_notice(text, "solver_iterations of <dynamics3d> has no effect here: there is one solver");
   read_with_notice(text, "<virtual_magnetism> in <dynamics3d> has no effect here: write <magnetism/>");
   read_with_notice(text, "<srocs> in <dynamics3d> has no effect here: write <magnetism/>");
 }

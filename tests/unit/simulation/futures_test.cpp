@@ -150,17 +150,6 @@ TEST_P(Futures, AreThoseOfAWorldThatWasNeverInterrupted) {
   compare(read.scene, long_runs::is_slow ? few : long_runs::takes_all() ? all : some);
 }
 
-/// Bullet's state can't be copied: the run is repeated.
-TEST_P(Futures, AreTheSameWithTheSolverThatSweeps) {
-  scene::ReadOptions options;
-  options.clock = scene::Clock::beta50;
-  const scene::ReadResult read = scene::read_file(GetParam(), options);
-  ASSERT_TRUE(read.ok());
-  ASSERT_EQ(read.scene.physics.solver, scene::Solver::sweeps);
-  const Extent all{3, 10, 40}, some{2, 5, 20}, few{1, 2, 5};
-  compare(read.scene, long_runs::is_slow ? few : long_runs::takes_all() ? all : some);
-}
-
 INSTANTIATE_TEST_SUITE_P(Scenes, Futures, ::testing::ValuesIn(scenes()), [](const auto& scene) {
   std::string name = (scene.param.parent_path().filename() / scene.param.stem()).string();
   std::ranges::replace_if(name, [](char c) { return c == '-' || c == '.' || c == '/'; }, '_');

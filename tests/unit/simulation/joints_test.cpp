@@ -54,8 +54,8 @@ std::string hanging_rod() {
          "</joints></prototype>";
 }
 
-testing::SmallScene scene_of(const std::string& arena, const std::string& solver = {}) {
-  return {"", "", arena, R"(<gravity g="9.8"/>)", solver};
+testing::SmallScene scene_of(const std::string& arena) {
+  return {"", "", arena, R"(<gravity g="9.8"/>)"};
 }
 
 /// The angle of a rod that hangs at 0 about +y, from its state.
@@ -173,9 +173,6 @@ TEST(SetJoint, WhatCannotBeSaysWhatIsAllowed) {
   EXPECT_EQ(fault_of(world, 0, {"elbow", nan, nan})->of, JointFault::Of::position);
   EXPECT_EQ(fault_of(world, 0, {"elbow", 0, nan})->of, JointFault::Of::velocity);
   EXPECT_EQ(fault_of(world, 0, {"nothing", nan, nan})->of, JointFault::Of::joint);
-  const Simulation sweeps = scene_of(hanging_machine(), "sweeps").run();
-  EXPECT_EQ(fault_of(sweeps, 0, {"elbow", 0, 0})->of, JointFault::Of::solver);
-  EXPECT_NE(text_of(sweeps, {"elbow", 0, 0}).find(R"(the scene has solver="sweeps")"), std::string::npos);
   const Simulation box = scene_of(R"(<box id="b" size="1,1,1" movable="false"><body position="0,0,0"/></box>)").run();
   EXPECT_EQ(text_of(box, {"x", 0, 0}), "'b' has no joint 'x'; it has none that is revolute or prismatic.");
 }

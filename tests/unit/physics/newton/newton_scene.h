@@ -1,5 +1,5 @@
 #pragma once
-// Worlds of solver="newton" for tests.
+// Worlds for tests of the core.
 
 #include <cmath>
 
@@ -14,7 +14,6 @@ constexpr double earth = 9.8;  // [m/s^2]
 
 inline scene::Physics newton(bool floor = false, double gravity = earth) {
   scene::Physics physics = with_gravity(gravity);
-  physics.solver = scene::Solver::newton;
   if (floor) physics.floor = scene::Floor{};
   return physics;
 }

@@ -10,7 +10,7 @@
 #include "../../long_runs.h"
 #include "newton_scene.h"
 #include "physics/convert.h"
-#include "physics/core.h"
+#include "physics/newton/core.h"
 #include "physics/plugins.h"
 
 namespace ziggurat::physics {
@@ -40,7 +40,7 @@ class SetVelocity final : public Plugin {
 struct Spinning {
   double h;
   std::vector<Body> bodies;
-  Core core;
+  NewtonCore core;
   Plugins plugins;
 
   Spinning(const scene::Physics& physics, double substep, const scene::Entity& entity)
