@@ -48,7 +48,7 @@ LEAVES = {
     "leave-twice-in-one": lambda leave: leave.robots.extend([0, 0]),
 }
 
-# What takes for a lost connection, in seconds without a message.
+# Silences after which a client takes its connection for lost [s].
 SILENCES = {"lost-after-a-moment": 0.6, "lost-after-3-s": 3.0}
 
 # The refusal that is answered by taking over what others have.

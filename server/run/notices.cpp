@@ -1,0 +1,50 @@
+// Notices of a run: what its author should know before it begins, and what goes wrong while it runs.
+
+#include <fmt/format.h>
+
+#include "run/client_options.h"
+#include "run/run.h"
+#include "simulation/scene_warnings.h"
+
+namespace ziggurat::run {
+
+void Run::print_notices() {
+  for (const auto& doubt : simulation::scene_warnings(world_.scene, world_.simulation)) console_.problem(doubt);
+  for (const auto& notice : world_.simulation.notices()) console_.notice(path_ + ": " + notice);
+  if (config_.curve) {
+    for (const auto& doubt : doubts_of(config_.curve->clients, world_.scene, world_.simulation.layout())) console_.notice(doubt);
+  }
+  const std::uint64_t scene_seed = fork_ ? world_.seed : world_.scene.experiment.random_seed;
+  if (options_.seed.value_or(scene_seed) == 0) {
+    console_.notice(fmt::format("seed {0} drawn; --seed {0} repeats this run", world_.seed));
+  }
+  if (options_.paused) {
+    server_.set_paused(!fork_);  // a fork is paused when it begins
+    return console_.notice("paused, as --paused asks; 'ziggurat ctl URL resume' begins");
+  }
+  const bool has_controllers =
+      robots_without_controller().size() < world_.simulation.layout().robots.size();
+  if (service_ == Service::run || plan_.real_time || has_controllers) return;
+  server_.set_paused(true);  // otherwise the run would be over before a supervisor can connect
+  console_.notice(
+      "paused: the scene has no controllers; start the server with --real-time, or write "
+      "'ziggurat ctl URL resume'");
+}
+
+/// A notice when the physics' solver has not converged for the first time, and one when something makes it slow.
+void Run::print_troubles() {
+  if (const auto notice = printed_slow_ ? std::nullopt : simulation::slow_notice(world_.simulation)) {
+    printed_slow_ = true;
+    console_.notice(fmt::format("tick {}: {}", world_.simulation.state().tick, *notice));
+  }
+  const wire::SolverStatus solver = supervision::solver_status(world_.simulation);
+  if (printed_miss_ || solver.not_converged == 0) return;
+  printed_miss_ = true;
+  console_.notice(fmt::format(
+      "tick {}: the solver did not converge: bodies that touch miss the laws of contact by up to "
+      "{:.2g} m/s or rad/s, or light links carry more than a substep can follow; more iterations in "
+      "<dynamics3d> make substeps shorter; the summary counts such cases",
+      world_.simulation.state().tick, solver.worst_residual));
+}
+
+}  // namespace ziggurat::run
