@@ -115,7 +115,8 @@ void solve_impact(Problem& problem, VelocitySolver& solver, ImpactMemory& memory
     }
   }
   if (work <= rounding * size) return;
-  const std::vector<double> elastic = problem.velocity;
+  memory.elastic = problem.velocity;
+  const auto& elastic = memory.elastic;
   auto& elastic_impulses = memory.impulses;
   elastic_impulses.clear();
   for (Constraint& constraint : problem.constraints) {

@@ -27,7 +27,7 @@ struct ImpactMemory {
   };
   std::vector<Closing> closing;
   std::vector<std::array<double, Constraint::most_rows>> impulses, sum;
-  std::vector<double> velocity, inelastic;
+  std::vector<double> velocity, inelastic, elastic;
   std::vector<unsigned char> carries;
 };
 
