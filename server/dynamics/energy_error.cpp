@@ -324,8 +324,6 @@ void compute_energy_errors(const Problem& problem, Workspace& work, IslandEnergy
 }
 
 void add_lift_energy(const Problem& problem, Workspace& work, IslandEnergyErrors& out) {
-  const auto bounces = [](const Constraint& constraint) { return constraint.has_impact; };
-  if (std::any_of(problem.constraints.begin(), problem.constraints.end(), bounces)) return;
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     EnergyError& excess = out.of_trees[i];
     if (excess.kind == EnergyError::Kind::none || excess.of_free_joints) continue;

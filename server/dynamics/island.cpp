@@ -8,7 +8,6 @@
 #include "dynamics/equations.h"
 #include "dynamics/energy_error.h"
 #include "dynamics/free_motion.h"
-#include "dynamics/restitution_timing.h"
 #include "dynamics/gyroscopic_stiffness.h"
 #include "dynamics/system.h"
 
@@ -282,11 +281,44 @@ bool System::integrate_free_trees(int first_tree, int last_tree, int first_item,
   return all;
 }
 
+void System::apply_impacts(std::span<ContactPoint> contacts, std::span<Servo> servos, std::span<Limit> limits,
+                           std::span<const int> chosen) {
+  constexpr double instant = 1e-14;  // in which neither forces nor damping change a velocity [s]
+  contacts_ = contacts;
+  list_contact_trees(contacts_, contact_trees_);
+  servos_ = servos;
+  limits_ = limits;
+  active_ = chosen;
+  time_step_ = instant;
+  list_awake();
+  build_islands();
+  for (std::size_t i = 0; i + 1 < first_tree_.size(); ++i) {
+    const int first = first_item_[i], last = first_item_[i + 1];
+    if (first == last || item_order_[first].kind != contact_item) continue;
+    assemble_problem(first_tree_[i], first_tree_[i + 1], first, last);
+    if (!apply_impact_law(problem_, solver_, impact_memory_)) continue;
+    write_impulses(problem_, contacts_, servos_, limits_);
+    for (std::size_t k = 0; k < problem_.trees.size(); ++k) {
+      Tree& tree = *problem_.trees[k];
+      std::copy_n(problem_.velocity.begin() + problem_.offset[k], tree.dofs, tree.v.begin());
+      velocity_kinematics(tree);
+    }
+  }
+  active_ = {};
+}
+
 void System::solve_island(int first_tree, int last_tree, int first_item, int last_item) {
   const auto island = std::span(tree_order_).subspan(first_tree, last_tree - first_tree);
   assemble_problem(first_tree, last_tree, first_item, last_item);
+  if (impact_mode != ImpactMode::inelastic) {
+    const double time = find_first_impact(problem_, solver_, impact_memory_);
+    if (impact_mode == ImpactMode::end_step && time < time_step_) {
+      for (const int tree : island) wake_flags_[tree] |= WakeFlag::subdivided;
+      return islands_to_subdivide.add(island, 0, time);
+    }
+  }
   const SolverResult outcome = solve_velocities(problem_, solver_);
-  std::size_t free = find_unconstrained(problem_, servos_, work_, free_velocities_, is_free_);
+  const std::size_t free = find_unconstrained(problem_, servos_, work_, free_velocities_, is_free_);
   const bool touched = free < is_free_.size();
   if (most_parts > 1) {
     const int parts = std::max({touched ? parts_for_geometric_stiffness(problem_, contacts_, work_, geometric_stiffness_) : 1, parts_for_gyroscopic_stiffness(problem_, work_),
@@ -298,9 +330,6 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
     }
   }
   add(outcome, report_);
-  const bool rebounding = rebounds(problem_);
-  if (rebounding) compute_energy_bound(problem_, solver_, work_, restitution_energy_);
-  if (rebounding) is_free_.assign(is_free_.size(), free = 0);  // its energy is bounded as a whole
   if (free > 0) clear_contact_impulses(problem_, is_free_);
   write_impulses(problem_, contacts_, servos_, limits_);
   if (free > 0 && integrate_free_trees(first_tree, last_tree, first_item, last_item) && !problem_.leaves_trees_penetrating()) return update_sleep(first_tree, last_tree, false);
@@ -320,7 +349,6 @@ void System::solve_island(int first_tree, int last_tree, int first_item, int las
       displace_unconstrained(*problem_.trees[i], by);
     }
   }
-  if (rebounding) bound_energy(problem_, work_, restitution_energy_);
   const bool is_heap = outcome.passes > 0 && outcome.augmented_lagrangian_steps == 0;
   update_sleep(first_tree, last_tree, rests, is_heap ? outcome.residual : 0);
 }

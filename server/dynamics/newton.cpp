@@ -374,19 +374,6 @@ SolverResult VelocitySolver::solve(Problem& problem) {
   return outcome;
 }
 
-void VelocitySolver::solve_without_rebound(Problem& problem, Iterate& out) {
-  with_impacts_.save(problem);
-  target_velocities_.clear();
-  for (Constraint& constraint : problem.constraints) {
-    target_velocities_.push_back(constraint.target_velocity[0]);
-    if (constraint.has_impact) constraint.target_velocity[0] = -std::max(0.0, constraint.gap) / problem.time_step;
-  }
-  solve(problem);
-  out.save(problem);
-  with_impacts_.restore(problem);
-  for (std::size_t i = 0; i < target_velocities_.size(); ++i) problem.constraints[i].target_velocity[0] = target_velocities_[i];
-}
-
 bool VelocitySolver::gauss_seidel(Problem& problem, SolverResult& outcome, int most) {
   constexpr int between = 10;  // passes between two evaluations of the residual
   gauss_seidel_.start(problem);
@@ -443,6 +430,18 @@ void VelocitySolver::solve_displacement(Problem& problem) {
   }
   gauss_seidel(problem, outcome, options.displacement_passes);
   if (outcome.residual > options.displacement_residual && work <= options.most_factorisation_work) damped_augmented_lagrangian(problem, outcome);
+}
+
+SolverResult solve_velocities(Problem& problem, VelocitySolver& solver) {
+  constexpr int most_switches = 3;
+  problem.bound_penetration();
+  SolverResult outcome = solver.solve(problem);
+  for (int i = 0; i < most_switches && problem.switch_limits(); ++i) {
+    const int iterations = outcome.iterations;
+    outcome = solver.solve(problem);
+    outcome.iterations += iterations;
+  }
+  return outcome;
 }
 
 }  // namespace ziggurat::dynamics

@@ -116,8 +116,6 @@ class VelocitySolver {
 
   /// Solves for problem.velocity and the constraints' impulses, starting from their present values.
   SolverResult solve(Problem& problem);
-  /// Solves a solved problem again without restitution; leaves it as it is.
-  void solve_without_rebound(Problem& problem, Iterate& out);
   /// Solves a displacement problem, less exactly where hundreds of bodies overlap.
   void solve_displacement(Problem& problem);
 
@@ -154,11 +152,14 @@ class VelocitySolver {
   std::vector<double> hessian_jacobian_;
   std::vector<double> kept_velocity_, multiplier_velocity_;
   InitialVelocities initial_;
-  Iterate start_, best_, with_impacts_, earlier_;
-  std::vector<double> target_velocities_;
+  Iterate start_, best_, earlier_;
   std::vector<double> direction_, residual_, impulse_sum_;
   std::vector<InteriorPointConstraint> interior_;
   GaussSeidel gauss_seidel_;
 };
+
+/// Solves an island's problem, all of whose constraints are there, for its velocities, without restitution. Limits hold at
+/// the bound that the velocities pass.
+SolverResult solve_velocities(Problem& problem, VelocitySolver& solver);
 
 }  // namespace ziggurat::dynamics

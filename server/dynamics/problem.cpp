@@ -76,7 +76,6 @@ void Problem::clear() {
   inverse_mass.clear();
   total_mass.clear();
   weight = 0;
-  has_sequential_impacts = false;
   bias_acceleration.clear();
   first_bias_acceleration.clear();
   velocity.clear();
@@ -224,7 +223,7 @@ void Problem::add_rotation_correction(Constraint& constraint, const ContactPoint
   }
   for (int r = 1; r < std::min(constraint.rows, 3); ++r) constraint.target_velocity[r] = -time_step / 2 * constraint.frame.col(r).dot(faster);
   const auto far = [&](int i) { return rotates_far(trees[indices[i]]->spatial_velocity[sides[i].link], time_step); };
-  const bool rebounds = contact.restitution > 0;  // its impact is timed, and its energy bounded
+  const bool rebounds = contact.restitution > 0;  // its impact ends the step
   if (rebounds || (!contact.has_point_velocity && (far(0) || far(1)))) return;
   const Vector3 normal = constraint.frame.col(0);
   const Vector3 normal_turns = contact.has_point_velocity ? contact.face_angular_velocity.cross(normal) : Vector3(turning.cross(normal));
@@ -399,31 +398,20 @@ bool Problem::leaves_trees_penetrating() const {
 }
 
 bool Problem::become_displacement() {
-  const auto bounces = [&](const Constraint& constraint) { return rebounded(constraint); };
-  const bool rebounding = std::ranges::any_of(constraints, bounces);
-  if (!rebounding && std::ranges::none_of(constraints, [&](const Constraint& constraint) { return penetrates(constraint); })) return false;
-  const auto holds = [&](const Constraint& constraint) {  // through the impact: held coordinates did not move before it
-    return rebounding && (constraint.kind == Constraint::Kind::servo ? constraint.is_unsaturated() : constraint.impulse[0] > 0);
-  };
+  if (std::ranges::none_of(constraints, [&](const Constraint& constraint) { return penetrates(constraint); })) return false;
   for (Constraint& constraint : constraints) {
     if (constraint.law == Constraint::Law::off) continue;
-    if (constraint.kind == Constraint::Kind::servo && !holds(constraint)) {
+    if (constraint.kind == Constraint::Kind::servo) {
       constraint.law = Constraint::Law::off;
       constraint.impulse.fill(0);  // Gauss-Seidel starts from all impulses
       continue;
     }
     const double after = gap_after(constraint);
-    const bool bounced = bounces(constraint), both_ways = bounced || holds(constraint);
     constraint.law = Constraint::Law::bounded;
-    constraint.lower = both_ways ? -std::numeric_limits<double>::infinity() : 0;
+    constraint.lower = 0;
     constraint.upper = std::numeric_limits<double>::infinity();
-    if (constraint.kind == Constraint::Kind::servo) {
-      constraint.target_velocity[0] = 0;
-    } else if (bounced) {  // it rebounded at the surface, not at the substep's beginning
-      constraint.target_velocity[0] = constraint.target_gap - after;
-    } else {  // four fifths of a penetration are resolved per substep; the last micrometre stays
-      constraint.target_velocity[0] = constraint.gap < 0 ? -0.8 * std::min(0.0, after + allowed_overlap) : -after;
-    }
+    // four fifths of a penetration are resolved per substep; the last micrometre stays
+    constraint.target_velocity[0] = constraint.gap < 0 ? -0.8 * std::min(0.0, after + allowed_overlap) : -after;
     constraint.compliance = 0;
     constraint.impulse.fill(0);
   }

@@ -43,10 +43,6 @@ struct Constraint {
   double gap_acceleration = 0;                  ///< of a contact that rotates: the gap's second derivative without forces [m/s^2]
   double range = 0;                 ///< of a limit: distance of its bounds [m] or [rad]
   double restitution = 0;           ///< of a contact
-  bool has_impact = false;             ///< a contact with an impact within the substep, that rebounds
-  double target_gap = 0;                  ///< of an impact: the gap at the substep's end [m]
-  double restitution_velocity = 0;                ///< and the velocity without it at the substep's end [m/s]
-  double impact_time = 0;                   ///< and its time, from the substep's beginning [s]
   Matrix3 frame = Matrix3::Zero();  ///< columns: normal and tangents of a contact
   int source = 0;                   ///< into the contacts, servos or limits of the system
   /// Whether a servo's impulse is strictly within its bounds: then it reaches its target velocity.
@@ -74,10 +70,7 @@ struct Problem {
   std::vector<int> first_bias_acceleration;                 ///< of each tree, in `bias_acceleration`; -1: not needed, or it hardly rotates
   std::vector<double> total_mass;              ///< of each tree [kg]
   double weight = 0;                           ///< of all trees [N]
-  std::vector<double> carried;                 ///< memory of solve_velocities(): supporting impulse of each tree, times gravity [N s m/s^2]
-  std::vector<Vector3> pressed;                ///< likewise: contact impulse on each tree in the last substep [N s]
   std::vector<double> velocity;                ///< v: start and solution
-  bool has_sequential_impacts = false;                        ///< impacts were resolved in the order of time
   std::vector<std::pair<int, int>> couplings;  ///< pairs of trees with a common constraint
 
   void clear();
@@ -104,9 +97,6 @@ struct Problem {
   void bound_penetration();
   /// Makes all surfaces rigid.
   void make_rigid();
-  /// Whether a contact of a solved problem had an impact. Between two walls its impulses may sum to
-  /// zero.
-  bool rebounded(const Constraint& constraint) const { return constraint.has_impact && (has_sequential_impacts || constraint.impulse[0] > 0); }
   /// Whether a contact or limit is violated by more than allowed_overlap.
   bool penetrates(const Constraint& constraint) const { return constraint.kind != Constraint::Kind::servo && constraint.law != Constraint::Law::off && constraint.gap < -allowed_overlap; }
   /// Gap at the substep's end with the present velocities [m], [rad].

@@ -35,8 +35,8 @@ void list_contact_trees(std::span<const ContactPoint> contacts, std::vector<Cont
   }
 }
 
-void IslandsToSubdivide::add(std::span<const int> of_island, int parts) {
-  islands.push_back({parts, trees.size(), trees.size() + of_island.size()});
+void IslandsToSubdivide::add(std::span<const int> of_island, int parts, double impact_time) {
+  islands.push_back({parts, impact_time, trees.size(), trees.size() + of_island.size()});
   trees.insert(trees.end(), of_island.begin(), of_island.end());
 }
 

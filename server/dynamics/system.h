@@ -8,8 +8,8 @@
 
 #include "dynamics/prescribed_joints.h"
 #include "dynamics/energy_error.h"
+#include "dynamics/impact.h"
 #include "dynamics/newton.h"
-#include "dynamics/restitution_energy.h"
 #include "dynamics/geometric_stiffness.h"
 #include "dynamics/unconstrained_trees.h"
 
@@ -35,16 +35,17 @@ struct RotationUntilImpact {
   double angle = 0;  ///< [rad]
 };
 
-/// Islands that a step left unchanged, because a link swings or nutates too fast for it.
+/// Islands that a step left unchanged, because a link swings or nutates too fast for it, or because it has an impact.
 struct IslandsToSubdivide {
   struct Island {
-    int parts = 0;                    ///< number of parts of the step
+    int parts = 0;                    ///< number of parts of the step; 0: it ends at the impact
+    double impact_time = 0;           ///< of the first impact, from the step's beginning [s]
     std::size_t first = 0, last = 0;  ///< in `trees`
   };
   std::vector<Island> islands;
   std::vector<int> trees;  ///< ascending in each island
 
-  void add(std::span<const int> of_island, int parts);
+  void add(std::span<const int> of_island, int parts, double impact_time = 0);
 };
 
 /// Trees, and their predicted velocities at a substep's end.
@@ -88,6 +89,7 @@ class System {
   /// Largest number of parts that step() may ask for, see geometric_stiffness.h and
   /// gyroscopic_stiffness.h. 1: none.
   int most_parts = 1;
+  ImpactMode impact_mode = ImpactMode::inelastic;
   IslandsToSubdivide islands_to_subdivide;      ///< by the last step()
   /// Trees whose rotation until impact is large: their islands are divided, because a contact acts
   /// along lines of the step's beginning. To be set before step().
@@ -135,6 +137,11 @@ class System {
 
   /// Advances by one substep with the constraints of wake_disturbed().
   Report advance(std::span<Limit> limits);
+
+  /// Applies the impact law to touching contacts that approach: velocities change, positions stay.
+  /// @param contacts, servos, limits  in: as in step(); servos with the bounds of what they may give at once; out: impulses
+  void apply_impacts(std::span<ContactPoint> contacts, std::span<Servo> servos, std::span<Limit> limits,
+                     std::span<const int> chosen);
 
   /// Resolves penetration without changing velocities: for overlaps that are found after a substep.
   /// @param contacts  of trees that are awake; their impulses do not matter
@@ -203,7 +210,7 @@ class System {
   UnconstrainedVelocities free_velocities_;
   std::vector<double> saved_state_, displacement_;
   IslandEnergyErrors energy_errors_;
-  RestitutionEnergy restitution_energy_;
+  ImpactMemory impact_memory_;
   GeometricStiffness geometric_stiffness_;
   IslandPrescribedJoints prescribed_joints_;
   Workspace work_;

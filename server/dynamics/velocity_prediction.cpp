@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamics/restitution_timing.h"
 #include "dynamics/system.h"
 
 namespace ziggurat::dynamics {
@@ -69,6 +68,18 @@ void find_impacts(const std::vector<Tree>& trees, const std::vector<unsigned cha
   }
 }
 
+/// Sets the rebound of contacts that close within the substep as target velocity: bodies that are struck may strike others.
+void set_rebound_velocities(Problem& problem) {
+  for (Constraint& constraint : problem.constraints) {
+    if (constraint.kind != Constraint::Kind::contact || constraint.restitution <= 0) continue;
+    double u[Constraint::most_rows];
+    problem.constraint_velocity(constraint, u);
+    if (u[0] >= -restitution_threshold || constraint.gap + problem.time_step * u[0] >= 0) continue;
+    constraint.compliance = 0;
+    constraint.target_velocity[0] = -constraint.restitution * u[0];
+  }
+}
+
 }  // namespace
 
 bool System::predict_velocities(std::span<Limit> limits, double far, std::span<const int> fast_trees, PredictedVelocities& out) {
@@ -98,6 +109,7 @@ bool System::predict_velocities(std::span<Limit> limits, double far, std::span<c
     const int first = first_tree_[island], last = first_tree_[island + 1];
     if (last - first > most_bodies) continue;
     assemble_problem(first, last, first_item_[island], first_item_[island + 1]);
+    set_rebound_velocities(problem_);
     solve_velocities(problem_, solver_);
     out.trees.insert(out.trees.end(), tree_order_.begin() + first, tree_order_.begin() + last);
     out.velocities.insert(out.velocities.end(), problem_.velocity.begin(), problem_.velocity.end());

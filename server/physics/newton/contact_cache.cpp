@@ -411,6 +411,10 @@ void ContactCache::store_impulses(bool more) {
   }
 }
 
+void ContactCache::add_impact_impulses() {
+  for (std::size_t i = 0; i < contacts_.size(); ++i) pairs_[cache_indices_[i].pair].earlier_impulse += contacts_[i].impulse;
+}
+
 void ContactCache::list_contacts(std::vector<LinkContact>& out) const {
   out.clear();
   for (const CachedPair& pair : pairs_) {

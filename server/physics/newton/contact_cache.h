@@ -47,6 +47,8 @@ class ContactCache {
   /// Stores the impulses that dynamics/ has written.
   /// @param more  parts of the substep are still to come
   void store_impulses(bool more = false);
+  /// Stores the impulses of an impact that dynamics/ has written: for list_contacts(), not for the next solution.
+  void add_impact_impulses();
   /// Finds new overlaps with static colliders: of bodies that rotated far in the substep, or are
   /// off their predicted positions.
   std::span<dynamics::ContactPoint> find_new_overlaps(const dynamics::System& system);

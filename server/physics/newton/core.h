@@ -82,9 +82,10 @@ class NewtonCore {
     int splits = 1;                   // of the scene's substep, see substep()
     double force_share = 1;           // of the substep's forces and impulses, that act in it
     bool is_followed = false;                // other parts follow
-    int parts_left = 1;               // until motors should reach their targets, with this one
+    double time_to_target = 0;        // until motors should reach their targets, from its beginning [s]
     int most_parts = 1;               // into which islands may divide it
     bool is_part = false;             // it is one of these
+    dynamics::ImpactMode impact_mode = dynamics::ImpactMode::end_step;
     double allowed_overlap = 1e-6;    // that remains [m]
     double compliance_factor = dynamics::System::default_compliance_factor;
     std::span<const int> trees() const { return active ? active->trees : std::span<const int>(); }
@@ -93,7 +94,10 @@ class NewtonCore {
   bool wake_disturbed(const SubstepPart& part, std::span<dynamics::ContactPoint>& contacts, bool woke);
   void step(const SubstepPart& part);
   bool predict_contacts(const SubstepPart& part, std::span<dynamics::ContactPoint>& contacts, bool& woke);
+  void step_active(std::span<Body> bodies, const SubstepPart& part);
   void step_part(std::span<Body> bodies, const SubstepPart& part);
+  void step_to_impacts(std::span<Body> bodies, const SubstepPart& whole, std::span<const int> trees, double first_impact);
+  void apply_impacts(std::span<Body> bodies, const SubstepPart& part);
   void store_impulses(const SubstepPart& part);
   void step_leapfrog(std::span<Body> bodies, double time_step, int splits, int count,
                         Plugin& stiff);
@@ -112,7 +116,10 @@ class NewtonCore {
   SubstepPartition partition_;
   LeapfrogSync leapfrog_sync_;
   dynamics::IslandsToSubdivide islands_to_subdivide_;  // by the whole substep
+  dynamics::IslandsToSubdivide islands_with_impacts_;  // by a part of it
   TreeSet active_;              // the trees of one of them, or all others
+  TreeSet in_impacts_;          // trees between two impacts
+  TreeSet stepped_;             // trees that a step did not leave unchanged
   DeferredForces deferred_forces_;
   dynamics::PredictedVelocities prediction_;
   Convergence convergence_;

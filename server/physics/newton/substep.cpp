@@ -125,6 +125,7 @@ void NewtonCore::prepare(std::span<Body> bodies, const SubstepPart& part) {
   system_.allowed_overlap = part.allowed_overlap;
   system_.compliance_factor = part.compliance_factor;
   system_.most_parts = part.most_parts;
+  system_.impact_mode = part.impact_mode;
   servos_.clear();
   limits_.clear();
   std::size_t entity = 0;  // joints of an entity stand together
@@ -134,7 +135,7 @@ void NewtonCore::prepare(std::span<Body> bodies, const SubstepPart& part) {
     if (std::exchange(entity, joint.entity) != joint.entity) is_factored = false;
     if (joint.mode != scene::JointMode::disabled) {
       const double impulse = joint.max_impulse / part.splits * part.force_share;
-      servos_.push_back(servo_of(joint, tree, work_, part.time_step, part.parts_left * part.time_step, impulse, is_factored));
+      servos_.push_back(servo_of(joint, tree, work_, part.time_step, part.time_to_target, impulse, is_factored));
       servos_.back().impulse *= part.force_share;
     }
     if (joint.limit) {
@@ -185,8 +186,8 @@ void NewtonCore::step(const SubstepPart& part) {
   system_.rotations_until_impact = contacts_.rotations_until_impact;
   const dynamics::Report report = system_.advance(limits_);
   if (!system_.islands_to_subdivide.trees.empty()) {
-    set_active(active_, system_.islands_to_subdivide.trees, false, system_.trees.size());
-    contacts_.keep_contacts(active_);
+    set_active(stepped_, system_.islands_to_subdivide.trees, false, system_.trees.size());
+    contacts_.keep_contacts(stepped_);
   }
   store_impulses(part);
   recover_overlaps(system_, contacts_, part.trees());
@@ -198,7 +199,7 @@ void NewtonCore::step(const SubstepPart& part) {
 
 void NewtonCore::substep(std::span<Body> bodies, double time_step, int splits, Plugin* stiff) {
   SubstepPart whole;
-  whole.time_step = time_step;
+  whole.time_step = whole.time_to_target = time_step;
   whole.splits = splits;
   whole.most_parts = most_parts;
   colliders_.update_poses(system_, time_step);
@@ -253,14 +254,72 @@ bool NewtonCore::predict_contacts(const SubstepPart& part, std::span<dynamics::C
   return any;
 }
 
-/// Advances some trees by a part of the substep. Trees that they may touch are awake.
-void NewtonCore::step_part(std::span<Body> bodies, const SubstepPart& part) {
+/// Advances some trees by a part of the substep, but those whose impacts end it. Trees that they may touch are awake.
+void NewtonCore::step_active(std::span<Body> bodies, const SubstepPart& part) {
   colliders_.update_poses(system_, part.time_step, *part.active);
   prepare(bodies, part);
   std::span<dynamics::ContactPoint> contacts = contacts_.find_contacts(part.time_step, *part.active, part.force_share);
   bool woke = wake_disturbed(part, contacts, false);
   predict_contacts(part, contacts, woke);
   step(part);
+}
+
+/// Advances some trees by a part of the substep. Trees that they may touch are awake.
+void NewtonCore::step_part(std::span<Body> bodies, const SubstepPart& part) {
+  step_active(bodies, part);
+  std::swap(islands_with_impacts_, system_.islands_to_subdivide);
+  for (const auto& [parts, impact_time, first, last] : islands_with_impacts_.islands) {
+    step_to_impacts(bodies, part, std::span(islands_with_impacts_.trees).subspan(first, last - first), impact_time);
+  }
+}
+
+/// Applies the impact law where a set of trees is now. Motors may give at once what they give in the part.
+void NewtonCore::apply_impacts(std::span<Body> bodies, const SubstepPart& part) {
+  const double near = 1e-3 * part.time_step;  // contacts are those within the reach of this time [s]
+  colliders_.update_poses(system_, near, *part.active);
+  prepare(bodies, part);
+  system_.apply_impacts(contacts_.find_contacts(near, *part.active, part.force_share), servos_, limits_, part.trees());
+  contacts_.add_impact_impulses();
+}
+
+/// Advances an island that a part of the substep left unchanged for its impacts. Wrenches act wholly at the beginning.
+void NewtonCore::step_to_impacts(std::span<Body> bodies, const SubstepPart& whole, std::span<const int> trees, double first_impact) {
+  set_active(in_impacts_, trees, true, system_.trees.size());
+  contacts_.begin_parts(in_impacts_);
+  double wrench_time = whole.time_step;  // in which the wrenches that are left act [s]
+  const auto advance = [&](double time_step, double left, dynamics::ImpactMode mode) {
+    for (const int number : in_impacts_.trees) {
+      for (dynamics::Wrench& wrench : system_.trees[number].external) {
+        wrench.force *= wrench_time / time_step;
+        wrench.moment *= wrench_time / time_step;
+      }
+    }
+    wrench_time = time_step;
+    SubstepPart part = whole;
+    part.active = &in_impacts_;
+    part.time_step = time_step;
+    part.force_share *= time_step / whole.time_step;
+    part.time_to_target += left - whole.time_step;
+    part.most_parts = 1;
+    part.is_part = true;
+    part.impact_mode = mode;
+    part.is_followed |= mode == dynamics::ImpactMode::between;
+    step_active(bodies, part);
+    double next = HUGE_VAL;
+    auto& unchanged = system_.islands_to_subdivide;
+    if (unchanged.trees.empty()) return next;
+    for (const auto& island : unchanged.islands) next = std::min(next, island.impact_time);
+    std::ranges::sort(unchanged.trees);
+    set_active(in_impacts_, unchanged.trees, true, system_.trees.size());
+    contacts_.begin_parts(in_impacts_);
+    return next;
+  };
+  const auto strike = [&] {
+    SubstepPart part = whole;
+    part.active = &in_impacts_;
+    apply_impacts(bodies, part);
+  };
+  dynamics::step_through_impacts(whole.time_step, first_impact, advance, strike);
 }
 
 /// Moves a set of trees by leapfrog steps of length / count (drift, kick, drift). Forces act as
@@ -284,7 +343,7 @@ void NewtonCore::step_leapfrog(std::span<Body> bodies, double time_step, int spl
   for (int i = 0; i <= count; ++i) {
     const bool half = i == 0 || i == count;
     const double kick = i == 0 ? 0 : half ? 2 : 1;  // of the forces over this length
-    part.time_step = time_step / count / (half ? 2 : 1);
+    part.time_step = part.time_to_target = time_step / count / (half ? 2 : 1);
     part.force_share = kick * part.time_step / time_step;
     part.is_followed = i < count;
     if (i > 0) {
@@ -298,8 +357,12 @@ void NewtonCore::step_leapfrog(std::span<Body> bodies, double time_step, int spl
 /// Advances the islands that the whole substep left unchanged.
 void NewtonCore::step_divided_islands(std::span<Body> bodies, const SubstepPart& whole) {
   std::swap(islands_to_subdivide_, system_.islands_to_subdivide);
-  for (const auto& [parts, first, last] : islands_to_subdivide_.islands) {
+  for (const auto& [parts, impact_time, first, last] : islands_to_subdivide_.islands) {
     const std::span<const int> trees = std::span(islands_to_subdivide_.trees).subspan(first, last - first);
+    if (parts == 0) {
+      step_to_impacts(bodies, whole, trees, impact_time);
+      continue;
+    }
     count_divided(system_, trees, parts, convergence_);
     set_active(active_, trees, true, system_.trees.size());
     step_in_parts(bodies, whole, parts);
@@ -317,8 +380,8 @@ void NewtonCore::step_in_parts(std::span<Body> bodies, const SubstepPart& whole,
   part.is_part = true;
   contacts_.begin_parts(active_);
   for (int i = 0; i < count; ++i) {
-    part.parts_left = count - i;
-    part.is_followed = part.parts_left > 1;
+    part.time_to_target = (count - i) * part.time_step;
+    part.is_followed = i + 1 < count;
     if (i > 0) apply_deferred(system_, active_, deferred_forces_, 1);
     step_part(bodies, part);
   }

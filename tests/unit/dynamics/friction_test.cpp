@@ -8,12 +8,14 @@
 
 #include "../long_runs.h"
 #include "dynamics/system.h"
+#include "step_with_impacts.h"
 #include "trees.h"
 
 namespace ziggurat::dynamics {
 namespace {
 
 using testing::g;
+using testing::step_with_impacts;
 
 constexpr double radius = 0.05, mass = 0.3;  // of the ball [m], [kg]
 
@@ -21,6 +23,8 @@ constexpr double radius = 0.05, mass = 0.3;  // of the ball [m], [kg]
 struct Ball {
   System system;
   std::vector<ContactPoint> contacts;
+  std::vector<Servo> servos;
+  std::vector<Limit> limits;
   ContactPoint law;  // coefficients
   double slope = 0;
 
@@ -32,8 +36,7 @@ struct Ball {
                               math::Pose{Vector3(0, 0, height), Quaternion::Identity()});
   }
   Tree& tree() { return system.trees[0]; }
-  void step(double time_step) {
-    tree().gravity = g * Vector3(std::sin(slope), 0, -std::cos(slope));
+  void find(double time) {
     ContactPoint contact = law;
     contact.a.tree = 0;
     const Vector3& centre = tree().position[0];
@@ -44,9 +47,12 @@ struct Ball {
       contact.angular_impulse = contacts[0].angular_impulse;
     }
     contacts.clear();
-    const double reach = 1e-3 + 2 * time_step * tree().velocity(0).norm();
+    const double reach = 1e-3 + 2 * time * tree().velocity(0).norm();
     if (contact.gap < reach) contacts.push_back(contact);
-    const Report report = system.step(time_step, contacts);
+  }
+  void step(double time_step) {
+    tree().gravity = g * Vector3(std::sin(slope), 0, -std::cos(slope));
+    const Report report = step_with_impacts(system, time_step, contacts, servos, limits, [&](double time) { find(time); });
     EXPECT_EQ(report.not_converged, 0);
   }
   void roll(double speed) {

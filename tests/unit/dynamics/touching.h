@@ -8,6 +8,7 @@
 
 #include "box_contacts.h"
 #include "dynamics/system.h"
+#include "step_with_impacts.h"
 #include "trees.h"
 
 namespace ziggurat::dynamics::testing {
@@ -43,8 +44,7 @@ struct Touching {
 
   Report step(double length) {
     for (Tree& each : system.trees) each.gravity = gravity;
-    find(length);
-    const Report report = system.step(length, contacts, servos, limits);
+    const Report report = step_with_impacts(system, length, contacts, servos, limits, [&](double time) { find(time); });
     worst.not_converged += report.not_converged;
     worst.most_iterations = std::max(worst.most_iterations, report.most_iterations);
     worst.residual = std::max(worst.residual, report.residual);
