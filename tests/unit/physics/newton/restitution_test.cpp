@@ -36,11 +36,13 @@ class Turned {
       const world::LinkState &one = before_.links[i], &other = now.links[i];
       const double speed = std::max(one.angular_velocity.norm(), other.angular_velocity.norm());
       const double angle = one.pose.orientation.angularDistance(other.pose.orientation);
+      most = std::max(most, angle);
       if (h * speed < 1) worst = std::max(worst, angle / (h * speed + 1e-3));
     }
     before_ = now;
   }
-  double worst = 0;
+  double worst = 0;  ///< rotation in a substep over that of the greater speed
+  double most = 0;   ///< rotation in a substep [rad]
 
  private:
   world::State before_;
@@ -137,16 +139,18 @@ TEST(NewtonRebound, OfACornerThatTurnsHasTheLeverOfTheTouch) {
   }
 }
 
-// Two corners with impacts at different times in a substep asked for rotations of up to 34 times
-// the bound. It moves by v h, and to its target gaps by up to |v1 - v0| h, at most twice the
-// greater of the speeds.
+// Two corners with impacts at different times in a substep asked for rotations of up to 34 times the bound. No rotation is
+// faster than all its energy about the axis of the least inertia. With one impact in a substep it moves by v h, and to
+// its target gaps by up to |v1 - v0| h, at most twice the greater of the speeds.
 TEST(NewtonRebound, TurnsABoxAsItsSpeedsSay) {
+  const Vector3 size(0.033, 0.131, 0.086);
+  const double height = 0.3, least_inertia = (size.x() * size.x() + size.z() * size.z()) / 12;  // of 1 kg
+  const double fastest = std::sqrt(2 * earth * height / least_inertia);
   std::mt19937 random(3);
   for (const double hz : long_runs::substep_rates()) {
     for (int i = 0; i < 10; ++i) {
       World world(newton(true), 1 / hz);
-      scene::Entity box =
-          loose({{0, 0, 0.3}, random_turn(random)}, scene::Box{{0.033, 0.131, 0.086}}, 1);
+      scene::Entity box = loose({{0, 0, height}, random_turn(random)}, scene::Box{size}, 1);
       box.links[0].surface.restitution = 1;
       world.add(box);
       Turned turned(world);
@@ -154,7 +158,11 @@ TEST(NewtonRebound, TurnsABoxAsItsSpeedsSay) {
         world.step();
         turned.look(world, 1 / hz);
       }
-      EXPECT_LT(turned.worst, 3.03) << hz << ' ' << i;
+      EXPECT_LT(turned.most, fastest / hz) << hz << ' ' << i;
+      // At lower rates several corners may strike in a substep.
+      if (hz >= 200) {
+        EXPECT_LT(turned.worst, 3.03) << hz << ' ' << i;
+      }
     }
   }
 }
