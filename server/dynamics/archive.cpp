@@ -22,7 +22,7 @@ void Tree::archive(math::Archive& archive) {
   std::fill(external.begin(), external.end(), Wrench{});
 }
 
-void System::SleepState::archive(math::Archive& archive) {
+void SleepState::archive(math::Archive& archive) {
   archive("quiet", time_at_rest);
   archive("command", command);
   archive("command_asleep", command_asleep);
@@ -31,13 +31,13 @@ void System::SleepState::archive(math::Archive& archive) {
 
 void System::archive(math::Archive& archive) {
   archive("trees", trees);
-  archive.list("sleepers", sleep_states_);
-  archive.list("next", sleep_ring_);
-  archive.list("watch", wake_flags_);
+  archive.list("sleepers", sleep_.states);
+  archive.list("next", sleep_.ring);
+  archive.list("watch", sleep_.flags);
   const bool is_right =
-      sleep_states_.size() <= trees.size() && sleep_ring_.size() == sleep_states_.size() &&
-      wake_flags_.size() <= trees.size() && std::ranges::all_of(sleep_ring_, [&](int next) {
-        return next >= -1 && next < static_cast<int>(sleep_ring_.size());
+      sleep_.states.size() <= trees.size() && sleep_.ring.size() == sleep_.states.size() &&
+      sleep_.flags.size() <= trees.size() && std::ranges::all_of(sleep_.ring, [&](int next) {
+        return next >= -1 && next < static_cast<int>(sleep_.ring.size());
       });
   if (!is_right) wake_all();
   archive.require(is_right, "knows sleepers that are no trees");

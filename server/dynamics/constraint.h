@@ -3,6 +3,8 @@
 // impulses start the next substep's solution, and keep bodies at rest from creeping.
 
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "dynamics/spatial.h"
 
@@ -61,6 +63,20 @@ struct Limit {
   double lower = -std::numeric_limits<double>::infinity();  ///< [rad] or [m]
   double upper = std::numeric_limits<double>::infinity();
   double impulse = 0;  ///< in and out; > 0 at the lower bound, < 0 at the upper [N m s] or [N s]
+};
+
+/// The two trees of a contact; -1: the world. A ContactPoint takes far more of the cache.
+struct ContactTrees {
+  int a = -1, b = -1;
+};
+void list_contact_trees(std::span<const ContactPoint> contacts, std::vector<ContactTrees>& out);
+
+/// Constraints of a step, in the caller's memory.
+struct ConstraintLists {
+  std::span<ContactPoint> contacts;
+  std::span<Servo> servos;
+  std::span<Limit> limits;
+  std::vector<ContactTrees> contact_trees;  ///< of each contact
 };
 
 }  // namespace ziggurat::dynamics

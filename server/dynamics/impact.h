@@ -12,7 +12,7 @@
 
 namespace ziggurat::dynamics {
 
-/// How a step treats contacts with restitution.
+/// Treatment of contacts with restitution in a step.
 enum class ImpactMode {
   end_step,  ///< an island with an impact is left unchanged, to be advanced to it
   between,   ///< no impact takes place in the step: contacts that close fast do not act

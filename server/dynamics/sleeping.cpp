@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "dynamics/system.h"
+#include "dynamics/sleeping.h"
 
 namespace ziggurat::dynamics {
 namespace {
@@ -69,48 +69,9 @@ double servo_velocity_change(const Tree& tree, const Servo& servo, const Vector3
   return std::abs(servo.target_velocity - now) * (axis.linear.norm() + axis.angular.norm() * reach);
 }
 
-}  // namespace
-
-void System::wake(int tree) {
-  if (!is_asleep(tree)) return;
-  while (sleep_ring_[tree] >= 0) {
-    const int next = sleep_ring_[tree];
-    sleep_ring_[tree] = -1;
-    sleep_states_[tree].time_at_rest = 0;
-    tree = next;
-  }
-}
-
-void System::wake_all() {
-  sleep_states_.assign(trees.size(), SleepState{});
-  sleep_ring_.assign(trees.size(), -1);
-}
-
-void System::apply_wrench(int tree, int link, const Wrench& wrench) {
-  Wrench& external = trees[tree].external[link];
-  external = external + wrench;
-  if (wake_flags_.size() < trees.size()) wake_flags_.resize(trees.size(), 0);
-  wake_flags_[tree] |= loaded;
-}
-
-void System::clear_wrenches() {
-  for_each_active([&](int tree) {
-    if (wake_flags_[tree] & subdivided) {
-      wake_flags_[tree] &= static_cast<unsigned char>(~subdivided);
-      return;
-    }
-    if (!(wake_flags_[tree] & loaded)) return;
-    wake_flags_[tree] &= static_cast<unsigned char>(~loaded);
-    auto& external = trees[tree].external;
-    std::fill(external.begin(), external.end(), Wrench{});
-  });
-}
-
 /// Whether wrenches or commands of a sleeper have changed.
-bool System::has_changed_load(int index) const {
-  const SleepState& sleeper = sleep_states_[index];
+bool has_changed_load(const SleepState& sleeper, const Tree& tree) {
   if (sleeper.command != sleeper.command_asleep) return true;
-  const Tree& tree = trees[index];
   const double bound = sleeper.force_bound;
   for (std::size_t i = 0; i < tree.external.size(); ++i) {
     const Wrench change = tree.external[i] - tree.external_at_sleep[i];
@@ -121,105 +82,111 @@ bool System::has_changed_load(int index) const {
 }
 
 /// Whether the awake side of a contact may touch the sleeping one within the substep.
-bool System::comes_to_touch(const ContactPoint& contact) const {
+bool comes_to_touch(const Sleep& sleep, const std::vector<Tree>& trees, std::span<const Servo> servos, const ContactPoint& contact, double time_step) {
   const auto speed = [&](const LinkIndex& side) -> Vector3 {
-    if (side.tree < 0 || is_asleep(side.tree)) return Vector3::Zero();
+    if (side.tree < 0 || sleep.is_asleep(side.tree)) return Vector3::Zero();
     const Tree& tree = trees[side.tree];
     const Motion& motion = tree.spatial_velocity[side.link];
     return motion.linear + motion.angular.cross(contact.point - tree.origin);
   };
   const double apart = contact.normal.dot(speed(contact.a) - speed(contact.b));
-  const int mover =
-      contact.a.tree >= 0 && !is_asleep(contact.a.tree) ? contact.a.tree : contact.b.tree;
-  if (mover < 0) return contact.gap + time_step_ * apart < 1e-5;
+  const int mover = contact.a.tree >= 0 && !sleep.is_asleep(contact.a.tree) ? contact.a.tree : contact.b.tree;
+  if (mover < 0) return contact.gap + time_step * apart < 1e-5;
   const Tree& tree = trees[mover];
-  double faster = 2 * tree.gravity.norm() * time_step_;
-  if (wake_flags_[mover] & loaded) {
-    faster += wrench_velocity_change(tree, (contact.point - tree.origin).norm(), time_step_);
+  double faster = 2 * tree.gravity.norm() * time_step;
+  if (sleep.flags[mover] & Sleep::loaded) {
+    faster += wrench_velocity_change(tree, (contact.point - tree.origin).norm(), time_step);
   }
-  if (wake_flags_[mover] & commanded) {
+  if (sleep.flags[mover] & Sleep::commanded) {
     const auto is_its = [&](int i) {  // its old servo's number may belong to another tree now
-      return i >= 0 && i < static_cast<int>(servos_.size()) && servos_[i].tree == mover;
+      return i >= 0 && i < static_cast<int>(servos.size()) && servos[i].tree == mover;
     };
-    for (int i = sleep_states_[mover].first_servo; is_its(i); i = next_servo_[i]) {
-      faster += servo_velocity_change(tree, servos_[i], contact.point);
+    for (int i = sleep.states[mover].first_servo; is_its(i); i = sleep.next_servo[i]) {
+      faster += servo_velocity_change(tree, servos[i], contact.point);
     }
   }
-  return contact.gap + time_step_ * (apart - faster) < 1e-5;
+  return contact.gap + time_step * (apart - faster) < 1e-5;
 }
 
 /// Hashes the commands of each tree's servos, and lists its servos.
-void System::hash_servo_commands() {
-  for (const Servo& servo : servos_) {
+void hash_servo_commands(Sleep& sleep, std::span<const Servo> servos) {
+  for (const Servo& servo : servos) {
     if (servo.tree < 0) continue;
-    sleep_states_[servo.tree].command = 0;
-    sleep_states_[servo.tree].first_servo = -1;
+    sleep.states[servo.tree].command = 0;
+    sleep.states[servo.tree].first_servo = -1;
   }
-  next_servo_.resize(servos_.size());
-  for (std::size_t i = 0; i < servos_.size(); ++i) {
-    const Servo& servo = servos_[i];
+  sleep.next_servo.resize(servos.size());
+  for (std::size_t i = 0; i < servos.size(); ++i) {
+    const Servo& servo = servos[i];
     if (servo.tree < 0) continue;
-    wake_flags_[servo.tree] |= commanded;
-    SleepState& sleeper = sleep_states_[servo.tree];
-    next_servo_[i] = std::exchange(sleeper.first_servo, static_cast<int>(i));
+    sleep.flags[servo.tree] |= Sleep::commanded;
+    SleepState& sleeper = sleep.states[servo.tree];
+    sleep.next_servo[i] = std::exchange(sleeper.first_servo, static_cast<int>(i));
     std::uint64_t& command = sleeper.command;
     for (const double number : {servo.target_velocity, servo.lower, servo.upper}) command = hash_combine(command, number);
   }
 }
 
-bool System::wake_disturbed(double time_step, std::span<ContactPoint> contacts, std::span<Servo> servos, std::span<const int> chosen) {
-  time_step_ = time_step;
-  active_ = chosen;
-  servos_ = servos;
-  contacts_ = contacts;
-  list_contact_trees(contacts_, contact_trees_);
-  if (sleep_states_.size() > trees.size()) wake_all();
-  sleep_states_.resize(trees.size());
-  sleep_ring_.resize(trees.size(), -1);
-  wake_flags_.resize(trees.size(), 0);
-  hash_servo_commands();
+}  // namespace
+
+void wake(Sleep& sleep, int tree) {
+  if (!sleep.is_asleep(tree)) return;
+  while (sleep.ring[tree] >= 0) {
+    const int next = sleep.ring[tree];
+    sleep.ring[tree] = -1;
+    sleep.states[tree].time_at_rest = 0;
+    tree = next;
+  }
+}
+
+void wake_all(Sleep& sleep, std::size_t trees) {
+  sleep.states.assign(trees, SleepState{});
+  sleep.ring.assign(trees, -1);
+}
+
+bool wake_disturbed(Sleep& sleep, const std::vector<Tree>& trees, std::span<const int> active, const ConstraintLists& constraints, double time_step) {
+  if (sleep.states.size() > trees.size()) wake_all(sleep, trees.size());
+  sleep.states.resize(trees.size());
+  sleep.ring.resize(trees.size(), -1);
+  sleep.flags.resize(trees.size(), 0);
+  hash_servo_commands(sleep, constraints.servos);
   bool woke = false;
-  for_each_active([&](int tree) {
-    if (wake_flags_[tree] == 0 || !is_asleep(tree) || !has_changed_load(tree)) return;
-    wake(tree);
+  for_each_active(active, trees.size(), [&](int tree) {
+    if (sleep.flags[tree] == 0 || !sleep.is_asleep(tree) || !has_changed_load(sleep.states[tree], trees[tree])) return;
+    wake(sleep, tree);
     woke = true;
   });
   const auto moves = [&](int tree) { return trees[tree].dofs > 0; };
-  for (bool again = true; again;) {  // who wakes may touch another
+  for (bool again = true; again;) {  // a tree that wakes may touch another
     again = false;
-    for (std::size_t i = 0; i < contact_trees_.size(); ++i) {
-      const auto [a, b] = contact_trees_[i];
-      if (a < 0 || b < 0 || is_asleep(a) == is_asleep(b)) continue;  // most, and this reads no tree
-      if (!moves(a) || !moves(b) || !comes_to_touch(contacts_[i])) continue;
-      wake(a);
-      wake(b);
+    for (std::size_t i = 0; i < constraints.contact_trees.size(); ++i) {
+      const auto [a, b] = constraints.contact_trees[i];
+      if (a < 0 || b < 0 || sleep.is_asleep(a) == sleep.is_asleep(b)) continue;  // most, and this reads no tree
+      if (!moves(a) || !moves(b) || !comes_to_touch(sleep, trees, constraints.servos, constraints.contacts[i], time_step)) continue;
+      wake(sleep, a);
+      wake(sleep, b);
       again = woke = true;
     }
   }
   return woke;
 }
 
-/// Lets an island sleep that has been below the bounds for long enough.
-/// @param carried     whether the world supports it
-/// @param heap_residual  residual of its solution if it was solved by passes only [m/s]; else 0
-void System::update_sleep(int first_tree, int last_tree, bool carried, double heap_residual) {
-  if (!sleeping.enabled) return;
-  const std::span<const int> island(tree_order_.data() + first_tree,
-                                    tree_order_.data() + last_tree);
+void update_sleep(Sleep& sleep, const SleepOptions& options, std::vector<Tree>& trees, std::span<const int> island, double time_step, bool is_carried, double heap_residual) {
+  if (!options.enabled) return;
   const bool is_heap = heap_residual > 0;
-  const bool quiet = carried && ((is_heap && is_below_residual(trees, island, sleeping, heap_residual)) ||
-                                 is_slow(trees, island, sleeping));
+  const bool quiet = is_carried && ((is_heap && is_below_residual(trees, island, options, heap_residual)) ||
+                                    is_slow(trees, island, options));
   double least = HUGE_VAL;
-  for (int i = first_tree; i < last_tree; ++i) {
-    SleepState& sleeper = sleep_states_[tree_order_[i]];
-    sleeper.time_at_rest = quiet ? sleeper.time_at_rest + time_step_ : 0;
+  for (const int index : island) {
+    SleepState& sleeper = sleep.states[index];
+    sleeper.time_at_rest = quiet ? sleeper.time_at_rest + time_step : 0;
     least = std::min(least, sleeper.time_at_rest);
   }
-  if (!quiet || least < (is_heap ? sleeping.heap_time : sleeping.time)) return;
-  for (int i = first_tree; i < last_tree; ++i) {
-    const int index = tree_order_[i];
+  if (!quiet || least < (is_heap ? options.heap_time : options.time)) return;
+  for (std::size_t i = 0; i < island.size(); ++i) {
+    const int index = island[i];
     Tree& tree = trees[index];
-    SleepState& sleeper = sleep_states_[index];
+    SleepState& sleeper = sleep.states[index];
     std::fill(tree.v.begin(), tree.v.end(), 0.0);
     velocity_kinematics(tree);
     tree.external_at_sleep = tree.external;
@@ -230,10 +197,11 @@ void System::update_sleep(int first_tree, int last_tree, bool carried, double he
       force += wrench.force.norm();
       is_held |= !wrench.force.isZero(0) || !wrench.moment.isZero(0);
     }
-    sleep_ring_[index] = i + 1 < last_tree ? tree_order_[i + 1] : tree_order_[first_tree];
+    sleep.ring[index] = island[(i + 1) % island.size()];
     sleeper.command_asleep = sleeper.command;
-    wake_flags_[index] = static_cast<unsigned char>((wake_flags_[index] & ~loaded_asleep) | (is_held ? loaded_asleep : 0));
-    sleeper.force_bound = sleeping.force_change * (mass * tree.gravity.norm() + force);
+    unsigned char& flags = sleep.flags[index];
+    flags = static_cast<unsigned char>((flags & ~Sleep::loaded_asleep) | (is_held ? Sleep::loaded_asleep : 0));
+    sleeper.force_bound = options.force_change * (mass * tree.gravity.norm() + force);
   }
 }
 

@@ -9,7 +9,7 @@ namespace ziggurat::dynamics {
 namespace {
 
 /// Largest island that is predicted: larger heaps leave bodies no room.
-constexpr int most_bodies = 64;
+constexpr std::size_t most_bodies = 64;
 /// Typical distance of an obstacle from a revolute joint [m].
 constexpr double lever = 0.5;
 
@@ -83,43 +83,42 @@ void set_rebound_velocities(Problem& problem) {
 }  // namespace
 
 bool System::predict_velocities(std::span<Limit> limits, double far, std::span<const int> fast_trees, PredictedVelocities& out) {
-  limits_ = limits;
+  constraints_.limits = limits;
   out.trees.clear();
   out.velocities.clear();
   const double fast = far / time_step_;
   const auto moves = [&](int tree) { return trees[tree].dofs > 0 && !is_asleep(tree); };
   disturbed_.clear();
-  for_each_active([&](int tree) {
-    if ((wake_flags_[tree] & loaded) && moves(tree) && wrench_velocity(trees[tree], time_step_) > fast) disturbed_.push_back(tree);
+  for_each_active(active_, trees.size(), [&](int tree) {
+    if ((sleep_.flags[tree] & Sleep::loaded) && moves(tree) && wrench_velocity(trees[tree], time_step_) > fast) disturbed_.push_back(tree);
   });
-  for (const Servo& servo : servos_) {
+  for (const Servo& servo : constraints_.servos) {
     const Tree& tree = trees[servo.tree];
     if (servo_change(servo, tree, fast) > fast && moves(servo.tree)) disturbed_.push_back(servo.tree);
   }
   is_fast_.assign(fast_trees.empty() ? 0 : trees.size(), 0);
   for (const int tree : fast_trees) is_fast_[tree] = moves(tree);
-  if (!is_fast_.empty()) find_impacts(trees, is_fast_, contacts_, limits_, time_step_, fast, disturbed_);
+  if (!is_fast_.empty()) find_impacts(trees, is_fast_, constraints_.contacts, limits, time_step_, fast, disturbed_);
   if (disturbed_.empty()) return false;
-  list_awake();
-  build_islands();
-  for (int& tree : disturbed_) tree = island_[tree];
+  find_islands();
+  for (int& tree : disturbed_) tree = islands_.of_tree[tree];
   std::ranges::sort(disturbed_);
   disturbed_.erase(std::unique(disturbed_.begin(), disturbed_.end()), disturbed_.end());
-  for (const int island : disturbed_) {
-    const int first = first_tree_[island], last = first_tree_[island + 1];
-    if (last - first > most_bodies) continue;
-    assemble_problem(first, last, first_item_[island], first_item_[island + 1]);
-    set_rebound_velocities(problem_);
-    solve_velocities(problem_, solver_);
-    out.trees.insert(out.trees.end(), tree_order_.begin() + first, tree_order_.begin() + last);
-    out.velocities.insert(out.velocities.end(), problem_.velocity.begin(), problem_.velocity.end());
+  for (const int number : disturbed_) {
+    const IslandStep step = island_step(number);
+    if (step.island.trees.size() > most_bodies) continue;
+    assemble_problem(step);
+    set_rebound_velocities(memory_.problem);
+    solve_velocities(memory_.problem, memory_.solver);
+    out.trees.insert(out.trees.end(), step.island.trees.begin(), step.island.trees.end());
+    out.velocities.insert(out.velocities.end(), memory_.problem.velocity.begin(), memory_.problem.velocity.end());
   }
   return !out.trees.empty();
 }
 
-void swap_velocities(std::vector<Tree>& trees, PredictedVelocities& foresight) {
-  auto next = foresight.velocities.begin();
-  for (const int tree : foresight.trees) {
+void swap_velocities(std::vector<Tree>& trees, PredictedVelocities& prediction) {
+  auto next = prediction.velocities.begin();
+  for (const int tree : prediction.trees) {
     next = std::swap_ranges(trees[tree].v.begin(), trees[tree].v.end(), next);
     velocity_kinematics(trees[tree]);
   }

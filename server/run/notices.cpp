@@ -33,13 +33,13 @@ void Run::print_notices() {
 
 /// A notice when the physics' solver has not converged for the first time, and one when something makes it slow.
 void Run::print_troubles() {
-  if (const auto notice = printed_slow_ ? std::nullopt : simulation::slow_notice(world_.simulation)) {
-    printed_slow_ = true;
+  if (const auto notice = printed_.slow ? std::nullopt : simulation::slow_notice(world_.simulation)) {
+    printed_.slow = true;
     console_.notice(fmt::format("tick {}: {}", world_.simulation.state().tick, *notice));
   }
   const wire::SolverStatus solver = supervision::solver_status(world_.simulation);
-  if (printed_miss_ || solver.not_converged == 0) return;
-  printed_miss_ = true;
+  if (printed_.not_converged || solver.not_converged == 0) return;
+  printed_.not_converged = true;
   console_.notice(fmt::format(
       "tick {}: the solver did not converge: bodies that touch miss the laws of contact by up to "
       "{:.2g} m/s or rad/s, or light links carry more than a substep can follow; more iterations in "

@@ -100,8 +100,8 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
     if (recorded_) recorded_->record(change);
   });
   print_notices();
-  summary_.scene = path_;
-  summary_.robots = world_.simulation.layout().robots.size();
+  statistics_.summary.scene = path_;
+  statistics_.summary.robots = world_.simulation.layout().robots.size();
 }
 
 /// Reads the scene and builds the world, on a thread of its own.
@@ -245,30 +245,30 @@ supervision::Supervision::Settings Run::supervision_settings() {
 
 int Run::execute() {
   try {
-    summary_.ending = run_to_end();
+    statistics_.summary.ending = run_to_end();
     recorders_.close();
   } catch (const std::exception& error) {
     end_in_failure(error);
     throw;
   }
   complete_summary();
-  watch_.end_run(end_message(summary_));
-  const std::vector<world::Metric> metrics = last_metrics(server_, watch_, summary_);
+  watch_.end_run(end_message(statistics_.summary));
+  const std::vector<world::Metric> metrics = last_metrics(server_, watch_, statistics_.summary);
   if (recorded_) {
     recorded_->close(metrics);
-    summary_.recording_failure = recorded_->failure();
+    statistics_.summary.recording_failure = recorded_->failure();
   }
-  summary_.failures = watch_.reported().failures();
-  summary_.departures = watch_.reported().departures();
-  recorders_.write_summary(summary_);
+  statistics_.summary.failures = watch_.reported().failures();
+  statistics_.summary.departures = watch_.reported().departures();
+  recorders_.write_summary(statistics_.summary);
   for (const auto& picture : recorders_.pictures()) console_.result(picture);
   if (const auto missing = recorders_.missing_frames(); !missing.empty()) console_.warning(missing);
   const bool has_passed = report_hil();
   print_summary();
-  int code = exit_code_of(summary_);
+  int code = exit_code_of(statistics_.summary);
   if (code == reports::exit_code::finished && !has_passed) code = reports::exit_code::gate_missed;
   const bool is_stopped =
-      summary_.ending == Ending::interrupted || summary_.ending == Ending::forced;
+      statistics_.summary.ending == Ending::interrupted || statistics_.summary.ending == Ending::forced;
   if (live_view_ && !is_stopped) {
     console_.notice("the run is over; its last state is shown until Ctrl-C");
     console_.flush();
@@ -299,13 +299,13 @@ Ending Run::run_to_end() {
   }
   for (;;) {
     std::optional<Ending> ending = wait([&] { return watch_.gather(); });
-    timer_.end_startup(summary_);
+    statistics_.timer.end_startup(statistics_.summary);
     if (!ending) {
       supervision_.gathered();
       ending = run_world();
     }
     if (ending != Ending::reset) return *ending;
-    timer_.end_startup(summary_);
+    statistics_.timer.end_startup(statistics_.summary);
   }
 }
 
@@ -319,29 +319,29 @@ Ending Run::run_world() {
     // Controllers compute while the files are written.
     server_.publish(simulation.observations(), simulation.state().tag_payloads, &truth);
     supervision_.published();
-    timer_.end_phase(Phase::exchange, summary_);
+    statistics_.timer.end_phase(Phase::exchange, statistics_.summary);
     recorders_.tick(simulation);
     if (recorded_) recorded_->tick();
-    if (live_view_) live_view_->tick(timer_.last_tick());
-    timer_.end_phase(Phase::recording, summary_);
+    if (live_view_) live_view_->tick(statistics_.timer.last_tick());
+    statistics_.timer.end_phase(Phase::recording, statistics_.summary);
 
     auto stopped = collect();
-    timer_.end_phase(Phase::exchange, summary_);
+    statistics_.timer.end_phase(Phase::exchange, statistics_.summary);
     const bool is_last = simulation.state().tick == plan_.ticks;
     if (!stopped && !is_last && (schedule_.is_paced() || waits_for_viewer_)) {
       stopped = pace();
       if (!stopped) stopped = collect();
-      timer_.end_phase(Phase::pacing, summary_);
+      statistics_.timer.end_phase(Phase::pacing, statistics_.summary);
     }
     if (stopped) return *stopped;
     radio_watch_.tick(simulation.observations(), simulation.commands());
     recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands(),
                         watch_.measured());
-    keep(watch_.measured(), summary_);
+    keep(watch_.measured(), statistics_.summary);
     if (live_view_) live_view_->answered();
-    timer_.end_phase(Phase::recording, summary_);
-    summary_.result = directing_.result();
-    if (is_last || summary_.result) return Ending::finished;
+    statistics_.timer.end_phase(Phase::recording, statistics_.summary);
+    statistics_.summary.result = directing_.result();
+    if (is_last || statistics_.summary.result) return Ending::finished;
     directing_.act();
     if (recorded_) recorded_->step(watch_.measured());
     simulation.list_contacts((live_view_ && live_view_->wants_contacts()) ||
@@ -350,9 +350,9 @@ Ending Run::run_world() {
     simulation.list_rays((live_view_ && live_view_->wants_rays()) ||
                          (options_.pictures && options_.pictures->view.layers.rays));
     simulation.step();
-    timer_.end_phase(Phase::physics, summary_);
+    statistics_.timer.end_phase(Phase::physics, statistics_.summary);
     print_troubles();
-    timer_.end_tick(supervision_, schedule_.is_paced());
+    statistics_.timer.end_tick(supervision_, schedule_.is_paced());
   }
 }
 
@@ -374,20 +374,20 @@ std::optional<Ending> Run::pace() {
   if (std::exchange(waits_for_viewer_, false)) {
     const auto stopped =
         wait([&] { return watch_.wait_for_viewer(world_.simulation.commands()); });
-    timer_.end_startup(summary_);
+    statistics_.timer.end_startup(statistics_.summary);
     if (stopped) return stopped;
     schedule_.begin(tick, supervision_.paused_for());
   }
   const auto moment = [&] { return schedule_.end_of(tick, supervision_.paused_for()); };
   if (!schedule_.is_paced()) return std::nullopt;
   const bool is_late = Watch::clock::now() > moment();
-  if (is_late) ++summary_.late_ticks;
+  if (is_late) ++statistics_.summary.late_ticks;
   const auto stopped =
       wait([&] { return watch_.sleep_until(moment, world_.simulation.commands()); });
   if (stopped || !config_.keeps_reactions) return stopped;
   const std::chrono::duration<double> late = Watch::clock::now() - moment();
   const auto next = static_cast<std::uint32_t>(tick + 1);
-  starts_.push_back({resets_, next, std::max(late.count(), 0.0), is_late});
+  statistics_.tick_starts.push_back({statistics_.resets, next, std::max(late.count(), 0.0), is_late});
   return std::nullopt;
 }
 
@@ -403,9 +403,9 @@ std::optional<Ending> Run::wait(const Wait& step) {
 bool Run::reset_world() {
   if (!supervision_.restart()) return false;
   watch_.forget_spawned();
-  ++resets_;
+  ++statistics_.resets;
   if (live_view_) live_view_->restarted();
-  summary_.metrics.clear();
+  statistics_.summary.metrics.clear();
   return true;
 }
 

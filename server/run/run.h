@@ -42,6 +42,15 @@ struct Plan {
   std::optional<double> real_time;     ///< simulated seconds per second of wall time, if paced
 };
 
+/// Statistics of a run, for its summary and its report card.
+struct RunStatistics {
+  reports::Summary summary;
+  PhaseTimer timer;
+  std::chrono::system_clock::time_point date = std::chrono::system_clock::now();  ///< of the beginning
+  std::vector<reports::TickStart> tick_starts;                                     ///< of paced ticks
+  std::uint32_t resets = 0;
+};
+
 /// Run of a world. Its members are in the order in which a run is set up.
 class Run {
  public:
@@ -116,16 +125,12 @@ class Run {
   Schedule schedule_;
   const std::unique_ptr<LiveView> live_view_;  ///< null: not shown
   Watch watch_;
-  reports::Summary summary_;
-  PhaseTimer timer_;
-  bool printed_miss_ = false, printed_slow_ = false;
-  bool waits_for_viewer_ = false;
+  RunStatistics statistics_;
   RadioWatch radio_watch_;
-
-  // For the report card.
-  const std::chrono::system_clock::time_point date_ = std::chrono::system_clock::now();
-  std::vector<reports::TickStart> starts_;  ///< of paced ticks
-  std::uint32_t resets_ = 0;
+  struct {
+    bool not_converged = false, slow = false;
+  } printed_;  ///< notices, which are printed once
+  bool waits_for_viewer_ = false;
 };
 
 }  // namespace ziggurat::run

@@ -32,21 +32,21 @@ void Run::end_in_failure(const std::exception& error) {
 
 void Run::complete_summary() {
   const simulation::Simulation& simulation = world_.simulation;
-  summary_.ticks = simulation.state().tick;
-  summary_.simulated_s = static_cast<double>(summary_.ticks) * simulation.tick_length();
-  summary_.wall_s =
-      summary_.physics_s + summary_.exchange_s + summary_.recording_s + summary_.pacing_s;
-  summary_.seed = world_.seed;  // a reset may have changed it
-  summary_.hash = simulation.hash();
-  summary_.solver = supervision::solver_status(simulation);
-  summary_.dropped = watch_.dropped();
-  summary_.drops_are_failures = !options_.allow_drops;
-  summary_.vanished = watch_.vanished();
-  summary_.shutdown_reason = supervision_.requested_shutdown().value_or("");
+  statistics_.summary.ticks = simulation.state().tick;
+  statistics_.summary.simulated_s = static_cast<double>(statistics_.summary.ticks) * simulation.tick_length();
+  statistics_.summary.wall_s =
+      statistics_.summary.physics_s + statistics_.summary.exchange_s + statistics_.summary.recording_s + statistics_.summary.pacing_s;
+  statistics_.summary.seed = world_.seed;  // a reset may have changed it
+  statistics_.summary.hash = simulation.hash();
+  statistics_.summary.solver = supervision::solver_status(simulation);
+  statistics_.summary.dropped = watch_.dropped();
+  statistics_.summary.drops_are_failures = !options_.allow_drops;
+  statistics_.summary.vanished = watch_.vanished();
+  statistics_.summary.shutdown_reason = supervision_.requested_shutdown().value_or("");
   const auto controllers = server_.performance().controllers;
   for (std::size_t c = 0; c < controllers.size(); ++c) {
     const std::uint64_t missed = controllers[c].missed_ticks;
-    if (missed > 0) summary_.missed.push_back({world_.scene.controllers[c].id, missed});
+    if (missed > 0) statistics_.summary.missed.push_back({world_.scene.controllers[c].id, missed});
   }
 }
 
@@ -56,12 +56,12 @@ reports::ReportCard Run::report_card() const {
   card.scene = path_;
   card.seed = world_.seed;
   card.date =
-      fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(date_)));
+      fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(statistics_.date)));
   if (plan_.real_time) card.period_s = world_.simulation.tick_length() / *plan_.real_time;
-  card.ticks = summary_.ticks;
+  card.ticks = statistics_.summary.ticks;
   card.warm_up = options_.warm_up;
   card.gate = options_.gate;
-  card.starts = starts_;
+  card.starts = statistics_.tick_starts;
   for (const auto& robot : layout.robots) card.robots.push_back(robot.id);
   const network::Performance performance = server_.performance();
   for (std::size_t c = 0; c < performance.controllers.size(); ++c) {
@@ -95,12 +95,12 @@ bool Run::report_hil() {
 
 /// After every process has ended. The hash is the very last line.
 void Run::print_summary() {
-  if (!summary_.vanished.empty()) console_.fault(summary_.vanished);
+  if (!statistics_.summary.vanished.empty()) console_.fault(statistics_.summary.vanished);
   if (const auto deaf = radio_watch_.warning(world_.simulation.layout()); !deaf.empty()) {
     console_.warning(deaf);
   }
-  console_.report(options_.json ? to_json(summary_) : to_text(summary_));
-  if (options_.hash) console_.result(recording::hash_line(summary_.ticks, summary_.hash));
+  console_.report(options_.json ? to_json(statistics_.summary) : to_text(statistics_.summary));
+  if (options_.hash) console_.result(recording::hash_line(statistics_.summary.ticks, statistics_.summary.hash));
   console_.flush();
 }
 

@@ -83,11 +83,8 @@ class NewtonCore {
     double force_share = 1;           // of the substep's forces and impulses, that act in it
     bool is_followed = false;                // other parts follow
     double time_to_target = 0;        // until motors should reach their targets, from its beginning [s]
-    int most_parts = 1;               // into which islands may divide it
-    bool is_part = false;             // it is one of these
-    dynamics::ImpactMode impact_mode = dynamics::ImpactMode::end_step;
-    double allowed_overlap = 1e-6;    // that remains [m]
-    double compliance_factor = dynamics::System::default_compliance_factor;
+    bool is_part = false;             // it is one of the parts of a divided island
+    dynamics::StepOptions options{.impact_mode = dynamics::ImpactMode::end_step};
     std::span<const int> trees() const { return active ? active->trees : std::span<const int>(); }
   };
   void prepare(std::span<Body> bodies, const SubstepPart& part);

@@ -122,10 +122,7 @@ void count_divided(const dynamics::System& system, std::span<const int> trees, i
 
 /// Sets the system's options for a part, and collects its servos and limits.
 void NewtonCore::prepare(std::span<Body> bodies, const SubstepPart& part) {
-  system_.allowed_overlap = part.allowed_overlap;
-  system_.compliance_factor = part.compliance_factor;
-  system_.most_parts = part.most_parts;
-  system_.impact_mode = part.impact_mode;
+  system_.options = part.options;
   servos_.clear();
   limits_.clear();
   std::size_t entity = 0;  // joints of an entity stand together
@@ -201,7 +198,7 @@ void NewtonCore::substep(std::span<Body> bodies, double time_step, int splits, P
   SubstepPart whole;
   whole.time_step = whole.time_to_target = time_step;
   whole.splits = splits;
-  whole.most_parts = most_parts;
+  whole.options.most_parts = most_parts;
   colliders_.update_poses(system_, time_step);
   prepare(bodies, whole);
   std::span<dynamics::ContactPoint> contacts = contacts_.find_contacts(time_step);
@@ -300,9 +297,9 @@ void NewtonCore::step_to_impacts(std::span<Body> bodies, const SubstepPart& whol
     part.time_step = time_step;
     part.force_share *= time_step / whole.time_step;
     part.time_to_target += left - whole.time_step;
-    part.most_parts = 1;
+    part.options.most_parts = 1;
     part.is_part = true;
-    part.impact_mode = mode;
+    part.options.impact_mode = mode;
     part.is_followed |= mode == dynamics::ImpactMode::between;
     step_active(bodies, part);
     double next = HUGE_VAL;
@@ -332,8 +329,8 @@ void NewtonCore::step_leapfrog(std::span<Body> bodies, double time_step, int spl
   SubstepPart part;
   part.active = &active;
   part.splits = splits;
-  part.allowed_overlap = overlap_of_magnets;
-  part.compliance_factor = 0;  // half of the parts have no forces, so no normal load
+  part.options.allowed_overlap = overlap_of_magnets;
+  part.options.compliance_factor = 0;  // half of the parts have no forces, so no normal load
   contacts_.begin_parts(active);
   stiff.choose_stiff(active.contains);
   stiff.push_stiff(bodies, -1);
@@ -376,7 +373,7 @@ void NewtonCore::step_in_parts(std::span<Body> bodies, const SubstepPart& whole,
   part.active = &active_;
   part.time_step /= count;
   part.force_share /= count;
-  part.most_parts = 1;
+  part.options.most_parts = 1;
   part.is_part = true;
   contacts_.begin_parts(active_);
   for (int i = 0; i < count; ++i) {

@@ -23,7 +23,7 @@ Report step_with_impacts(System& system, double time_step, std::vector<ContactPo
     std::erase_if(contacts, [&](const ContactPoint& contact) { return is_other(contact.a.tree) || is_other(contact.b.tree); });
   };
   const auto advance = [&](double time, double, ImpactMode mode) {
-    system.impact_mode = mode;
+    system.options.impact_mode = mode;
     find_chosen(time);
     report = system.step(time, contacts, servos, limits, chosen);
     double next = HUGE_VAL;
