@@ -20,7 +20,7 @@
 #include <random>
 #include <vector>
 
-#include "physics/convert.h"
+#include "physics/bodies/convert.h"
 #include "physics/world.h"
 
 namespace {

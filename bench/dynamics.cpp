@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dynamics/system.h"
+#include "physics/stepping/system.h"
 #include "pile.h"
 
 namespace {

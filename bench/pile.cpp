@@ -13,8 +13,8 @@
 #include <random>
 #include <vector>
 
-#include "physics/contact/shapes.h"
-#include "physics/convert.h"
+#include "physics/collision/shapes.h"
+#include "physics/bodies/convert.h"
 #include "physics/world.h"
 
 namespace {

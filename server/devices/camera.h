@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "physics/ray.h"
+#include "physics/collision/ray.h"
 #include "world/state.h"
 
 namespace ziggurat::devices {

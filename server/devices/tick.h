@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "media/devices_index.h"
-#include "physics/ray.h"
+#include "physics/collision/ray.h"
 #include "physics/world.h"
 #include "scene/scene.h"
 #include "world/commands.h"

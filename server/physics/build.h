@@ -1,8 +1,10 @@
 #pragma once
 // Links of an entity, and its rigid parts, before the core moves it.
 
-#include "physics/bodies.h"
+#include "physics/bodies/bodies.h"
 #include "scene/scene.h"
+#include <LinearMath/btTransform.h>
+#include "physics/multibody/tree.h"
 
 namespace ziggurat::physics {
 
@@ -17,5 +19,10 @@ const scene::Plane* plane_of(const scene::Entity& entity, const scene::Physics& 
 /// @param physics  whether magnets act: then free spherical magnets are carried; what planes hold
 /// @param number   of the entity, into State::origins
 Body make_body(const scene::Entity& entity, const scene::Physics& physics, std::size_t number);
+
+/// Makes the tree of an entity where it stands, at rest. Its links are the body's parts.
+/// @param body  without a core yet
+dynamics::Tree make_tree(const Body& body, const scene::Entity& entity,
+                         const scene::Physics& physics);
 
 }  // namespace ziggurat::physics

@@ -1,6 +1,6 @@
-#include "physics/external_forces.h"
+#include "physics/forces.h"
 
-#include "physics/convert.h"
+#include "physics/bodies/convert.h"
 
 namespace ziggurat::physics {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "physics/convert.h"
+#include "physics/bodies/convert.h"
 
 namespace ziggurat::physics {
 

@@ -1,9 +1,8 @@
-#include "physics/magnet_cores.h"
+#include "physics/magnet_source.h"
 
 #include <algorithm>
 
-#include "physics/shape.h"
-#include "physics/turning_magnets.h"
+#include "physics/collision/shape.h"
 
 namespace ziggurat::physics {
 namespace {

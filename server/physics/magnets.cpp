@@ -4,9 +4,8 @@
 #include <utility>
 
 #include "magnetism/stiffness.h"
-#include "physics/convert.h"
+#include "physics/bodies/convert.h"
 #include "physics/magnet_source.h"
-#include "physics/turning_magnets.h"
 
 namespace ziggurat::physics {
 

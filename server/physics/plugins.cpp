@@ -8,7 +8,7 @@
 #include "physics/forces.h"
 #include "physics/magnets.h"
 #include "physics/contact_sensing.h"
-#include "physics/newton/core.h"
+#include "physics/core.h"
 #include "physics/wheels.h"
 
 namespace ziggurat::physics {

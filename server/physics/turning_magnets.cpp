@@ -1,6 +1,6 @@
-#include "physics/turning_magnets.h"
+#include "physics/magnet_source.h"
 
-#include "physics/shape.h"
+#include "physics/collision/shape.h"
 
 namespace ziggurat::physics {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "physics/bodies.h"
+#include "physics/bodies/bodies.h"
 
 namespace ziggurat::physics {
 

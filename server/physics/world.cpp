@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "physics/archive.h"
-#include "physics/convert.h"
+#include "physics/bodies/convert.h"
 #include "physics/magnets.h"
-#include "physics/newton/core.h"
+#include "physics/core.h"
 #include "physics/plugins.h"
-#include "physics/external_forces.h"
+#include "physics/forces.h"
 
 namespace ziggurat::physics {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "physics/values.h"
+#include "physics/bodies/values.h"
 #include "scene/scene.h"
 #include "world/commands.h"
 #include "world/contact.h"

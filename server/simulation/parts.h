@@ -9,7 +9,7 @@
 #include "devices/devices.h"
 #include "math/archive.h"
 #include "media/devices_index.h"
-#include "physics/ray.h"
+#include "physics/collision/ray.h"
 #include "physics/world.h"
 #include "simulation/simulation.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "physics/values.h"
+#include "physics/bodies/values.h"
 #include "scene/scene.h"
 #include "simulation/placement.h"
 #include "simulation/snapshot.h"

@@ -15,7 +15,7 @@
 #include "camera/detectors.h"
 #include "devices/camera.h"
 #include "devices/picture.h"
-#include "physics/ray.h"
+#include "physics/collision/ray.h"
 #include "simulation/layout.h"
 
 namespace ziggurat::camera {

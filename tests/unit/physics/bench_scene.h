@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "physics/contact_limits.h"
+#include "physics/collision/contact_limits.h"
 #include "physics/world.h"
 #include "scene/scene.h"
 

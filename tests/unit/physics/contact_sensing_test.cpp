@@ -7,7 +7,7 @@
 #include <string>
 
 #include "bench_scene.h"
-#include "physics/newton/core.h"
+#include "physics/core.h"
 #include "physics/plugins.h"
 
 namespace ziggurat::physics {
