@@ -76,7 +76,7 @@ std::string to_text(const recorder::Start& start) {
                       shown(build.cpu_path));
   std::string arguments;
   for (const std::string& argument : start.arguments) arguments += " " + shown(argument);
-  return text + fmt::format("  options  {}\n", arguments);
+  return arguments.empty() ? text : text + fmt::format("  options  {}\n", arguments);
 }
 
 std::string to_text(const Examined& file) {

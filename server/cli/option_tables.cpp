@@ -136,6 +136,7 @@ po::options_description record_options() {
        "is always there")  //
       ("record-every", text("N"), "pictures of every Nth tick only")  //
       ("record-compression", text("zstd|lz4|none"), "default zstd; lz4 is faster and larger")  //
+      ("record-paths", "record paths and the command line as they were written, not below the scene's folder")  //
       ("record-strict", "end the run if the recording can't be written, as when the disk is full");
   return options;
 }

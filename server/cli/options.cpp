@@ -203,13 +203,14 @@ mcap::Compression to_compression(const std::string& value) {
 
 void read_recording(const Values& values, run::Options& options) {
   options.record = values.text("record");
-  for (const char* name : {"record-topics", "record-every", "record-compression", "record-strict"}) {
+  for (const char* name : {"record-topics", "record-every", "record-compression", "record-paths", "record-strict"}) {
     if (values.has(name) && options.record.empty()) {
       throw text::UsageError(fmt::format("--{} needs --record FILE.mcap", name));
     }
   }
   options.record_topics = values.texts("record-topics");
   options.record_strict = values.has("record-strict");
+  options.record_paths = values.has("record-paths");
   if (values.has("record-compression")) {
     options.record_compression = to_compression(values.text("record-compression"));
   }

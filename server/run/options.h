@@ -75,6 +75,7 @@ struct Options {
   std::vector<std::string> record_topics;  ///< patterns; empty = all
   std::uint64_t record_every = 1;          ///< pictures of each Nth tick
   bool record_strict = false;              ///< the run ends if the recording can't be written
+  bool record_paths = false;               ///< paths and the command line are recorded as they were written
   std::vector<std::string> arguments;      ///< of the command line, without keys and tokens
   std::optional<PictureOptions> pictures;  ///< the run ends with the last of them
 };

@@ -40,6 +40,25 @@ std::string name_of_script(const fs::path& script, const std::string& scene_file
   return (folder / relative).lexically_normal().string();
 }
 
+/// Folder of the scene file, which names in a recording leave out: they would tell the folders of its author. Empty, if
+/// a file of the scene or a setting tells it anyway: that one would not be found again.
+std::string folder_to_hide(const recorder::Start& start) {
+  const fs::path folder = fs::path(start.scene).parent_path();
+  if (folder.empty()) return {};
+  std::string prefix = folder.string();
+  if (!prefix.ends_with('/')) prefix += '/';
+  const auto tells = [&](std::string_view text) { return folder.is_absolute() && text.find(prefix) != std::string_view::npos; };
+  const bool is_told = std::ranges::any_of(start.files, tells, [](const auto& file) -> std::string_view { return file.text; }) ||
+                       std::ranges::any_of(start.settings, tells, [](const auto& each) -> std::string_view { return each.second; }) ||
+                       std::ranges::any_of(start.parameters, tells, [](const auto& each) -> std::string_view { return each.second; });
+  return is_told ? std::string() : prefix;
+}
+
+/// Name of a file as seen from the scene's folder.
+void leave_out(const std::string& folder, std::string& name) {
+  if (!folder.empty() && name.starts_with(folder)) name.erase(0, folder.size());
+}
+
 /// Attaches a script under a name that no other file has. One that cannot be read is left out.
 void attach(const fs::path& script, std::string name, std::vector<recorder::EmbeddedFile>& files) {
   std::ifstream file(script, std::ios::binary);
@@ -194,11 +213,28 @@ RecordedRun::RecordedRun(const Options& options, supervision::World& world, cons
       recorder_({options.record,
                  options.record_compression,
                  {wish_of(options.record_topics), options.record_every}},
-                begin(start_of(options, world, files, last_tick, idle, fork, console))) {}
+                begin(start_of(options, world, files, last_tick, idle, fork, console), options.record_paths)) {}
 
-recorder::Start RecordedRun::begin(recorder::Start start) {
+/// @param with_paths  names and the command line stay as they were written
+recorder::Start RecordedRun::begin(recorder::Start start, bool with_paths) {
+  if (!with_paths) {
+    hidden_folder_ = folder_to_hide(start);
+    start.arguments.clear();
+  }
+  leave_out(hidden_folder_, start.scene);
+  for (auto& controller : start.controllers) leave_out(hidden_folder_, controller.script);
+  for (auto& file : start.files) leave_out(hidden_folder_, file.name);
+  scene_name_ = start.scene;
   note(start.files);
   return start;
+}
+
+void RecordedRun::log(channels::Severity severity, std::string_view name, std::string_view text) {
+  std::string shown(text);
+  for (std::size_t at = 0; !hidden_folder_.empty() && (at = shown.find(hidden_folder_, at)) != std::string::npos;) {
+    shown.erase(at, hidden_folder_.size());
+  }
+  recorder_.log(severity, name, shown);
 }
 
 void RecordedRun::note(const std::vector<recorder::EmbeddedFile>& files) {
@@ -208,7 +244,7 @@ void RecordedRun::note(const std::vector<recorder::EmbeddedFile>& files) {
 void RecordedRun::tick() {
   simulation::Simulation& simulation = world_.simulation;
   if (std::exchange(is_population_new_, false)) {
-    recorder_.populate({world_.scene, world_.path, world_.scene_hash, world_.seed, last_tick_,
+    recorder_.populate({world_.scene, scene_name_, world_.scene_hash, world_.seed, last_tick_,
                         simulation.layout(), simulation.entities(), simulation.state()});
   }
   recorder_.tick({simulation.state(), simulation.observations(), simulation.commands(),
@@ -238,6 +274,7 @@ void RecordedRun::add_script(const std::string& script, std::vector<recorder::Em
   add_required(scripts, console_);
   for (const fs::path& each : scripts) {
     std::string name = name_of_script(each, world_.path);
+    leave_out(hidden_folder_, name);
     if (!embedded_.contains(name)) attach(each, std::move(name), files);
   }
 }
@@ -254,6 +291,7 @@ void RecordedRun::record(const supervision::WorldChange& change) {
         } else if constexpr (std::is_same_v<Type, supervision::Spawned>) {
           std::vector<recorder::EmbeddedFile> files;
           for (const auto& [name, text] : made.files) files.push_back({name, text});
+          for (auto& file : files) leave_out(hidden_folder_, file.name);
           add_script(made.script, files);
           note(files);
           to.spawned(made.xml, std::move(files));

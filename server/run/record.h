@@ -49,9 +49,7 @@ class RecordedRun {
   /// @throws recording::WriteError instead, if the run is to end then
   void tick();
   void record(const supervision::WorldChange& change);
-  void log(channels::Severity severity, std::string_view name, std::string_view text) {
-    recorder_.log(severity, name, text);
-  }
+  void log(channels::Severity severity, std::string_view name, std::string_view text);
   /// The world is about to be stepped. @param metrics  that were set since the tick
   void step(const std::vector<world::Metric>& metrics) {
     recorder_.step(world_.simulation.commands(), metrics);
@@ -63,7 +61,7 @@ class RecordedRun {
   const std::string& failure() const { return failure_; }
 
  private:
-  recorder::Start begin(recorder::Start start);
+  recorder::Start begin(recorder::Start start, bool with_paths);
   void note(const std::vector<recorder::EmbeddedFile>& files);
   void report_failure(const std::string& missing, const char* otherwise = "");
   void add_script(const std::string& script, std::vector<recorder::EmbeddedFile>& files);
@@ -72,6 +70,8 @@ class RecordedRun {
   reports::Console& console_;
   const std::uint64_t last_tick_;
   const bool is_strict_;
+  std::string hidden_folder_;  ///< that names in the recording leave out, with a slash; empty: none
+  std::string scene_name_;     ///< of the scene file in the recording
   std::set<std::string> embedded_;           // names of files that the recording has
   std::set<std::filesystem::path> scripts_;  // of spawned robots
   recorder::Recorder recorder_;
