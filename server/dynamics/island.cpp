@@ -159,7 +159,7 @@ void apply_velocities(const Problem& problem, const std::vector<unsigned char>& 
 /// Whether the island has friction with the world.
 bool has_world_friction(const Problem& problem) {
   return std::ranges::any_of(problem.constraints, [](const Constraint& b) {
-    return b.kind == Constraint::Kind::contact && (b.a < 0 || b.b < 0) && b.friction > 0;
+    return b.kind == Constraint::Kind::contact && (b.a < 0 || b.b < 0) && b.friction[0] > 0;
   });
 }
 
