@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "dynamics/block_matrix.h"
-#include "dynamics/contact_law.h"
+#include "dynamics/problem.h"
 
 namespace ziggurat::dynamics {
 

@@ -34,8 +34,8 @@ void linearise_held(const Constraint& constraint, int row, int rows, double stif
 /// Linearises friction within a disc: it sticks, or slides with its whole bound against the slip.
 /// @param normal  impulse, linearised in the first row
 void linearise(const Constraint& constraint, const double* u, const FrictionDisc& disc, double normal, int rows, LinearisedLaw& out) {
-  const double coefficient = constraint.friction[disc.coefficient], mobility = constraint.mobility[disc.first];
-  const double bound = friction_bound(coefficient, normal, u + disc.first);
+  const double mobility = constraint.mobility[disc.first];
+  const auto [bound, per_normal] = friction_bound(disc, constraint.friction, normal, u + disc.first);
   const auto [y, square] = argument(constraint, u, disc);
   if (square <= bound * bound) {
     const double stiffness = 1 / (least_compliance * mobility);
@@ -47,9 +47,9 @@ void linearise(const Constraint& constraint, const double* u, const FrictionDisc
   const double across = disc.size < 2 || bound <= 0 ? 0 : std::min(bound / (length - bound), 1 / least_compliance) / mobility;
   for (int r = 0; r < disc.size; ++r) {
     const int row = disc.first + r;
-    const double per_normal = coefficient * direction[r];
-    out.constant[row] = per_normal * out.constant[0];
-    out.hessian[row * rows] = per_normal * out.hessian[0];
+    const double share = per_normal * direction[r];
+    out.constant[row] = share * out.constant[0] + direction[r] * (bound - per_normal * normal);
+    out.hessian[row * rows] = share * out.hessian[0];
     for (int c = 0; c < disc.size; ++c) {
       const double entry = across * ((r == c ? 1 : 0) - direction[r] * direction[c]);
       out.hessian[row * rows + disc.first + c] = entry;
@@ -85,11 +85,11 @@ void visit_errors(const Constraint& constraint, const double* u, Visit visit) {
   const double normal = std::clamp(argument(constraint, u, 0), constraint.lower, constraint.upper);
   visit(0, constraint.impulse[0] - normal);
   for (int d = 0; d < R / 2; ++d) {
-    const auto [coefficient, first, size] = friction_discs[d];
-    const double bound = friction_bound(constraint.friction[coefficient], normal, u + first);
-    const DiscArgument argument_of = bound == 0 ? DiscArgument{} : argument(constraint, u, friction_discs[d]);
-    const double share = friction_share(bound, argument_of.square);
-    for (int r = 0; r < size; ++r) visit(first + r, constraint.impulse[first + r] - share * argument_of.y[r]);
+    const FrictionDisc& disc = friction_discs[d];
+    const double bound = friction_bound(disc, constraint.friction, normal, u + disc.first).value;
+    const auto [y, square] = bound == 0 ? DiscArgument{} : argument(constraint, u, disc);
+    const double share = friction_share(bound, square);
+    for (int r = 0; r < disc.size; ++r) visit(disc.first + r, constraint.impulse[disc.first + r] - share * y[r]);
   }
 }
 
@@ -145,14 +145,15 @@ void regularise(const Constraint& constraint, const double* u, double regularisa
   y[0] *= normal_share;
   impulse[0] = std::clamp(y[0], constraint.lower, constraint.upper);
   if (y[0] > constraint.lower && y[0] < constraint.upper) set_hessian(0, 0, normal_share);
-  for (const auto& [index, first, size] : discs_of(acting)) {
-    const double coefficient = constraint.friction[index], bound = friction_bound(coefficient, impulse[0], u + first);
+  for (const FrictionDisc& disc : discs_of(acting)) {
+    const int first = disc.first, size = disc.size;
+    const auto [bound, per_normal] = friction_bound(disc, constraint.friction, impulse[0], u + first);
     double square = 0;
     for (int r = first; r < first + size; ++r) square += y[r] * y[r];
     const double length = std::sqrt(square), share = friction_share(bound, square);
     for (int r = first; r < first + size && share > 0; ++r) {
       impulse[r] = share * y[r];
-      if (share < 1 && out) out->hessian[r * rows] = coefficient * y[r] / length * out->hessian[0];
+      if (share < 1 && out) out->hessian[r * rows] = per_normal * y[r] / length * out->hessian[0];
       for (int c = first; c < first + size; ++c) {
         double entry = r == c ? share : 0;
         if (share < 1) entry -= share * y[r] * y[c] / square;

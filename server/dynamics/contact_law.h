@@ -8,7 +8,7 @@
 //
 // A solver asks for linearise() or regularise(), residual() and merit(). Gauss-Seidel projects disc by
 // disc, and the interior point method asks for cone_slope(). Another law of friction changes
-// friction_bound() and its derivatives in contact_law.cpp, and nothing else.
+// friction_bound(), and nothing else.
 
 #include <algorithm>
 #include <array>
@@ -94,10 +94,20 @@ constexpr bool depends(int r, int c) {
   return c == 0 || (r < 3 ? c < 3 : (r == 3) == (c == 3) && c >= 3);
 }
 
-/// Largest friction impulse of a disc [N s], [N m s].
-/// @param normal  impulse [N s]
-/// @param slip    velocities of the disc's rows, on which Coulomb's law does not depend
-inline double friction_bound(double coefficient, double normal, const double* /*slip*/) { return coefficient * normal; }
+/// Largest friction impulse of a disc.
+struct FrictionBound {
+  double value;       ///< [N s], [N m s]
+  double per_normal;  ///< its derivative by the normal impulse
+};
+
+/// Coulomb's law, for a disc.
+/// @param friction  coefficients of the constraint;  @param normal  impulse [N s]
+/// @param slip      velocities of the disc's rows, on which Coulomb's law does not depend; a step of Newton's
+///                  method takes a bound that does as constant in them
+inline FrictionBound friction_bound(const FrictionDisc& disc, const std::array<double, 3>& friction, double normal, const double* /*slip*/) {
+  const double coefficient = friction[disc.coefficient];
+  return {coefficient * normal, coefficient};
+}
 
 /// Projection on a disc: the share of y that is within the bound.
 /// @param square  |y|^2
@@ -106,7 +116,7 @@ inline double friction_share(double bound, double square) { return square > boun
 /// Slope of the cone of sliding friction at velocities u: the bound over the normal impulse, > 0.
 inline double cone_slope(const Constraint& constraint, const double* u) {
   constexpr double least = 1e-4;
-  return std::max(friction_bound(constraint.friction[0], 1, u + 1), least);
+  return std::max(friction_bound(friction_discs[0], constraint.friction, 1, u + 1).value, least);
 }
 
 /// Impulses of a constraint, linear in its velocities near a state: g = constant - hessian u.

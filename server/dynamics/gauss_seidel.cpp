@@ -169,7 +169,7 @@ void GaussSeidel::solve_sliding(const Rows& point, const Sides& sides) {
   const double slip[] = {u1 + coupling[1] * change0, u2 + coupling[2] * change0};
   const double x1 = g[1] - (slip[0] - seek[1]) * inverse[1];
   const double x2 = g[2] - (slip[1] - seek[2]) * inverse[2];
-  const double factor = friction_share(friction_bound(point.friction[0], now, slip), x1 * x1 + x2 * x2);
+  const double factor = friction_share(friction_bound(friction_discs[0], point.friction, now, slip).value, x1 * x1 + x2 * x2);
   const double change1 = factor * x1 - g[1], change2 = factor * x2 - g[2];
   g[0] = now, g[1] += change1, g[2] += change2;
   for (int k = 0; k < na; ++k) {
@@ -200,15 +200,15 @@ void GaussSeidel::solve_other(const Rows& point, const Sides& sides) {
     add_scaled<B>(change, row(r) + na, sides.b, nb);
   };
   give(0, std::clamp(wanted(0, velocity(0)), point.lower, point.upper));
-  for (const auto& [coefficient, first, size] : discs_of(point.rows)) {
+  for (const FrictionDisc& disc : discs_of(point.rows)) {
     double slip[2] = {}, x[2] = {}, square = 0;
-    for (int r = 0; r < size; ++r) {
-      slip[r] = velocity(first + r);
-      x[r] = wanted(first + r, slip[r]);
+    for (int r = 0; r < disc.size; ++r) {
+      slip[r] = velocity(disc.first + r);
+      x[r] = wanted(disc.first + r, slip[r]);
       square += x[r] * x[r];
     }
-    const double factor = friction_share(friction_bound(point.friction[coefficient], g[0], slip), square);
-    for (int r = 0; r < size; ++r) give(first + r, factor * x[r]);
+    const double factor = friction_share(friction_bound(disc, point.friction, g[0], slip).value, square);
+    for (int r = 0; r < disc.size; ++r) give(disc.first + r, factor * x[r]);
   }
 }
 
