@@ -19,12 +19,6 @@ Side side_of(const Problem& problem, int index, int first, std::span<const int> 
   return {index, tree.dofs, problem.jacobian.data() + first, dofs, tree.has_floating_base && begins_with_floating_base(dofs) ? 6 : 0};
 }
 
-/// Whether a constraint's impulse along row r may change with the speed along row c. Normal and tangents
-/// may all; torques change with the normal's speed and those of their own disc.
-constexpr bool depends(int r, int c) {
-  return c == 0 || (r < 3 ? c < 3 : (r == 3) == (c == 3) && c >= 3);
-}
-
 /// Adds J^T H J of a constraint of R rows to the matrix: to the columns of side s, in the rows of
 /// both sides. For any tree.
 template <int R>

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "physics/solver/block_matrix.h"
-#include "physics/solver/contact_law.h"
+#include "physics/solver/problem.h"
 
 namespace ziggurat::dynamics {
 

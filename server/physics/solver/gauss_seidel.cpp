@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace ziggurat::dynamics {
@@ -63,12 +62,6 @@ void unwhiten(const double* c, int n, double* x) {
   }
 }
 
-/// Rows that passes solve for.
-int rows_in_pass(const Constraint& constraint) {
-  if (constraint.law == Constraint::Law::off) return 0;
-  return constraint.law == Constraint::Law::contact ? constraint.rows : 1;
-}
-
 }  // namespace
 
 /// Factors of all mass matrices, with the joints' damping, and the velocities without impulses.
@@ -90,7 +83,7 @@ void GaussSeidel::factor(const Problem& problem) {
 }
 
 void GaussSeidel::add(const Problem& problem, const Constraint& constraint, int index) {
-  const int rows = rows_in_pass(constraint);
+  const int rows = acting_rows(constraint);
   if (rows == 0) return;
   const int trees[] = {constraint.a, constraint.b}, jacobians[] = {constraint.jacobian_a, constraint.jacobian_b};
   int size[2] = {}, at[2] = {};
@@ -106,10 +99,7 @@ void GaussSeidel::add(const Problem& problem, const Constraint& constraint, int 
   }
   ++pairs_.back().last;
   const int first = static_cast<int>(rows_.size()), impulse = static_cast<int>(impulses_.size());
-  const bool contact = constraint.law == Constraint::Law::contact;
-  points_.push_back({index, first, impulse, rows, constraint.friction, constraint.spinning_friction, constraint.rolling_friction,
-                     contact ? 0 : constraint.lower,
-                     contact ? std::numeric_limits<double>::infinity() : constraint.upper});
+  points_.push_back({index, first, impulse, rows, constraint.lower, constraint.upper, constraint.friction});
   rows_.resize(first + rows * (size[0] + size[1]));
   for (int r = 0; r < rows; ++r) {
     double square = 0;
@@ -136,10 +126,9 @@ void GaussSeidel::add(const Problem& problem, const Constraint& constraint, int 
     for (int r = 1; r < 3; ++r) coupling_[impulse + r] = dot<-1>(row, row + r * width, width);
   }
   // Both rows of a disc step alike: along the slip.
-  for (const int r : {1, 4}) {
-    if (r + 1 >= rows) break;
-    double* inverse = inverse_.data() + impulse + r;
-    inverse[0] = inverse[1] = std::min(inverse[0], inverse[1]);
+  for (const FrictionDisc& disc : discs_of(rows)) {
+    double* inverse = inverse_.data() + impulse + disc.first;
+    inverse[0] = inverse[disc.size - 1] = std::min(inverse[0], inverse[disc.size - 1]);
   }
 }
 
@@ -170,17 +159,17 @@ void GaussSeidel::solve_sliding(const Rows& point, const Sides& sides) {
   const double* inverse = inverse_.data() + point.impulse;
   const double u0 = dot<A>(row0, wa, na) + dot<B>(row0 + na, wb, nb);
   const double normal = g[0] - (u0 + compliances_[point.impulse] * g[0] - seek[0]) * inverse[0];
-  if (normal <= 0 && g[0] == 0) return;
+  if (normal <= point.lower && g[0] == point.lower) return;
   const double* coupling = coupling_.data() + point.impulse;
   const double* row1 = row0 + width;
   const double* row2 = row1 + width;
   const double u1 = dot<A>(row1, wa, na) + dot<B>(row1 + na, wb, nb);
   const double u2 = dot<A>(row2, wa, na) + dot<B>(row2 + na, wb, nb);
-  const double now = std::max(0.0, normal), change0 = now - g[0];
-  const double x1 = g[1] - (u1 + coupling[1] * change0 - seek[1]) * inverse[1];
-  const double x2 = g[2] - (u2 + coupling[2] * change0 - seek[2]) * inverse[2];
-  const double square = x1 * x1 + x2 * x2, bound = point.friction * now;
-  const double factor = square > bound * bound ? bound / std::sqrt(square) : 1;
+  const double now = std::max(point.lower, normal), change0 = now - g[0];
+  const double slip[] = {u1 + coupling[1] * change0, u2 + coupling[2] * change0};
+  const double x1 = g[1] - (slip[0] - seek[1]) * inverse[1];
+  const double x2 = g[2] - (slip[1] - seek[2]) * inverse[2];
+  const double factor = friction_share(friction_bound(friction_discs[0], point.friction, now, slip).value, x1 * x1 + x2 * x2);
   const double change1 = factor * x1 - g[1], change2 = factor * x2 - g[2];
   g[0] = now, g[1] += change1, g[2] += change2;
   for (int k = 0; k < na; ++k) {
@@ -198,8 +187,8 @@ void GaussSeidel::solve_other(const Rows& point, const Sides& sides) {
   const int na = size_of<A>(sides.size_a), nb = size_of<B>(sides.size_b);
   double* g = impulses_.data() + point.impulse;
   const auto row = [&](int r) { return rows_.data() + point.first + r * (na + nb); };
-  const auto wanted = [&](int r) {
-    const double u = dot<A>(row(r), sides.a, na) + dot<B>(row(r) + na, sides.b, nb);
+  const auto velocity = [&](int r) { return dot<A>(row(r), sides.a, na) + dot<B>(row(r) + na, sides.b, nb); };
+  const auto wanted = [&](int r, double u) {
     const int i = point.impulse + r;
     return g[r] - (u + compliances_[i] * g[r] - target_velocities_[i]) * inverse_[i];
   };
@@ -210,20 +199,17 @@ void GaussSeidel::solve_other(const Rows& point, const Sides& sides) {
     add_scaled<A>(change, row(r), sides.a, na);
     add_scaled<B>(change, row(r) + na, sides.b, nb);
   };
-  give(0, std::clamp(wanted(0), point.lower, point.upper));
-  const auto rub = [&](int first, int last, double bound) {
-    double x[2] = {}, square = 0;
-    for (int r = first; r < last; ++r) {
-      x[r - first] = wanted(r);
-      square += x[r - first] * x[r - first];
+  give(0, std::clamp(wanted(0, velocity(0)), point.lower, point.upper));
+  for (const FrictionDisc& disc : discs_of(point.rows)) {
+    double slip[2] = {}, x[2] = {}, square = 0;
+    for (int r = 0; r < disc.size; ++r) {
+      slip[r] = velocity(disc.first + r);
+      x[r] = wanted(disc.first + r, slip[r]);
+      square += x[r] * x[r];
     }
-    const double factor = square > bound * bound ? bound / std::sqrt(square) : 1;
-    for (int r = first; r < last; ++r) give(r, factor * x[r - first]);
-  };
-  if (point.rows == 1) return;
-  rub(1, 3, point.friction * g[0]);
-  rub(3, 4, point.spinning * g[0]);
-  rub(4, 6, point.rolling * g[0]);
+    const double factor = friction_share(friction_bound(disc, point.friction, g[0], slip).value, square);
+    for (int r = 0; r < disc.size; ++r) give(disc.first + r, factor * x[r]);
+  }
 }
 
 /// All points of two trees, whose velocities stay in registers meanwhile if they are single bodies.

@@ -11,6 +11,7 @@
 // g of a row j changes w by j g, and the row's speed is j w. So a contact's data is one array that
 // is read once, for any bodies.
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -36,8 +37,8 @@ class GaussSeidel {
     int first;                           // into rows_: of each row `a` and `b` values
     int impulse;                         // into impulses_, and so of seek_, yield_ and inverse_
     int rows;                            // that are solved
-    double friction, spinning, rolling;  // bounds over the normal impulse
-    double lower, upper;                 // of the normal impulse or the only one
+    double lower, upper;                 // of the first impulse
+    std::array<double, 3> friction;      // coefficients of the discs
   };
   /// Points of the same two trees, one after the other.
   struct TreePair {

@@ -21,7 +21,6 @@ namespace {
 constexpr double compliance = 1e-8;  // of all impulses, over the mobility
 constexpr double boundary_fraction = 0.95;       // of the way to the border of the cones
 constexpr double least_centering = 1e-4;
-constexpr double least_friction = 1e-4;
 
 double tangential(const Vector3& x) { return std::sqrt(x[1] * x[1] + x[2] * x[2]); }
 
@@ -59,12 +58,13 @@ double step_to_cone_boundary(const Vector3& x, const Vector3& d) {
 
 double step_to_bound(double x, double d) { return d < 0 ? std::min(1.0, -x / d) : 1; }
 
-bool is_cone(const Constraint& constraint) { return constraint.law == Constraint::Law::contact && constraint.rows >= 3; }
-
 /// Rows that the method solves for; those of rolling and spinning friction keep their impulses.
 int solved_rows(const Constraint& constraint) {
-  return constraint.law == Constraint::Law::off ? 0 : is_cone(constraint) ? 3 : 1;
+  const int acting = acting_rows(constraint);
+  return acting >= 3 ? 3 : acting > 0 ? 1 : 0;
 }
+
+bool is_cone(const Constraint& constraint) { return solved_rows(constraint) == 3; }
 
 /// Scaling of Nesterov and Todd, and what the speed gives of the impulse: dz = -slope A dv.
 void scale_cone(InteriorPointConstraint& c) {
@@ -130,11 +130,11 @@ void VelocitySolver::enter_cones(const Problem& problem, double margin) {
   for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
     const Constraint& constraint = problem.constraints[k];
     InteriorPointConstraint& c = interior_[k];
-    if (constraint.law == Constraint::Law::off) continue;
+    if (acting_rows(constraint) == 0) continue;
     double u[Constraint::most_rows];
     problem.constraint_velocity(constraint, u);
     if (is_cone(constraint)) {
-      const double mu = std::max(constraint.friction, least_friction);
+      const double mu = cone_slope(constraint, u);
       c.scale = Vector3(1 / mu, 1, 1);
       const Vector3 mobility(constraint.mobility[0], constraint.mobility[1], constraint.mobility[2]);
       c.compliance = compliance * mobility.cwiseProduct(c.scale).cwiseProduct(c.scale);
@@ -148,8 +148,7 @@ void VelocitySolver::enter_cones(const Problem& problem, double margin) {
     }
     // An impulse between bounds; speeds beyond the one sought belong to the bounds.
     const double inside = margin / constraint.mobility[0];
-    const double lower = constraint.law == Constraint::Law::contact ? 0 : constraint.lower;
-    const double upper = constraint.law == Constraint::Law::contact ? HUGE_VAL : constraint.upper;
+    const double lower = constraint.lower, upper = constraint.upper;
     const double room = std::min(inside, (upper - lower) / 4);
     c.lower = lower, c.upper = upper;
     c.scale = Vector3(1, 0, 0);
@@ -172,12 +171,12 @@ double VelocitySolver::linearise_interior_point(Problem& problem) {
     const Constraint& constraint = problem.constraints[k];
     InteriorPointConstraint& c = interior_[k];
     LinearisedLaw& linear = laws_[k];
-    linear.is_zero = constraint.law == Constraint::Law::off;
+    const int rows = constraint.rows, solved = solved_rows(constraint);
+    linear.is_zero = solved == 0;
     if (linear.is_zero) continue;
     double u[Constraint::most_rows];
     problem.constraint_velocity(constraint, u);
     const double over = c.scale[0] * (u[0] - constraint.target_velocity[0]);
-    const int rows = constraint.rows, solved = solved_rows(constraint);
     if (solved == 3) {
       scale_cone(c);
       c.residual = Vector3(over + tangential(c.speed), u[1] - constraint.target_velocity[1], u[2] - constraint.target_velocity[2]) +
@@ -216,11 +215,12 @@ double VelocitySolver::interior_point_direction(Problem& problem, double target,
   for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
     const Constraint& constraint = problem.constraints[k];
     InteriorPointConstraint& c = interior_[k];
-    if (constraint.law == Constraint::Law::off) continue;
+    const int solved = solved_rows(constraint);
+    if (solved == 0) continue;
     set_right_side(constraint, target, corrects, c);
     double g[Constraint::most_rows] = {};
-    for (int r = 0; r < solved_rows(constraint); ++r) {
-      for (int s = 0; s < solved_rows(constraint); ++s) {
+    for (int r = 0; r < solved; ++r) {
+      for (int s = 0; s < solved; ++s) {
         g[r] += c.scale[r] * c.hessian(r, s) * c.right_side[s];
       }
     }
@@ -232,10 +232,11 @@ double VelocitySolver::interior_point_direction(Problem& problem, double target,
   for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
     const Constraint& constraint = problem.constraints[k];
     InteriorPointConstraint& c = interior_[k];
-    if (constraint.law == Constraint::Law::off) continue;
+    const int solved = solved_rows(constraint);
+    if (solved == 0) continue;
     double u[Constraint::most_rows];
     problem.constraint_velocity(constraint, u);
-    if (is_cone(constraint)) {
+    if (solved == 3) {
       c.impulse_step = c.hessian * (c.right_side - Vector3(c.scale[0] * u[0], u[1], u[2]));
       c.speed_step = c.scaled_target - c.scaling * Vector3(c.scaling * c.impulse_step);
       step_length = std::min(
@@ -265,7 +266,7 @@ double VelocitySolver::complementarity_after(const Problem& problem, double step
   int count = 0;
   for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
     const InteriorPointConstraint& c = interior_[k];
-    if (problem.constraints[k].law == Constraint::Law::off) continue;
+    if (acting_rows(problem.constraints[k]) == 0) continue;
     if (is_cone(problem.constraints[k])) {
       products += (c.impulse + step_length * c.impulse_step).dot(c.speed + step_length * c.speed_step), ++count;
       continue;
@@ -287,12 +288,13 @@ void VelocitySolver::interior_point_step(Problem& problem, double step_length) {
   for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
     Constraint& constraint = problem.constraints[k];
     InteriorPointConstraint& c = interior_[k];
-    if (constraint.law == Constraint::Law::off) continue;
+    const int solved = solved_rows(constraint);
+    if (solved == 0) continue;
     c.impulse += step_length * c.impulse_step;
-    if (is_cone(constraint)) advance_cone_speed(step_length, c);
+    if (solved == 3) advance_cone_speed(step_length, c);
     if (c.lower_dual > 0) c.lower_dual += step_length * c.lower_dual_step;
     if (c.upper_dual > 0) c.upper_dual += step_length * c.upper_dual_step;
-    for (int r = 0; r < solved_rows(constraint); ++r) constraint.impulse[r] = c.scale[r] * c.impulse[r];
+    for (int r = 0; r < solved; ++r) constraint.impulse[r] = c.scale[r] * c.impulse[r];
   }
 }
 

@@ -170,9 +170,9 @@ void Problem::compute_mobility(Constraint& constraint) const {
   };
   add_side(constraint.a, constraint.jacobian_a, constraint.dofs_a);
   add_side(constraint.b, constraint.jacobian_b, constraint.dofs_b);
-  for (int r = 1; r < constraint.rows; r += r == 3 ? 1 : 2) {
-    if (r == 3) continue;  // rotation about the normal is a disc of its own
-    constraint.mobility[r] = constraint.mobility[r + 1] = (constraint.mobility[r] + constraint.mobility[r + 1]) / 2;
+  for (const FrictionDisc& disc : discs_of(constraint.rows)) {
+    double &first = constraint.mobility[disc.first], &last = constraint.mobility[disc.first + disc.size - 1];
+    first = last = (first + last) / 2;
   }
   for (int r = 0; r < constraint.rows; ++r) constraint.mobility[r] = std::max(constraint.mobility[r], 1e-12);
 }
@@ -235,14 +235,9 @@ void Problem::add_rotation_correction(Constraint& constraint, const ContactPoint
 
 void Problem::add(const ContactPoint& contact, int a, int b, int source) {
   Constraint& constraint = constraints.emplace_back();
-  constraint.law = Constraint::Law::contact;
-  const bool turns = contact.rolling_friction > 0 || contact.spinning_friction > 0;
-  constraint.rows = turns ? 6 : contact.friction > 0 ? 3 : 1;
+  set_law(contact, constraint);
   constraint.a = a;
   constraint.b = b;
-  constraint.friction = contact.friction;
-  constraint.spinning_friction = contact.spinning_friction;
-  constraint.rolling_friction = contact.rolling_friction;
   const Constraint* other = constraints.size() > 1 ? &constraints[constraints.size() - 2] : nullptr;
   const bool same = other && other->frame.col(0) == contact.normal;
   constraint.frame = same ? other->frame : frame_about(contact.normal);
@@ -255,7 +250,6 @@ void Problem::add(const ContactPoint& contact, int a, int b, int source) {
     constraint.dofs_b = trees[b]->dofs_of(contact.b.link);
   }
   compute_mobility(constraint);
-  constraint.kind = Constraint::Kind::contact;
   constraint.source = source;
   constraint.gap = contact.gap;
   if (!has_normal_mobility(*this, constraint)) {  // without normal mobility any normal impulse is a solution: it is zero
@@ -279,8 +273,7 @@ void Problem::add(const ContactPoint& contact, int a, int b, int source) {
 void Problem::add(const Servo& servo, int index, int source) {
   const Tree& tree = *trees[index];
   Constraint& constraint = constraints.emplace_back();
-  constraint.law = Constraint::Law::bounded;
-  constraint.rows = 1;
+  set_law(servo, constraint);
   constraint.a = index;
   constraint.jacobian_a = add_columns(tree, 1);
   if (servo.dof >= 0) {
@@ -297,11 +290,8 @@ void Problem::add(const Servo& servo, int index, int source) {
   }
   compute_mobility(constraint);
   constraint.target_velocity[0] = servo.target_velocity;
-  constraint.lower = servo.lower;
-  constraint.upper = servo.upper;
   constraint.impulse[0] = std::clamp(servo.impulse, servo.lower, servo.upper);
   constraint.source = source;
-  constraint.kind = Constraint::Kind::servo;
 }
 
 void Problem::add(const Limit& limit, int index, int source) {
@@ -310,8 +300,7 @@ void Problem::add(const Limit& limit, int index, int source) {
   const double q = tree.q[tree.first_position[limit.link]];
   const bool at_lower = reaches_lower_bound(limit, q, tree.v[dof], time_step);
   Constraint& constraint = constraints.emplace_back();
-  constraint.law = Constraint::Law::bounded;
-  constraint.rows = 1;
+  set_law(limit, constraint);
   constraint.a = index;
   constraint.jacobian_a = add_columns(tree, 1);
   jacobian[constraint.jacobian_a + dof] = at_lower ? 1 : -1;
@@ -320,10 +309,8 @@ void Problem::add(const Limit& limit, int index, int source) {
   constraint.gap = at_lower ? q - limit.lower : limit.upper - q;
   constraint.range = limit.upper - limit.lower;
   constraint.target_velocity[0] = constraint.gap > 0 ? -constraint.gap / time_step : 0;
-  constraint.upper = std::numeric_limits<double>::infinity();
   constraint.impulse[0] = std::max(0.0, at_lower ? limit.impulse : -limit.impulse);
   constraint.source = source;
-  constraint.kind = Constraint::Kind::limit;
 }
 
 namespace {
@@ -408,8 +395,6 @@ bool Problem::become_displacement() {
     }
     const double after = gap_after(constraint);
     constraint.law = Constraint::Law::bounded;
-    constraint.lower = 0;
-    constraint.upper = std::numeric_limits<double>::infinity();
     // four fifths of a penetration are resolved per substep; the last micrometre stays
     constraint.target_velocity[0] = constraint.gap < 0 ? -0.8 * std::min(0.0, after + allowed_overlap) : -after;
     constraint.compliance = 0;

@@ -1,54 +1,19 @@
 #pragma once
 // The velocity problem of one island in one substep, for velocities v and impulses g:
-//   M v = p + J^T g,   u = J v,   g in the contact law of (u, g).
+//   M v = p + J^T g,   u = J v,   g in the law of (u, g), see contact_law.h.
 // M: mass matrices of its trees at the beginning, with the implicit damping of joints. p: momentum
 // without the impulses. J: constraint Jacobian, which gives the velocities u at contacts, servos
 // and limits.
 
 #include <array>
 #include <span>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "physics/solver/constraint.h"
+#include "physics/solver/contact_law.h"
 #include "physics/multibody/equations.h"
 
 namespace ziggurat::dynamics {
-
-/// Rows of one contact (normal; two tangents; rotation about normal and tangents), servo or limit.
-struct Constraint {
-  static constexpr int most_rows = 6;
-  enum class Law : unsigned char {
-    contact,  ///< normal impulse >= 0, friction within its discs
-    bounded,  ///< impulse within [lower, upper]
-    off       ///< no impulse
-  };
-  Law law = Law::off;
-  int rows = 0;        ///< 1, 3 or 6
-  int a = -1, b = -1;  ///< indices of the trees in the island, or -1
-  int jacobian_a = 0, jacobian_b = 0;  ///< into Problem::jacobian: per dof of the tree, a column of `rows`
-  std::span<const int> dofs_a, dofs_b;  ///< that move each side, ascending; other columns are zero
-  double friction = 0, spinning_friction = 0, rolling_friction = 0;  ///< bounds over the normal impulse: 1, [m], [m]
-  double lower = 0, upper = 0;
-  std::array<double, most_rows> target_velocity{};      ///< the velocities that impulses drive to [m/s], [rad/s]
-  std::array<double, most_rows> impulse{};   ///< [N s], [N m s]
-  std::array<double, most_rows> mobility{};  ///< velocity change by a unit impulse, without coupling of dofs
-
-  double compliance = 0;  ///< of a contact: closing velocity that a normal impulse leaves [1/kg]
-
-  std::array<double, most_rows> multiplier{};  ///< of the regularised law, see contact_law.h [N s], [N m s]
-
-  double gap = 0;                   ///< of contacts and limits [m] or [rad]
-  double gap_acceleration = 0;                  ///< of a contact that rotates: the gap's second derivative without forces [m/s^2]
-  double range = 0;                 ///< of a limit: distance of its bounds [m] or [rad]
-  double restitution = 0;           ///< of a contact
-  Matrix3 frame = Matrix3::Zero();  ///< columns: normal and tangents of a contact
-  int source = 0;                   ///< into the contacts, servos or limits of the system
-  /// Whether a servo's impulse is strictly within its bounds: then it reaches its target velocity.
-  bool is_unsaturated() const { return lower < impulse[0] && impulse[0] < upper; }
-  enum class Kind : unsigned char { contact, servo, limit } kind = Kind::contact;
-};
 
 struct Problem {
   double time_step = 0;                         ///< of the substep [s]
@@ -117,19 +82,6 @@ struct Problem {
   void set_normal_target(Constraint& constraint) const;
   void add_rotation_correction(Constraint& constraint, const ContactPoint& contact) const;
 };
-
-/// Calls f with a constraint's number of rows as a compile-time constant.
-template <class F>
-void dispatch_rows(int rows, F f) {
-  switch (rows) {
-    case 1:
-      return f(std::integral_constant<int, 1>());
-    case 3:
-      return f(std::integral_constant<int, 3>());
-    default:
-      return f(std::integral_constant<int, Constraint::most_rows>());
-  }
-}
 
 /// Whether a side's dofs begin with the first six of its tree: those of a floating base, or of the
 /// first joints of a fixed one.

@@ -81,7 +81,7 @@ const std::array<Correction, 2> corrections{{
 
 bool has_world_friction(const Problem& problem) {
   return std::ranges::any_of(problem.constraints, [](const Constraint& b) {
-    return b.kind == Constraint::Kind::contact && (b.a < 0 || b.b < 0) && b.friction > 0;
+    return b.kind == Constraint::Kind::contact && (b.a < 0 || b.b < 0) && b.friction[0] > 0;
   });
 }
 

@@ -201,8 +201,7 @@ void list_held_dofs(const Problem& problem, std::vector<unsigned char>& held) {
   held.clear();
   for (const Tree* tree : problem.trees) held.insert(held.end(), tree->is_symmetric_rotor.begin(), tree->is_symmetric_rotor.end());
   for (const Constraint& constraint : problem.constraints) {
-    if (constraint.kind == Constraint::Kind::contact) continue;
-    if (constraint.impulse[0] <= constraint.lower || constraint.impulse[0] >= constraint.upper) continue;
+    if (constraint.kind == Constraint::Kind::contact || !constraint.is_unsaturated()) continue;
     const bool drives = constraint.kind == Constraint::Kind::servo;
     for (const int k : constraint.dofs_a) {
       unsigned char& dof = held[problem.offset[constraint.a] + k];

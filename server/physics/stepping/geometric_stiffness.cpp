@@ -14,8 +14,7 @@ constexpr double swings_too_far = 0.7, swing_of_a_part = 0.5;
 
 /// Whether a servo or a limit holds a coordinate.
 bool holds_joint(const Constraint& constraint) {
-  return constraint.kind != Constraint::Kind::contact && constraint.dofs_a.size() == 1 && constraint.lower < constraint.impulse[0] &&
-         constraint.impulse[0] < constraint.upper;
+  return constraint.kind != Constraint::Kind::contact && constraint.dofs_a.size() == 1 && constraint.is_unsaturated();
 }
 
 /// Counts free joint coordinates of each tree. A tree whose joints are all held is a rigid body,
