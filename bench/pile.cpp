@@ -1,6 +1,7 @@
 // Boxes and cubes of about 1 cm that fall at random into a bin, in substeps of 10 ms. Printed per
 // phase: thread CPU time per substep, the worst overlap after a substep, and how often the contact
-// law was missed. The heap is at rest when no body has moved by more than 1 um in a substep for 0.5 s.
+// law was missed. The heap is at rest when no body has moved by more than 1 um in a substep for 0.5
+// s.
 //
 // usage: bench_pile [BODIES [SECONDS [HZ]]]    default: 100, 400, 1 000 bodies, 6 s, 100 Hz
 
@@ -13,8 +14,8 @@
 #include <random>
 #include <vector>
 
-#include "physics/collision/shapes.h"
 #include "physics/bodies/convert.h"
+#include "physics/collision/shapes.h"
 #include "physics/world.h"
 
 namespace {
@@ -180,7 +181,8 @@ int main(int argc, char** argv) {
   const double seconds = argc > 2 ? std::atof(argv[2]) : 6,
                hz = argc > 3 ? std::atof(argv[3]) : 100;
   fmt::print(
-      "| bodies | until | ms per substep | longest | overlap, mm | fastest now, mm/s | islands that "
+      "| bodies | until | ms per substep | longest | overlap, mm | fastest now, mm/s | islands "
+      "that "
       "missed | worst miss so far |\n|---|---|---|---|---|---|---|---|\n");
   if (argc > 1) return measure(std::atoi(argv[1]), seconds, hz), 0;
   for (const int count : {100, 400, 1000}) measure(count, seconds, hz);

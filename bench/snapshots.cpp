@@ -56,10 +56,10 @@ void measure(const std::string& path, int tick) {
   const double restore = median_of(runs, [&] { simulation.restore(read.scene, snapshot); });
   const double rebuild = median_of(3, [&] { simulation.restore(read.scene, elsewhere); });
   const double step = median_of(runs, [&] { simulation.step(); });
-  fmt::print("{}, tick {}: snapshot {:.3f} ms, restore {:.3f} ms, in a new world {:.1f} ms, "
-             "{} bytes; a tick {:.3f} ms\n",
-             path, tick, keep, restore, rebuild,
-             snapshot.size(), step);
+  fmt::print(
+      "{}, tick {}: snapshot {:.3f} ms, restore {:.3f} ms, in a new world {:.1f} ms, "
+      "{} bytes; a tick {:.3f} ms\n",
+      path, tick, keep, restore, rebuild, snapshot.size(), step);
 }
 
 }  // namespace

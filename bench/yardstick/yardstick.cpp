@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "mujoco_models.h"
-#include "unit/physics/stepping/touching.h"
 #include "unit/physics/newton_scene.h"
+#include "unit/physics/stepping/touching.h"
 
 namespace {
 

@@ -39,7 +39,7 @@ struct Moment {
   const world::Observations& observations;
   const world::Commands& commands;  ///< that led to the state, until the tick is answered
   std::span<const world::Contact> contacts;
-  PhaseTimes phases;  ///< of the tick before
+  PhaseTimes phases;                                     ///< of the tick before
   std::optional<std::span<const world::Ray>> rays = {};  ///< of all devices; nothing: State::rays
 };
 

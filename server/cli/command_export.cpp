@@ -60,8 +60,10 @@ struct Format {
   std::string (*write)(const Order&);
 };
 constexpr Format formats[] = {
-    {"csv", "FILE.csv", ".csv", "poses of all entities at every tick, with the columns of --trace", to_csv},
-    {"jsonl", "FILE.jsonl", ".jsonl", "each message as a line of JSON: topic, time_s, message", to_jsonl},
+    {"csv", "FILE.csv", ".csv", "poses of all entities at every tick, with the columns of --trace",
+     to_csv},
+    {"jsonl", "FILE.jsonl", ".jsonl", "each message as a line of JSON: topic, time_s, message",
+     to_jsonl},
     {"html", "FILE.html", ".html",
      "one page that plays the recording in a browser, without a server or a network", to_html},
 };
@@ -80,7 +82,8 @@ po::options_description export_options() {
 }
 
 bool has_format(const po::variables_map& values) {
-  return std::ranges::any_of(formats, [&](const Format& format) { return values.count(format.option) > 0; });
+  return std::ranges::any_of(formats,
+                             [&](const Format& format) { return values.count(format.option) > 0; });
 }
 
 /// Checks the outputs of all formats, before the first one is written.

@@ -46,7 +46,8 @@ struct Examined {
 /// Texts of a file that may be anyone's, on one line of a terminal.
 std::string shown(const std::string& from) {
   std::string line = text::printable(from);
-  std::ranges::replace_if(line, [](char c) { return c == '\n' || c == '\t'; }, ' ');
+  std::ranges::replace_if(
+      line, [](char c) { return c == '\n' || c == '\t'; }, ' ');
   return line;
 }
 
@@ -85,12 +86,14 @@ std::string to_text(const Examined& file) {
                                  file.is_whole() ? "whole" : "damaged");
   if (all.start) {
     text += to_text(*all.start);
-    text += fmt::format("  length    {:.6g} s simulated, {} states, last tick {}{}\n", all.length,
-                        all.states, all.last_tick,
-                        all.epochs > 1 ? fmt::format(", {} resets or restores", all.epochs - 1) : "");
+    text +=
+        fmt::format("  length    {:.6g} s simulated, {} states, last tick {}{}\n", all.length,
+                    all.states, all.last_tick,
+                    all.epochs > 1 ? fmt::format(", {} resets or restores", all.epochs - 1) : "");
   } else {
-    text += fmt::format("  no recording of a run by ziggurat, but an MCAP file of the profile '{}'\n",
-                        shown(file.scan.contents.header.profile));
+    text +=
+        fmt::format("  no recording of a run by ziggurat, but an MCAP file of the profile '{}'\n",
+                    shown(file.scan.contents.header.profile));
   }
   text += fmt::format("  chunks    {}, {} before compression{}\n", file.scan.contents.chunks.size(),
                       megabytes(all.uncompressed),
@@ -176,7 +179,8 @@ std::string complaint(const Examined& file) {
       "write: ziggurat info {} --repair OUT.mcap",
       shown(file.path), faults[0].offset, shown(faults[0].text),
       faults.size() > 1 ? fmt::format(" (and {} more)", counted(faults.size() - 1, "fault")) : "",
-      counted(messages, "message"), counted(file.attachments.size(), "attachment"), file.overview.length, shown(file.path));
+      counted(messages, "message"), counted(file.attachments.size(), "attachment"),
+      file.overview.length, shown(file.path));
 }
 
 Examined examine(const std::string& path, const mcap::Source& source, const mcap::Reader& reader) {
@@ -199,7 +203,8 @@ void write_repaired(const std::string& path, const mcap::Reader& reader, const s
                                 shown(fault.text)));
   }
   console.report(fmt::format("{}: {} in {}, {}", shown(out), counted(repaired.messages, "message"),
-                             counted(repaired.chunks, "chunk"), counted(repaired.attachments, "attachment")));
+                             counted(repaired.chunks, "chunk"),
+                             counted(repaired.attachments, "attachment")));
 }
 
 }  // namespace

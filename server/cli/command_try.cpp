@@ -18,11 +18,11 @@ namespace po = boost::program_options;
 po::options_description try_options() {
   const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
   po::options_description options("Options", 96);
-  options.add_options()                                                           //
-      ("robot", text("ID"), "the robot whose controller is tried; required")      //
+  options.add_options()                                                                 //
+      ("robot", text("ID"), "the robot whose controller is tried; required")            //
       ("script", text("FILE.lua"), "of a Lua robot: the script, instead of a command")  //
-      ("until", text("TICK"), "end after this tick")                              //
-      ("differences", text("N"), "print the first N ticks that differ; default 1")  //
+      ("until", text("TICK"), "end after this tick")                                    //
+      ("differences", text("N"), "print the first N ticks that differ; default 1")      //
       ("quiet", "no progress and no notices");
   return options;
 }
@@ -69,7 +69,8 @@ int execute_try(const Arguments& arguments, processes::Signals& signals) {
   if (command.empty() == options.script.empty()) {
     throw text::UsageError("write either -- COMMAND at the end, or --script FILE.lua");
   }
-  if (const auto fault = command.empty() ? processes::compile_error(options.script) : std::nullopt) {
+  if (const auto fault =
+          command.empty() ? processes::compile_error(options.script) : std::nullopt) {
     throw text::UsageError("--script: " + *fault);
   }
   const std::string wrong = command.empty() ? std::string() : processes::why_not_started(command);

@@ -14,16 +14,18 @@ namespace po = boost::program_options;
 
 po::options_description verify_options() {
   po::options_description options("Options", 96);
-  options.add_options()                         //
+  options.add_options()                        //
       ("quiet", "no progress and no notices")  //
-      ("controllers", "start the controllers, too, and compare what they command: embedded Lua scripts, "
+      ("controllers",
+       "start the controllers, too, and compare what they command: embedded Lua scripts, "
        "sandboxed, and the commands of --controller")  //
       ("controller", po::value<std::vector<std::string>>()->composing()->value_name("ID=CMD"),
        "with --controllers: start CMD for the controller ID; may be repeated")  //
       ("trust-recorded-commands",
        "with --controllers: start the commands that the recording names; they can do anything that "
        "you can do")  //
-      ("json", "the verdict as a JSON object: verdict, states, text; with a difference tick and epoch");
+      ("json",
+       "the verdict as a JSON object: verdict, states, text; with a difference tick and epoch");
   return options;
 }
 

@@ -81,7 +81,8 @@ std::uint64_t copy_as_base64(std::ifstream& from, std::ostream& to) {
 }
 
 /// @return what was written [bytes]
-std::uint64_t write_page(const Template& page, const std::string& name, std::ifstream& recording, std::ostream& to) {
+std::uint64_t write_page(const Template& page, const std::string& name, std::ifstream& recording,
+                         std::ostream& to) {
   const std::string begin = page.before_name + escaped(name) + page.before_recording;
   to << begin;
   const std::uint64_t size = copy_as_base64(recording, to);

@@ -16,8 +16,10 @@ namespace ziggurat::devices {
 
 bool OcclusionTest::clear(const math::Vector3& eye, const math::Vector3& target) const {
   if (left == 0) {
-    throw std::runtime_error("cameras look for LEDs and tags along more than " + std::to_string(world::most_lines_of_sight) +
-                             " lines of sight at a tick; write a smaller range on <camera>, or fewer cameras");
+    throw std::runtime_error(
+        "cameras look for LEDs and tags along more than " +
+        std::to_string(world::most_lines_of_sight) +
+        " lines of sight at a tick; write a smaller range on <camera>, or fewer cameras");
   }
   --left;
   constexpr double at_target = 1e-4;  // devices may be mounted flush [m]

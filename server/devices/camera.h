@@ -15,12 +15,12 @@ namespace ziggurat::devices {
 /// within 0.1 mm of the point, nor a body that the camera is inside of.
 struct OcclusionTest {
   const physics::Rays& rays;
-  std::size_t robot;               ///< into Layout::robots: the one with the camera
-  std::vector<world::Ray>* shown;  ///< gets the tested rays; may be null
-  std::vector<world::Ray>* all;    ///< the same
+  std::size_t robot;                      ///< into Layout::robots: the one with the camera
+  std::vector<world::Ray>* shown;         ///< gets the tested rays; may be null
+  std::vector<world::Ray>* all;           ///< the same
   const physics::Candidates& candidates;  ///< what can be in the way
 
-  std::size_t& left;                      ///< lines of sight that may still be tested at this tick
+  std::size_t& left;  ///< lines of sight that may still be tested at this tick
 
   /// @throws std::runtime_error if none is left
   bool clear(const math::Vector3& eye, const math::Vector3& target) const;

@@ -127,7 +127,7 @@ class Imus final : public Kind {
     scene::Imu settings;
     std::size_t link = 0;  // that it moves with, into State::links
     math::RandomStream random;
-    SensorMotion motion = {};                                  // at the last sample
+    SensorMotion motion = {};                            // at the last sample
     math::Vector3 force = math::Vector3::Zero();         // sum of all samples [m/s^2]
     math::Vector3 turning = math::Vector3::Zero();       // likewise [rad/s]
     math::Vector3 force_bias = math::Vector3::Zero();    // [m/s^2]
@@ -135,7 +135,7 @@ class Imus final : public Kind {
   };
 
   static SensorMotion motion_of(const world::State& state, const Sensor& sensor,
-                          const world::Mount& mount) {
+                                const world::Mount& mount) {
     const world::LinkState& link = state.links[sensor.link];
     const math::Pose pose = world::pose_of(state, mount);
     const math::Vector3 arm = pose.position - link.pose.position;

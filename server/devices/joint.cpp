@@ -50,8 +50,7 @@ class Joints final : public Kind {
       if (joints.actuators.empty() && joints.sensors.empty()) continue;
       const auto by_id = joints_of(entity);
       for (const scene::JointActuator& actuator : joints.actuators) {
-        actuators_.push_back(
-            setting.physics.joint(robot.entity, by_id.at(actuator.joint)));
+        actuators_.push_back(setting.physics.joint(robot.entity, by_id.at(actuator.joint)));
         setting.physics.add_motor(actuators_.back(), actuator.mode,
                                   impulse_of(actuator, setting.substep));
       }

@@ -1,6 +1,7 @@
 #pragma once
-// Serves a few short texts over HTTP, on a thread of its own: one request per connection. Clients can be
-// slow, many and rude: each has a time and a number of bytes, and of too many the oldest ends.
+// Serves a few short texts over HTTP, on a thread of its own: one request per connection. Clients
+// can be slow, many and rude: each has a time and a number of bytes, and of too many the oldest
+// ends.
 
 #include <chrono>
 #include <cstddef>

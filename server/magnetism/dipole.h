@@ -9,8 +9,8 @@
 //   F1 = 3 K / d^4 [(m2.n) m1 + (m1.n) m2 + (m1.m2 - 5 (m1.n)(m2.n)) n]
 //
 // Below minimum_distance the separation counts as minimum_distance long while n = r /
-// minimum_distance. So force and torque stay finite and continuous, and vanish as they must at r = 0.
-// T1 + T2 + r x F1 = 0 still holds exactly.
+// minimum_distance. So force and torque stay finite and continuous, and vanish as they must at r =
+// 0. T1 + T2 + r x F1 = 0 still holds exactly.
 
 #include "math/pose.h"
 

@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-
 #include <cmath>
 
 namespace ziggurat::math {
@@ -19,7 +18,9 @@ struct Pose {
 };
 
 /// Whether a quaternion has length 1, up to what rounding and other programs leave of it.
-inline bool is_rotation(const Quaternion& quaternion) { return std::abs(quaternion.squaredNorm() - 1) < 1e-6; }
+inline bool is_rotation(const Quaternion& quaternion) {
+  return std::abs(quaternion.squaredNorm() - 1) < 1e-6;
+}
 
 /// Canonical one of the two quaternions of a rotation. It has w >= 0 and turns by 0 to pi. For a
 /// half turn its last component that is not 0 is positive.

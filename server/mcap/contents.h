@@ -17,7 +17,8 @@ struct Limits {
   std::size_t chunk = std::size_t{256} << 20;       ///< compressed, and decompressed
   std::size_t attachment = std::size_t{512} << 20;  ///< one
   std::size_t record = std::size_t{16} << 20;       ///< any other one
-  std::size_t index = std::size_t{64} << 20;  ///< the summary; all schemas and channels; all indexes
+  std::size_t index = std::size_t{64}
+                      << 20;  ///< the summary; all schemas and channels; all indexes
 };
 
 /// A damaged place of a file.

@@ -1,7 +1,7 @@
 #pragma once
 // Reads an MCAP file, of anyone: every length is checked against what is left, memory is bounded by
-// Limits. With a summary only that is read at first; a file without a good one, as after kill -9, is
-// scanned from its start.
+// Limits. With a summary only that is read at first; a file without a good one, as after kill -9,
+// is scanned from its start.
 
 #include <cstdint>
 #include <string>

@@ -51,7 +51,7 @@ class Writer {
   /// Ends the chunk, writes the summary and the footer.
   void close();
 
-  std::uint64_t size() const { return size_; }       ///< written so far [bytes]
+  std::uint64_t size() const { return size_; }             ///< written so far [bytes]
   std::uint64_t chunks() const { return chunks_.size(); }  ///< written so far
 
  private:
@@ -68,11 +68,12 @@ class Writer {
   Sink sink_;
   Compressor compressor_;
   std::uint64_t size_ = 0;
-  std::uint32_t crc_ = 0;  // of all bytes so far
+  std::uint32_t crc_ = 0;           // of all bytes so far
   std::string schemas_, channels_;  // records, for the summary
   std::uint16_t schema_count_ = 0, channel_count_ = 0;
   std::vector<ChannelState> states_;  // by channel id
-  std::vector<std::uint16_t> used_;   // channels in the present chunk, in the order of their first message
+  std::vector<std::uint16_t>
+      used_;  // channels in the present chunk, in the order of their first message
   std::string chunk_, record_;
   std::uint64_t chunk_start_ = 0, chunk_end_ = 0;  // times of its messages [ns]
   Statistics statistics_;

@@ -21,8 +21,10 @@ struct RadioLink {
 
 class RadioMedium {
  public:
-  /// @param most  messages that all receive together at a tick. Of more, each sender's last ones are left out, and as
-  ///              many of one are kept as of another: one that sends very many takes nothing from the others
+  /// @param most  messages that all receive together at a tick. Of more, each sender's last ones
+  /// are left out, and as
+  ///              many of one are kept as of another: one that sends very many takes nothing from
+  ///              the others
   explicit RadioMedium(std::size_t most = world::most_received_messages) : most_(most) {}
 
   /// Delivers the messages of a tick. All are known before the first is delivered. So the result

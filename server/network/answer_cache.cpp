@@ -12,7 +12,7 @@ constexpr std::chrono::milliseconds longest_age_of_commands{10};
 }  // namespace
 
 wire::Answer& AnswerCache::find(const wire::Request& request, const Version& version,
-                            const Write& write) {
+                                const Write& write) {
   const auto now = std::chrono::steady_clock::now();
   const auto most = version.commands == version_.commands ? longest_age : longest_age_of_commands;
   if (version.changes != version_.changes || now - made_ > most) {

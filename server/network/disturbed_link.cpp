@@ -62,7 +62,8 @@ std::vector<DisturbedLink::Path> DisturbedLink::paths_of(const v1::Welcome& welc
     });
     if (target == targets_.end() || !target->injection.any()) return;
     const auto index = static_cast<std::size_t>(target - targets_.begin());
-    if (std::ranges::find(paths, index, &Path::target) == paths.end()) paths.push_back({index, name});
+    if (std::ranges::find(paths, index, &Path::target) == paths.end())
+      paths.push_back({index, name});
   };
   for (const v1::RobotDescription& robot : welcome.robots()) {
     add(robot.controller(), false, robot.controller() + "/" + robot.id());
@@ -156,7 +157,8 @@ void DisturbedLink::end(const std::string& connection, Line& line, bool is_order
 bool DisturbedLink::arrives(const Received& received, Time now) {
   Line* line = find(received.connection);
   if (line == nullptr) return true;
-  const wire::Inbox::Kind kind = received.is_single_frame ? inbox_.parse(received.bytes) : wire::Inbox::Kind::malformed;
+  const wire::Inbox::Kind kind =
+      received.is_single_frame ? inbox_.parse(received.bytes) : wire::Inbox::Kind::malformed;
   Effect effect;
   const bool is_answer = kind == wire::Inbox::Kind::command || kind == wire::Inbox::Kind::direction;
   if (is_answer) effect = draw(*line, Direction::commands, inbox_.command_tick());

@@ -28,8 +28,7 @@ struct Roles {
   bool allow(wire::Role role) const {
     return (role == wire::Role::controller && controller) ||
            (role == wire::Role::supervisor && supervisor) ||
-           (role == wire::Role::observer && observer) ||
-           (role == wire::Role::director && director);
+           (role == wire::Role::observer && observer) || (role == wire::Role::director && director);
   }
 };
 inline constexpr Roles all_roles{true, true, true, true};

@@ -32,7 +32,8 @@ struct Received {
   std::string_view bytes;       ///< valid until the next message is received
   bool is_single_frame = true;  ///< a message of the protocol is one ZeroMQ frame
   Access access;                ///< that the connection has
-  /// Bytes of the message that were not kept, because a frame was too long or not its last: there are no others.
+  /// Bytes of the message that were not kept, because a frame was too long or not its last: there
+  /// are no others.
   std::size_t skipped = 0;
   /// Encoding of a message of several frames, by its first frame.
   wire::Encoding several_frames = wire::Encoding::binary;

@@ -11,7 +11,8 @@
 
 namespace ziggurat::network {
 
-/// The first 20 are told at once, then one a second, with the number of those before it that were not.
+/// The first 20 are told at once, then one a second, with the number of those before it that were
+/// not.
 class Notices {
  public:
   using Time = TokenBucket::Time;

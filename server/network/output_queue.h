@@ -56,7 +56,8 @@ class OutputQueue {
   int descriptor_;
   std::deque<Parcel> waiting_;  // the first may be sent in part
   std::size_t waiting_bytes_ = 0;
-  std::size_t alone_ = 0;  // of these, what the first takes if nothing waited before it: it may be longer than the bound
+  std::size_t alone_ = 0;  // of these, what the first takes if nothing waited before it: it may be
+                           // longer than the bound
   bool has_failed_ = false, is_congested_ = false;
 };
 

@@ -26,8 +26,8 @@ class PeerSocket {
   /// @param name  of the connection
   /// @param keys  must outlive the connection; null: it is not encrypted
   /// @param is_trusted  of this user: limits of connections without session do not hold
-  PeerSocket(std::string name, posix::Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_trusted,
-             Time now);
+  PeerSocket(std::string name, posix::Descriptor descriptor, const zmtp::CurveKeys* keys,
+             bool is_trusted, Time now);
 
   const std::string& name() const { return name_; }
   int number() const { return descriptor_.number(); }
@@ -48,8 +48,8 @@ class PeerSocket {
 
   /// Reads once, a part of what is there. What next() gave is not valid any more.
   void read();
-  /// The next message that has arrived completely, if there is one among the next few frames. Its access and
-  /// bytes are set.
+  /// The next message that has arrived completely, if there is one among the next few frames. Its
+  /// access and bytes are set.
   /// @param limit  of its size [bytes]
   bool next(std::size_t limit, Received& received);
 
@@ -89,9 +89,9 @@ class PeerSocket {
   wire::Encoding first_frame_ = wire::Encoding::binary;  // its form, for the answer
   std::size_t to_skip_ = 0;                              // of a frame that is too long
   std::size_t skipped_ = 0;                              // bytes of the message that were not kept
-  bool has_failed_ = false;  // the connection is over when its last reply is sent
-  std::string too_long_;  // the sentence on the message that ended the connection
-  bool more_to_skip_ = false;                            // the message goes on behind that frame
+  bool has_failed_ = false;    // the connection is over when its last reply is sent
+  std::string too_long_;       // the sentence on the message that ended the connection
+  bool more_to_skip_ = false;  // the message goes on behind that frame
   std::string reply_;
   OutputQueue output_;
 };

@@ -25,15 +25,17 @@ struct RobotStatus {
     gone,  ///< left the barrier for good; its commands are zero
   };
   Membership membership = Membership::free;
-  std::string holder;    ///< held: name and version of the client; free: of the lost session that
-                         ///< may resume
-  std::string token;  ///< of that session; a secret, for a process that is started in place of its own
-  bool awaited = false;  ///< the tick waits for it
-  Time awaited_since;    ///< if awaited
-  Time last_message;     ///< of its session, if held
+  std::string holder;  ///< held: name and version of the client; free: of the lost session that
+                       ///< may resume
+  std::string
+      token;  ///< of that session; a secret, for a process that is started in place of its own
+  bool awaited = false;            ///< the tick waits for it
+  Time awaited_since;              ///< if awaited
+  Time last_message;               ///< of its session, if held
   scene::DeadlinePolicy deadline;  ///< what happens if it is not answered for in time
   bool was_held = false;           ///< a session has had it
-  bool can_restore = true;  ///< held, or of a lost session: its controller can go back to a snapshot
+  bool can_restore =
+      true;  ///< held, or of a lost session: its controller can go back to a snapshot
 };
 
 /// Need of the world before it can pause or go on, if no deadline ends the wait.
@@ -46,12 +48,12 @@ enum class Need {
 /// Whether a director is there, and whether the tick waits for it.
 struct DirectorStatus {
   std::string id;
-  bool is_held = false;   ///< a session has it
-  bool has_left = false;  ///< the barrier, for good
-  bool was_held = false;  ///< a session has had it
-  bool waits = true;      ///< by its policy the world waits for it without end
+  bool is_held = false;     ///< a session has it
+  bool has_left = false;    ///< the barrier, for good
+  bool was_held = false;    ///< a session has had it
+  bool waits = true;        ///< by its policy the world waits for it without end
   bool is_awaited = false;  ///< by the tick
-  std::string client;     ///< name and version of the one that has it, or may resume it
+  std::string client;       ///< name and version of the one that has it, or may resume it
   bool can_restore = true;  ///< that client can go back to a snapshot
 };
 
@@ -87,7 +89,7 @@ struct Failure {
 
 /// A robot whose controller took leave of it before the end of the run.
 struct Departure {
-  std::size_t robot = 0;  ///< into Layout::robots
+  std::size_t robot = 0;   ///< into Layout::robots
   std::uint64_t tick = 0;  ///< of the last observation that it got
 };
 
@@ -107,11 +109,11 @@ struct DirectorLine {
 
 /// Events since the last report.
 struct Report {
-  std::vector<wire::LogLine> log;    ///< robots in scene order, then as given: independent of which
-                                     ///< process runs where and which answers first
-  std::vector<Failure> failures;     ///< in scene order
-  std::vector<Departure> departures;  ///< in scene order
-  std::vector<DirectorLine> log_of_directors;     ///< those of each as given
+  std::vector<wire::LogLine> log;  ///< robots in scene order, then as given: independent of which
+                                   ///< process runs where and which answers first
+  std::vector<Failure> failures;   ///< in scene order
+  std::vector<Departure> departures;           ///< in scene order
+  std::vector<DirectorLine> log_of_directors;  ///< those of each as given
   std::vector<DirectorFailure> failed_directors;
   std::string stopped;               ///< the sentence on the deadline that stops the run, if any
   std::vector<std::string> dropped;  ///< sentences on robots that a deadline took out: one for each
@@ -125,7 +127,8 @@ struct Call {
   std::string peer;  ///< its connection
   wire::Request request;
   bool is_local = false;  ///< of this process, which answers it itself: no connection has sent it
-  std::uint64_t session = 0;  ///< its number, see SessionId; a connection may have several, one after the other
+  std::uint64_t session =
+      0;  ///< its number, see SessionId; a connection may have several, one after the other
 };
 
 }  // namespace ziggurat::network

@@ -23,21 +23,23 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds noticeable{1};  // to deadlines: messages are taken for that long between looks at them
+constexpr milliseconds noticeable{
+    1};  // to deadlines: messages are taken for that long between looks at them
 
 std::vector<DisturbedLink::Target> targets_of(const Config& config, const wire::Run& run) {
   std::vector<DisturbedLink::Target> targets;
   const auto add = [&](const std::string& id, bool is_director) {
     const bool is_given = targets.size() < config.injections.size();
-    targets.push_back({id, is_given ? config.injections[targets.size()] : Injection{}, is_director});
+    targets.push_back(
+        {id, is_given ? config.injections[targets.size()] : Injection{}, is_director});
   };
   for (const scene::Controller& controller : run.controllers) add(controller.id, false);
   for (const scene::Director& director : run.directors) add(director.id, true);
   return targets;
 }
 
-/// No tick goes on before a message of one that is no controller yet: the world is halted, or a robot is
-/// free that the tick waits for without end.
+/// No tick goes on before a message of one that is no controller yet: the world is halted, or a
+/// robot is free that the tick waits for without end.
 bool waits_for_newcomer(const Barrier& barrier) {
   const bool has_free = barrier.ownership.is_awaited() || barrier.directors.ownership.is_awaited();
   const bool waits_for_robot = has_free && barrier.timers.deadline == never;
@@ -144,7 +146,8 @@ Outcome Server::State::wait_until(Done done, const Wait& wait, world::Commands* 
   socket.handled();
   for (;;) {
     barrier.now = Clock::now();
-    socket.set_ticking(commands != nullptr && barrier.gate.is_owed() && !waits_for_newcomer(barrier));
+    socket.set_ticking(commands != nullptr && barrier.gate.is_owed() &&
+                       !waits_for_newcomer(barrier));
     socket.tend();
     if (take_messages(done, commands)) return Outcome::complete;
     advance(looked);
@@ -172,11 +175,11 @@ void Server::open(const wire::Run& run, const Config& config) {
   State& state = *state_;
   if (!config.private_endpoint.empty()) state.socket.add_private(config);
   if (std::ranges::any_of(config.injections, &Injection::any)) {
-    state.link.emplace(targets_of(config, run), run.seed, 2 * config.max_message_bytes,
-                       [&state](const std::string& connection, std::string_view bytes,
-                                bool is_observation) {
-                         return state.socket.send(connection, bytes, is_observation);
-                       });
+    state.link.emplace(
+        targets_of(config, run), run.seed, 2 * config.max_message_bytes,
+        [&state](const std::string& connection, std::string_view bytes, bool is_observation) {
+          return state.socket.send(connection, bytes, is_observation);
+        });
   }
   state.barrier.now = Clock::now();
   network::open(state.barrier, run, config.deadlines, config.deadline_of_others);

@@ -50,7 +50,8 @@ enum class Outcome {
               ///< world was halted; call again to go on
 };
 
-/// Whether the world is paused; once it is asked for, the world is halted when the current tick is answered.
+/// Whether the world is paused; once it is asked for, the world is halted when the current tick is
+/// answered.
 enum class Pause { none, requested, halted };
 
 class Server {
@@ -97,7 +98,8 @@ class Server {
   /// Until every robot that is not gone has answered the published tick; values are written into
   /// `commands` as they arrive, those of robots that are gone become zero. On anything but
   /// `complete` some robots' values may be in already; calling again goes on.
-  /// @param metrics  gets those that were set at the tick, if it is complete: in scene order, sorted by
+  /// @param metrics  gets those that were set at the tick, if it is complete: in scene order,
+  /// sorted by
   ///                 name for each robot; null: not wanted
   Outcome collect(world::Commands& commands, const Wait& wait,
                   std::vector<world::Metric>* metrics = nullptr);
@@ -131,10 +133,10 @@ class Server {
   void set_paused(bool is_paused);
   Pause pause() const;
 
-  /// The world went back to its start or to a snapshot: sessions are told, what they owed is void, and
-  /// the next observation to be published is that of tick 0 or of the snapshot. Robots that the layout
-  /// has no more, or that are others now, are forgotten, and sessions that have one of them are over;
-  /// these others come by add_robots().
+  /// The world went back to its start or to a snapshot: sessions are told, what they owed is void,
+  /// and the next observation to be published is that of tick 0 or of the snapshot. Robots that the
+  /// layout has no more, or that are others now, are forgotten, and sessions that have one of them
+  /// are over; these others come by add_robots().
   /// @param restart  its epoch is the server's to know
   void restart(const wire::Restart& restart);
 
@@ -151,7 +153,7 @@ class Server {
   void answer_question(const Call& call, const std::function<void(wire::Outbox&)>& write);
   /// Adds what a server knows: sessions, and robots that are free or have left.
   void fill(wire::Status& status) const;
-  std::vector<RobotStatus> status() const;       ///< per robot of the layout
+  std::vector<RobotStatus> status() const;  ///< per robot of the layout
   Performance performance() const;
   Report take_report();
 
@@ -163,8 +165,8 @@ class Server {
   std::unique_ptr<State> state_;
 };
 
-/// While the world is put back, when its layout may be another already: sends heartbeats as usual, and takes
-/// no message.
+/// While the world is put back, when its layout may be another already: sends heartbeats as usual,
+/// and takes no message.
 void keep_alive(Server& server);
 
 /// Greatest need of the sessions that have these robots or directors.
@@ -176,12 +178,13 @@ class ServerDirectors {
   /// @param server  must outlive this
   explicit ServerDirectors(Server& server) : state_(*server.state_) {}
 
-  /// Told of each Direction that arrives, before it is taken: what is wrong with it in the present world.
+  /// Told of each Direction that arrives, before it is taken: what is wrong with it in the present
+  /// world.
   void check_by(std::function<std::optional<wire::Fault>(const wire::Direction&)> check);
   /// Directions to apply between the published tick, which is complete, and the next. They are in
   /// the order of their directors' ids, and valid until the server waits again.
   const std::vector<Directed>& directions() const;
-  bool wants_contacts() const;             ///< a director subscribed to them
+  bool wants_contacts() const;            ///< a director subscribed to them
   bool has(const std::string& id) const;  ///< a director of that id is there, or was
   /// Tells a director, if it is connected, that one of its acts was not done.
   void warn(const std::string& director, wire::Fault fault);

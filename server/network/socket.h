@@ -88,8 +88,8 @@ class Socket {
   /// Connections that are served together.
   struct Group {
     ReadyList& list;
-    std::deque<std::string> turns;   ///< those that may have messages: one each, in turn
-    std::size_t until_look = 0;      ///< so many turns until the list is asked for others
+    std::deque<std::string> turns;  ///< those that may have messages: one each, in turn
+    std::size_t until_look = 0;     ///< so many turns until the list is asked for others
 
     bool is_ready() const { return !turns.empty() || list.look(); }
     void give_turn(PeerSocket& peer);
@@ -120,7 +120,7 @@ class Socket {
   TokenBucket others_time_;
   Time others_wait_until_;
   std::optional<ThreadClock::time_point> other_since_;  // when what is done for one began
-  int members_in_a_row_ = 0;                               // looks at them
+  int members_in_a_row_ = 0;                            // looks at them
   Buffer frame_;
   std::vector<pollfd> polled_;
 };

@@ -1,10 +1,9 @@
 // State of the core: all that its next substep reads. Boxes of the broad phase are left out: pairs
 // do not depend on them.
 
-#include "physics/archive.h"
-
 #include <algorithm>
 
+#include "physics/archive.h"
 #include "physics/collision/contact_limits.h"
 #include "physics/core.h"
 
@@ -56,7 +55,8 @@ void ContactCache::CachedPair::archive(math::Archive& archive) {
   archive("share", force_share);
   archive("count", count);
   archive.require(count >= 0 && count <= most_points, "is too large");
-  const int told = earlier_impulse.isZero(0) ? count : std::max(count, 1);  // see ContactCache::list_contacts()
+  const int told =
+      earlier_impulse.isZero(0) ? count : std::max(count, 1);  // see ContactCache::list_contacts()
   for (int i = 0; i < told; ++i) archive("point", points[static_cast<std::size_t>(i)]);
 }
 
@@ -67,7 +67,8 @@ void archive_fields(math::Archive& archive, ContactCache& contacts) {
   archive("live", contacts.live_);
   // Dead pairs take a byte each: there are as many as there once were pairs.
   const std::size_t colliders = contacts.colliders_.all.size();
-  const std::size_t most_pairs = std::min(colliders * colliders / 2, 2 * most_near_pairs + colliders);
+  const std::size_t most_pairs =
+      std::min(colliders * colliders / 2, 2 * most_near_pairs + colliders);
   try {
     archive.list("pairs", contacts.pairs_, 1 + most_pairs);
     archive.list("unused", contacts.unused_);
@@ -90,7 +91,7 @@ void archive_fields(math::Archive& archive, ContactCache& contacts) {
     (is_floor ? contacts.floor_pairs_[pair.a] : contacts.places_[key_of(pair.a, pair.b)]) =
         static_cast<int>(i);
     contacts.pairs_of_collider_.add(static_cast<int>(i), pair.a,
-                        is_floor ? std::nullopt : std::optional<std::size_t>(pair.b));
+                                    is_floor ? std::nullopt : std::optional<std::size_t>(pair.b));
   }
   contacts.near_pairs_.clear();
   contacts.contacts_.clear();

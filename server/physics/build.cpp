@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "physics/bodies/bodies.h"
-#include "physics/magnet_source.h"
 #include "physics/collision/shape.h"
+#include "physics/magnet_source.h"
 #include "physics/welding.h"
 
 namespace ziggurat::physics {

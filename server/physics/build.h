@@ -1,10 +1,11 @@
 #pragma once
 // Links of an entity, and its rigid parts, before the core moves it.
 
-#include "physics/bodies/bodies.h"
-#include "scene/scene.h"
 #include <LinearMath/btTransform.h>
+
+#include "physics/bodies/bodies.h"
 #include "physics/multibody/tree.h"
+#include "scene/scene.h"
 
 namespace ziggurat::physics {
 

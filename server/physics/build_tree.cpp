@@ -1,6 +1,5 @@
-#include "physics/build.h"
-
 #include "physics/bodies/convert.h"
+#include "physics/build.h"
 
 namespace ziggurat::physics {
 namespace {

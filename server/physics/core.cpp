@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "physics/build.h"
 #include "physics/bodies/convert.h"
+#include "physics/build.h"
 #include "physics/collision/colliders.h"
 
 namespace ziggurat::physics {
@@ -51,7 +51,9 @@ void share_mechanism(dynamics::Tree& tree, const std::vector<dynamics::Tree>& tr
 
 }  // namespace
 
-NewtonCore::NewtonCore(const scene::Physics& physics) : settings_(physics) { colliders_.gravity = std::abs(physics.gravity.value_or(0)); }
+NewtonCore::NewtonCore(const scene::Physics& physics) : settings_(physics) {
+  colliders_.gravity = std::abs(physics.gravity.value_or(0));
+}
 
 Body NewtonCore::add(const scene::Entity& entity, std::size_t number) {
   Body body = make_body(entity, settings_, number);
@@ -76,7 +78,7 @@ void NewtonCore::detach(std::size_t entity) {
   contacts_.forget(entity, system_);
   colliders_.remove(entity);
   ground_servos_.erase(std::ranges::lower_bound(ground_servos_, entity, {}, &GroundServo::entity),
-              std::ranges::upper_bound(ground_servos_, entity, {}, &GroundServo::entity));
+                       std::ranges::upper_bound(ground_servos_, entity, {}, &GroundServo::entity));
 }
 
 void NewtonCore::remove(Body& body) {
@@ -130,11 +132,12 @@ void set_joint(NewtonCore& core, JointIndex index, double position, double veloc
   begin_anew(core, joint.entity);
 }
 
-std::optional<std::size_t> NewtonCore::overlapped_by(
-    std::span<const PlacedCollider> colliders, std::size_t except) const {
+std::optional<std::size_t> NewtonCore::overlapped_by(std::span<const PlacedCollider> colliders,
+                                                     std::size_t except) const {
   std::optional<std::size_t> first;
   for (const Collider& collider : colliders_.all) {
-    if (!collider.is_present || collider.entity == except || (first && *first <= collider.entity)) continue;
+    if (!collider.is_present || collider.entity == except || (first && *first <= collider.entity))
+      continue;
     const btVector3 part = to_bullet(system_.trees[collider.entity].position[collider.part]);
     const btScalar reach = collider.radius + collider.in_part.getOrigin().length();
     const auto is_far = [&](const PlacedCollider& each) {
@@ -142,7 +145,8 @@ std::optional<std::size_t> NewtonCore::overlapped_by(
     };
     if (std::ranges::all_of(colliders, is_far)) continue;  // most are, and their poses take longer
     const PlacedCollider other{collider.shape, colliders_.pose(collider, system_)};
-    if (std::ranges::any_of(colliders, [&](const auto& each) { return overlaps(each, other, resting_depth); })) {
+    if (std::ranges::any_of(
+            colliders, [&](const auto& each) { return overlaps(each, other, resting_depth); })) {
       first = collider.entity;
     }
   }

@@ -7,13 +7,13 @@
 #include <span>
 #include <vector>
 
-#include "physics/stepping/system.h"
 #include "physics/bodies/bodies.h"
 #include "physics/collision/contact_cache.h"
-#include "physics/substep_partition.h"
-#include "physics/motors.h"
 #include "physics/collision/overlap.h"
+#include "physics/motors.h"
 #include "physics/plugin.h"
+#include "physics/stepping/system.h"
+#include "physics/substep_partition.h"
 #include "scene/scene.h"
 
 namespace ziggurat::physics {
@@ -21,7 +21,8 @@ namespace ziggurat::physics {
 /// Forces on a set of trees that takes a substep in parts, in its order.
 struct DeferredForces {
   std::vector<dynamics::Wrench> wrenches;  ///< on their links
-  std::vector<math::Vector3> gravity;    ///< that was taken from them: of the first ones, or of all [m/s^2]
+  std::vector<math::Vector3>
+      gravity;  ///< that was taken from them: of the first ones, or of all [m/s^2]
 };
 
 class NewtonCore {
@@ -62,7 +63,8 @@ class NewtonCore {
   void contacts(std::vector<LinkContact>& out) const { contacts_.list_contacts(out); }
   Convergence convergence() const { return convergence_; }
   friend void set_joint(NewtonCore& core, JointIndex joint, double position, double velocity);
-  /// Forgets of an entity that was put somewhere else what it remembers of contacts, joints and steps.
+  /// Forgets of an entity that was put somewhere else what it remembers of contacts, joints and
+  /// steps.
   friend void begin_anew(NewtonCore& core, std::size_t entity);
   friend void archive_fields(math::Archive& archive, NewtonCore& core);
 
@@ -77,26 +79,29 @@ class NewtonCore {
   /// Trees that take a part of a substep, or all of it.
   struct SubstepPart {
     const TreeSet* active = nullptr;  // null: all
-    double time_step = 0;                // [s]
+    double time_step = 0;             // [s]
     int splits = 1;                   // of the scene's substep, see substep()
     double force_share = 1;           // of the substep's forces and impulses, that act in it
-    bool is_followed = false;                // other parts follow
-    double time_to_target = 0;        // until motors should reach their targets, from its beginning [s]
-    bool is_part = false;             // it is one of the parts of a divided island
+    bool is_followed = false;         // other parts follow
+    double time_to_target = 0;  // until motors should reach their targets, from its beginning [s]
+    bool is_part = false;       // it is one of the parts of a divided island
     dynamics::StepOptions options{.impact_mode = dynamics::ImpactMode::end_step};
     std::span<const int> trees() const { return active ? active->trees : std::span<const int>(); }
   };
   void prepare(std::span<Body> bodies, const SubstepPart& part);
-  bool wake_disturbed(const SubstepPart& part, std::span<dynamics::ContactPoint>& contacts, bool woke);
+  bool wake_disturbed(const SubstepPart& part, std::span<dynamics::ContactPoint>& contacts,
+                      bool woke);
   void step(const SubstepPart& part);
-  bool predict_contacts(const SubstepPart& part, std::span<dynamics::ContactPoint>& contacts, bool& woke);
+  bool predict_contacts(const SubstepPart& part, std::span<dynamics::ContactPoint>& contacts,
+                        bool& woke);
   void step_active(std::span<Body> bodies, const SubstepPart& part);
   void step_part(std::span<Body> bodies, const SubstepPart& part);
-  void step_to_impacts(std::span<Body> bodies, const SubstepPart& whole, std::span<const int> trees, double first_impact);
+  void step_to_impacts(std::span<Body> bodies, const SubstepPart& whole, std::span<const int> trees,
+                       double first_impact);
   void apply_impacts(std::span<Body> bodies, const SubstepPart& part);
   void store_impulses(const SubstepPart& part);
   void step_leapfrog(std::span<Body> bodies, double time_step, int splits, int count,
-                        Plugin& stiff);
+                     Plugin& stiff);
   void step_divided_islands(std::span<Body> bodies, const SubstepPart& whole);
   void step_in_parts(std::span<Body> bodies, const SubstepPart& whole, int count);
 
@@ -113,15 +118,16 @@ class NewtonCore {
   LeapfrogSync leapfrog_sync_;
   dynamics::IslandsToSubdivide islands_to_subdivide_;  // by the whole substep
   dynamics::IslandsToSubdivide islands_with_impacts_;  // by a part of it
-  TreeSet active_;              // the trees of one of them, or all others
-  TreeSet in_impacts_;          // trees between two impacts
-  TreeSet stepped_;             // trees that a step did not leave unchanged
+  TreeSet active_;                                     // the trees of one of them, or all others
+  TreeSet in_impacts_;                                 // trees between two impacts
+  TreeSet stepped_;                                    // trees that a step did not leave unchanged
   DeferredForces deferred_forces_;
   dynamics::PredictedVelocities prediction_;
   Convergence convergence_;
 };
 
-/// Puts a joint to a position [m] or [rad] and a speed [m/s] or [rad/s]; its body remembers no contact.
+/// Puts a joint to a position [m] or [rad] and a speed [m/s] or [rad/s]; its body remembers no
+/// contact.
 void set_joint(NewtonCore& core, JointIndex joint, double position, double velocity);
 
 }  // namespace ziggurat::physics

@@ -1,10 +1,11 @@
 #pragma once
 // Plug-ins that are a force law.
 
-#include "physics/plugin.h"
 #include <cstddef>
 #include <vector>
+
 #include "math/pose.h"
+#include "physics/plugin.h"
 
 namespace ziggurat::physics {
 

@@ -1,10 +1,11 @@
 #pragma once
 // A scene's magnet in the terms of magnetism/.
 
-#include "magnetism/shape.h"
-#include "scene/scene.h"
-#include "physics/bodies/bodies.h"
 #include <vector>
+
+#include "magnetism/shape.h"
+#include "physics/bodies/bodies.h"
+#include "scene/scene.h"
 
 namespace ziggurat::physics {
 

@@ -122,10 +122,11 @@ void Magnets::build_field(std::span<const Body> bodies) {
   std::vector<magnetism::Magnet> magnets;
   std::ptrdiff_t first = 0;  // carrier of the entity under way: magnets of an entity stand together
   for (const PlacedMagnet& placed : magnets_) {
-    if (!carriers_.empty() && carriers_.back().entity != placed.entity) first = std::ssize(carriers_);
-    const auto found = std::find_if(carriers_.begin() + first, carriers_.end(), [&](const Carrier& carrier) {
-      return carrier.part == placed.part;
-    });
+    if (!carriers_.empty() && carriers_.back().entity != placed.entity)
+      first = std::ssize(carriers_);
+    const auto found =
+        std::find_if(carriers_.begin() + first, carriers_.end(),
+                     [&](const Carrier& carrier) { return carrier.part == placed.part; });
     magnets.push_back(placed.magnet);
     magnets.back().body = static_cast<std::uint32_t>(found - carriers_.begin());
     if (found == carriers_.end()) {

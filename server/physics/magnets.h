@@ -57,8 +57,8 @@ class Magnets final : public Plugin {
   bool evaluated_ = false;  // wrenches_ are those at poses_ and currents_
 
   // Pairs for which a substep is divided.
-  std::uint64_t substeps_ = 0;  // without quiet ones
-  bool quiet_ = false;          // nothing had changed in the substep before
+  std::uint64_t substeps_ = 0;                          // without quiet ones
+  bool quiet_ = false;                                  // nothing had changed in the substep before
   double felt_inverse_mass_ = 0, inverse_inertia_ = 0;  // the largest of the carriers
   std::vector<magnetism::MagnetPair> near_, chosen_pairs_;
   std::vector<ClosePair> close_;  // of the last one of these

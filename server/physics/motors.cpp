@@ -36,7 +36,8 @@ dynamics::Servo servo_of(const CoordinateJoint& joint, const dynamics::Tree& tre
   servo.target_velocity = joint.target;
   if (joint.mode == scene::JointMode::position) {
     const double error = joint.target - tree.q[position_of(tree, joint.part)];
-    servo.target_velocity = approach(error, tree, work, servo.dof, time_step, left, impulse, is_factored);
+    servo.target_velocity =
+        approach(error, tree, work, servo.dof, time_step, left, impulse, is_factored);
   }
   servo.lower = -impulse;
   servo.upper = impulse;
@@ -49,7 +50,8 @@ std::array<dynamics::Servo, 3> servos_of(const Body& body, const std::array<doub
   std::array<dynamics::Servo, 3> servos;
   for (int i = 0; i < 3; ++i) {
     servos[i].tree = static_cast<int>(body.entity);
-    servos[i].upper = (i < 2 ? ground.limits.max_force : ground.limits.max_torque) * ground.time_step;
+    servos[i].upper =
+        (i < 2 ? ground.limits.max_force : ground.limits.max_torque) * ground.time_step;
     servos[i].lower = -servos[i].upper;
     servos[i].impulse = impulses[i];
   }

@@ -1,12 +1,12 @@
 #pragma once
 // Motors and limits of joints with a coordinate, and servos of robots on wheels.
 
+#include <cmath>
 #include <optional>
 
-#include "physics/stepping/system.h"
 #include "physics/bodies/bodies.h"
+#include "physics/stepping/system.h"
 #include "scene/scene.h"
-#include <cmath>
 
 namespace ziggurat::physics {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "physics/collision/sphere_grid.h"
 #include "physics/collision/overlap.h"
+#include "physics/collision/sphere_grid.h"
 
 namespace ziggurat::physics {
 

@@ -5,10 +5,10 @@
 #include <tuple>
 #include <utility>
 
-#include "physics/forces.h"
-#include "physics/magnets.h"
 #include "physics/contact_sensing.h"
 #include "physics/core.h"
+#include "physics/forces.h"
+#include "physics/magnets.h"
 #include "physics/wheels.h"
 
 namespace ziggurat::physics {

@@ -33,7 +33,7 @@ class Plugins {
   void tell_contacts(std::span<Body> bodies);
 
   std::vector<std::unique_ptr<Plugin>> plugins_;  // in the order in which they act
-  std::vector<LinkContact> before_, now_;             // ascending
+  std::vector<LinkContact> before_, now_;         // ascending
 };
 
 }  // namespace ziggurat::physics

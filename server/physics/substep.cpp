@@ -49,7 +49,8 @@ void defer_forces(dynamics::System& system, const TreeSet& active, DeferredForce
 }
 
 /// Applies the deferred forces, times `share`.
-void apply_deferred(dynamics::System& system, const TreeSet& active, const DeferredForces& deferred, double share) {
+void apply_deferred(dynamics::System& system, const TreeSet& active, const DeferredForces& deferred,
+                    double share) {
   auto push = deferred.wrenches.begin();
   for (const int number : active.trees) {
     for (std::size_t k = 0; k < system.trees[number].links.size(); ++k, ++push) {
@@ -90,7 +91,8 @@ void set_active(TreeSet& out, std::span<const int> trees, bool holds, std::size_
 }
 
 /// Recovers overlaps by several steps: each resolves four fifths, and rotates the bodies.
-void recover_overlaps(dynamics::System& system, ContactCache& contacts, std::span<const int> trees) {
+void recover_overlaps(dynamics::System& system, ContactCache& contacts,
+                      std::span<const int> trees) {
   constexpr int most_passes = 4;
   for (int pass = 0; pass < most_passes; ++pass) {
     const std::span<dynamics::ContactPoint> overlaps = contacts.find_new_overlaps(system);
@@ -111,11 +113,14 @@ bool wake_all_except(dynamics::System& system, const TreeSet& those) {
   return woke;
 }
 
-/// Counts a substep that trees took in many parts; of the first such trees it keeps the one of most links.
-void count_divided(const dynamics::System& system, std::span<const int> trees, int parts, Convergence& convergence) {
+/// Counts a substep that trees took in many parts; of the first such trees it keeps the one of most
+/// links.
+void count_divided(const dynamics::System& system, std::span<const int> trees, int parts,
+                   Convergence& convergence) {
   if (parts < many_parts || convergence.divided++ > 0) return;
   const auto links = [&](int tree) { return system.trees[tree].links.size(); };
-  convergence.divided_entity = static_cast<std::size_t>(*std::ranges::max_element(trees, {}, links));
+  convergence.divided_entity =
+      static_cast<std::size_t>(*std::ranges::max_element(trees, {}, links));
 }
 
 }  // namespace
@@ -132,7 +137,8 @@ void NewtonCore::prepare(std::span<Body> bodies, const SubstepPart& part) {
     if (std::exchange(entity, joint.entity) != joint.entity) is_factored = false;
     if (joint.mode != scene::JointMode::disabled) {
       const double impulse = joint.max_impulse / part.splits * part.force_share;
-      servos_.push_back(servo_of(joint, tree, work_, part.time_step, part.time_to_target, impulse, is_factored));
+      servos_.push_back(
+          servo_of(joint, tree, work_, part.time_step, part.time_to_target, impulse, is_factored));
       servos_.back().impulse *= part.force_share;
     }
     if (joint.limit) {
@@ -171,7 +177,8 @@ void NewtonCore::store_impulses(const SubstepPart& part) {
 /// Wakes disturbed sleepers. Then contacts of other sleepers are needed, too.
 /// @param contacts  in and out;  @param woke  whether something woke before
 /// @return          whether something has woken
-bool NewtonCore::wake_disturbed(const SubstepPart& part, std::span<dynamics::ContactPoint>& contacts, bool woke) {
+bool NewtonCore::wake_disturbed(const SubstepPart& part,
+                                std::span<dynamics::ContactPoint>& contacts, bool woke) {
   woke |= system_.wake_disturbed(part.time_step, contacts, servos_, part.trees());
   if (!woke || part.active) return woke;
   contacts = contacts_.add_resting_contacts();
@@ -191,7 +198,9 @@ void NewtonCore::step(const SubstepPart& part) {
   convergence_.islands += report.islands;
   convergence_.not_converged += report.not_converged;
   convergence_.worst = std::max(convergence_.worst, report.residual);
-  if (!part.is_part) count_divided(system_, std::span(&report.most_evaluated_tree, 1), report.most_evaluations, convergence_);
+  if (!part.is_part)
+    count_divided(system_, std::span(&report.most_evaluated_tree, 1), report.most_evaluations,
+                  convergence_);
 }
 
 void NewtonCore::substep(std::span<Body> bodies, double time_step, int splits, Plugin* stiff) {
@@ -204,7 +213,8 @@ void NewtonCore::substep(std::span<Body> bodies, double time_step, int splits, P
   std::span<dynamics::ContactPoint> contacts = contacts_.find_contacts(time_step);
   bool woke = false;
   if (stiff) {  // trees with parts must be awake
-    partition_.partition(stiff->stiff_pairs(), contacts_.near_pairs(), {}, colliders_.all, system_.trees);
+    partition_.partition(stiff->stiff_pairs(), contacts_.near_pairs(), {}, colliders_.all,
+                         system_.trees);
     woke = wake_all_except(system_, partition_.trees_with(0));
   }
   woke = wake_disturbed(whole, contacts, woke);
@@ -215,7 +225,8 @@ void NewtonCore::substep(std::span<Body> bodies, double time_step, int splits, P
     return step_divided_islands(bodies, whole);
   }
   if (woke) {  // trees that woke or were accelerated may touch others
-    partition_.partition(stiff->stiff_pairs(), contacts_.near_pairs(), contacts, colliders_.all, system_.trees);
+    partition_.partition(stiff->stiff_pairs(), contacts_.near_pairs(), contacts, colliders_.all,
+                         system_.trees);
   }
   synchronise_velocities(leapfrog_sync_, system_, work_, time_step, &partition_, contacts, servos_);
   whole.active = &partition_.trees_with(0);
@@ -223,7 +234,8 @@ void NewtonCore::substep(std::span<Body> bodies, double time_step, int splits, P
     const auto is_other = [&](const auto& item) { return !whole.active->contains[item.tree]; };
     std::erase_if(servos_, is_other);
     std::erase_if(limits_, is_other);
-    system_.wake_disturbed(time_step, contacts_.keep_contacts(*whole.active), servos_, whole.trees());
+    system_.wake_disturbed(time_step, contacts_.keep_contacts(*whole.active), servos_,
+                           whole.trees());
     step(whole);
     step_divided_islands(bodies, whole);
   }
@@ -237,25 +249,32 @@ void NewtonCore::substep(std::span<Body> bodies, double time_step, int splits, P
 /// further bodies.
 /// @param contacts  in and out;  @param woke  in: whether something woke; out: also by an impact
 /// @return          whether there are other contacts
-bool NewtonCore::predict_contacts(const SubstepPart& part, std::span<dynamics::ContactPoint>& contacts, bool& woke) {
+bool NewtonCore::predict_contacts(const SubstepPart& part,
+                                  std::span<dynamics::ContactPoint>& contacts, bool& woke) {
   constexpr int most_blows = 8;
   bool any = false;
-  for (int i = 0; i < most_blows && system_.predict_velocities(limits_, speculative_margin(colliders_, part.time_step), colliders_.fast_entities, prediction_); ++i) {
+  for (int i = 0; i < most_blows && system_.predict_velocities(
+                                        limits_, speculative_margin(colliders_, part.time_step),
+                                        colliders_.fast_entities, prediction_);
+       ++i) {
     const VelocityGuard at_the_end{system_, prediction_};
     swap_velocities(system_.trees, prediction_);
     if (!colliders_.add_predictions(prediction_.trees, system_, part.time_step)) break;
     any = true;
-    contacts = part.active ? contacts_.find_contacts(part.time_step, *part.active, part.force_share) : contacts_.find_contacts(part.time_step);
+    contacts = part.active ? contacts_.find_contacts(part.time_step, *part.active, part.force_share)
+                           : contacts_.find_contacts(part.time_step);
     woke = wake_disturbed(part, contacts, woke);
   }
   return any;
 }
 
-/// Advances some trees by a part of the substep, but those whose impacts end it. Trees that they may touch are awake.
+/// Advances some trees by a part of the substep, but those whose impacts end it. Trees that they
+/// may touch are awake.
 void NewtonCore::step_active(std::span<Body> bodies, const SubstepPart& part) {
   colliders_.update_poses(system_, part.time_step, *part.active);
   prepare(bodies, part);
-  std::span<dynamics::ContactPoint> contacts = contacts_.find_contacts(part.time_step, *part.active, part.force_share);
+  std::span<dynamics::ContactPoint> contacts =
+      contacts_.find_contacts(part.time_step, *part.active, part.force_share);
   bool woke = wake_disturbed(part, contacts, false);
   predict_contacts(part, contacts, woke);
   step(part);
@@ -266,21 +285,28 @@ void NewtonCore::step_part(std::span<Body> bodies, const SubstepPart& part) {
   step_active(bodies, part);
   std::swap(islands_with_impacts_, system_.islands_to_subdivide);
   for (const auto& [parts, impact_time, first, last] : islands_with_impacts_.islands) {
-    step_to_impacts(bodies, part, std::span(islands_with_impacts_.trees).subspan(first, last - first), impact_time);
+    step_to_impacts(bodies, part,
+                    std::span(islands_with_impacts_.trees).subspan(first, last - first),
+                    impact_time);
   }
 }
 
-/// Applies the impact law where a set of trees is now. Motors may give at once what they give in the part.
+/// Applies the impact law where a set of trees is now. Motors may give at once what they give in
+/// the part.
 void NewtonCore::apply_impacts(std::span<Body> bodies, const SubstepPart& part) {
-  const double near = 1e-3 * part.time_step;  // contacts are those within the reach of this time [s]
+  const double near =
+      1e-3 * part.time_step;  // contacts are those within the reach of this time [s]
   colliders_.update_poses(system_, near, *part.active);
   prepare(bodies, part);
-  system_.apply_impacts(contacts_.find_contacts(near, *part.active, part.force_share), servos_, limits_, part.trees());
+  system_.apply_impacts(contacts_.find_contacts(near, *part.active, part.force_share), servos_,
+                        limits_, part.trees());
   contacts_.add_impact_impulses();
 }
 
-/// Advances an island that a part of the substep left unchanged for its impacts. Wrenches act wholly at the beginning.
-void NewtonCore::step_to_impacts(std::span<Body> bodies, const SubstepPart& whole, std::span<const int> trees, double first_impact) {
+/// Advances an island that a part of the substep left unchanged for its impacts. Wrenches act
+/// wholly at the beginning.
+void NewtonCore::step_to_impacts(std::span<Body> bodies, const SubstepPart& whole,
+                                 std::span<const int> trees, double first_impact) {
   set_active(in_impacts_, trees, true, system_.trees.size());
   contacts_.begin_parts(in_impacts_);
   double wrench_time = whole.time_step;  // in which the wrenches that are left act [s]
@@ -324,7 +350,7 @@ void NewtonCore::step_to_impacts(std::span<Body> bodies, const SubstepPart& whol
 /// velocities agree to second order. Gravity and motors act alike, because friction against a force
 /// needs the same share of the normal load.
 void NewtonCore::step_leapfrog(std::span<Body> bodies, double time_step, int splits, int count,
-                                  Plugin& stiff) {
+                               Plugin& stiff) {
   const TreeSet& active = partition_.trees_with(count);
   SubstepPart part;
   part.active = &active;
@@ -355,7 +381,8 @@ void NewtonCore::step_leapfrog(std::span<Body> bodies, double time_step, int spl
 void NewtonCore::step_divided_islands(std::span<Body> bodies, const SubstepPart& whole) {
   std::swap(islands_to_subdivide_, system_.islands_to_subdivide);
   for (const auto& [parts, impact_time, first, last] : islands_to_subdivide_.islands) {
-    const std::span<const int> trees = std::span(islands_to_subdivide_.trees).subspan(first, last - first);
+    const std::span<const int> trees =
+        std::span(islands_to_subdivide_.trees).subspan(first, last - first);
     if (parts == 0) {
       step_to_impacts(bodies, whole, trees, impact_time);
       continue;

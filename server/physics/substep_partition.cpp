@@ -9,10 +9,11 @@ int SubstepPartition::partition(int tree) {
   return tree;
 }
 
-void SubstepPartition::partition(std::span<const StiffPair> pairs, std::span<const ColliderPair> near,
-                    std::span<const dynamics::ContactPoint> contacts,
-                    const std::vector<Collider>& colliders,
-                    const std::vector<dynamics::Tree>& trees) {
+void SubstepPartition::partition(std::span<const StiffPair> pairs,
+                                 std::span<const ColliderPair> near,
+                                 std::span<const dynamics::ContactPoint> contacts,
+                                 const std::vector<Collider>& colliders,
+                                 const std::vector<dynamics::Tree>& trees) {
   const int count = static_cast<int>(trees.size());
   leader_.resize(count);
   for (int i = 0; i < count; ++i) leader_[i] = i;

@@ -19,8 +19,8 @@ class SubstepPartition {
   /// @param near   colliders that may touch within the substep
   /// @param contacts  likewise, of trees that have just woken
   void partition(std::span<const StiffPair> pairs, std::span<const ColliderPair> near,
-            std::span<const dynamics::ContactPoint> contacts, const std::vector<Collider>& colliders,
-            const std::vector<dynamics::Tree>& trees);
+                 std::span<const dynamics::ContactPoint> contacts,
+                 const std::vector<Collider>& colliders, const std::vector<dynamics::Tree>& trees);
 
   bool is_divided(int tree) const { return parts_[tree] > 0; }
   /// Numbers of parts that occur: ascending, each once.
@@ -38,9 +38,9 @@ class SubstepPartition {
 /// Time of each tree's velocities relative to its positions.
 struct LeapfrogSync {
   enum VelocityTime : unsigned char {
-    unknown,  ///< it had a contact or a servo, or is new
-    half_step_before,     ///< of half a substep before
-    same_time      ///< of now
+    unknown,           ///< it had a contact or a servo, or is new
+    half_step_before,  ///< of half a substep before
+    same_time          ///< of now
   };
   std::vector<unsigned char> of_tree, is_constrained;  ///< the second is working memory
 };
@@ -49,7 +49,9 @@ struct LeapfrogSync {
 /// methods, which conserves its energy. Whole substeps apply forces at their beginning, so
 /// velocities are those of half a substep before. Leapfrog steps end with velocities of the same
 /// time. To be called before a substep, with its external wrenches.
-void synchronise_velocities(LeapfrogSync& lags, dynamics::System& system, dynamics::Workspace& work, double time_step, const SubstepPartition* division,
-                 std::span<const dynamics::ContactPoint> contacts, std::span<const dynamics::Servo> servos);
+void synchronise_velocities(LeapfrogSync& lags, dynamics::System& system, dynamics::Workspace& work,
+                            double time_step, const SubstepPartition* division,
+                            std::span<const dynamics::ContactPoint> contacts,
+                            std::span<const dynamics::Servo> servos);
 
 }  // namespace ziggurat::physics

@@ -6,10 +6,10 @@
 
 #include "physics/archive.h"
 #include "physics/bodies/convert.h"
-#include "physics/magnets.h"
 #include "physics/core.h"
-#include "physics/plugins.h"
 #include "physics/forces.h"
+#include "physics/magnets.h"
+#include "physics/plugins.h"
 
 namespace ziggurat::physics {
 
@@ -47,7 +47,7 @@ struct World::Parts {
   double length;            // of an internal substep [s]
   std::size_t stepped = 0;  // so many bodies have been through a step; the rest is as placed
   std::size_t link_count = 0, magnet_count = 0;
-  std::vector<Twist> motions;    // memory of read(), kept so that a tick does not allocate it
+  std::vector<Twist> motions;         // memory of read(), kept so that a tick does not allocate it
   std::vector<LinkContact> contacts;  // the same of list_contacts()
 
   std::vector<Body> bodies;
@@ -151,7 +151,8 @@ void set_pushes(World& world, std::span<const world::Push> pushes) {
   world.parts_->pushes->set(std::move(list));
 }
 
-void set_joint(World& world, std::size_t entity, JointIndex joint, double position, double velocity) {
+void set_joint(World& world, std::size_t entity, JointIndex joint, double position,
+               double velocity) {
   World::Parts& p = *world.parts_;
   set_joint(p.core, joint, position, velocity);
   p.plugins.move(p.bodies[entity]);
@@ -173,7 +174,9 @@ LinkTouch World::take_touch(std::size_t entity, std::size_t link) {
 void World::list_contacts(std::vector<world::Contact>& to) const {
   Parts& p = *parts_;
   p.core.contacts(p.contacts);
-  const auto link_of = [&](const ContactSide& side) { return p.bodies[side.entity].first_link + side.link; };
+  const auto link_of = [&](const ContactSide& side) {
+    return p.bodies[side.entity].first_link + side.link;
+  };
   to.clear();
   for (const LinkContact& contact : p.contacts) {
     world::Contact& entry = to.emplace_back();

@@ -23,7 +23,7 @@ struct Overview {
   std::uint64_t states = 0;    ///< that were published
   std::uint64_t epochs = 0;    ///< how often the world began
   std::uint64_t last_tick = 0;
-  double length = 0;                ///< from the first message to the last, simulated [s]
+  double length = 0;               ///< from the first message to the last, simulated [s]
   std::uint64_t uncompressed = 0;  ///< all chunks [bytes]
 };
 

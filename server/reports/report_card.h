@@ -65,7 +65,8 @@ std::string to_text(const network::Injection& injection);
 /// "hold:18, drop:50:3", or "wait".
 std::string to_text(const std::vector<scene::DeadlinePolicy>& deadlines);
 /// Measured value of a condition: "p99<20ms: 14 ms".
-std::string to_text(const ReportCard& card, const ControllerCard& controller, const Condition& condition);
+std::string to_text(const ReportCard& card, const ControllerCard& controller,
+                    const Condition& condition);
 
 /// Several lines without line feed at the end.
 std::string to_text(const ReportCard& card);

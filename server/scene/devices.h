@@ -279,7 +279,8 @@ struct ControllerDevices {
   std::optional<CamerasUse> cameras;
   std::vector<Imu> imus;
   std::vector<ContactSensor> contact_sensors;
-  std::vector<std::string> to_come;  ///< elements of devices that have no readings and do nothing yet
+  std::vector<std::string>
+      to_come;  ///< elements of devices that have no readings and do nothing yet
   /// About what those that are fixed to an anchor take in each robot [bytes].
   std::size_t mounted_memory = 0;
 };

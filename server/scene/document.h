@@ -1,6 +1,6 @@
 #pragma once
-// A scene file as XML: elements and attributes with their line and column, and what the command line
-// set in it.
+// A scene file as XML: elements and attributes with their line and column, and what the command
+// line set in it.
 
 #include <cstddef>
 #include <pugixml.hpp>
@@ -22,7 +22,7 @@ struct ReadBudget {
   std::size_t bytes = 0;
   std::size_t tags = 0;        ///< opening and closing ones
   std::size_t attributes = 0;  ///< of each element
-  bool is_spent = false;   ///< a value with parameters was too large
+  bool is_spent = false;       ///< a value with parameters was too large
 };
 
 /// The budget of a scene of at most so many bytes.
@@ -33,7 +33,8 @@ class Document {
  public:
   /// Parses; what is wrong with the text itself (not UTF-8, malformed, …) is a fault.
   /// @param file  its index in Scene::files
-  /// @param budget  at least the text's size; the text, settings and values of parameters are taken from it; must
+  /// @param budget  at least the text's size; the text, settings and values of parameters are taken
+  /// from it; must
   ///     outlive this
   /// @param parameters  what ${name} stands for; must outlive this; null: none
   Document(std::string text, std::size_t file, bool lenient, ReadBudget& budget, Report& report,

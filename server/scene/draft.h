@@ -71,7 +71,7 @@ struct Model {
   std::unordered_map<std::string, std::size_t> anchors;
   std::optional<ControllerChoice> controller;
   std::vector<PendingFault> missing_parts;
-  std::size_t size = 0;  ///< as written [bytes]
+  std::size_t size = 0;            ///< as written [bytes]
   std::vector<std::string> names;  ///< of the attributes and children that its element may have
 };
 

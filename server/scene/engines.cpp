@@ -13,7 +13,7 @@ namespace {
 constexpr unsigned most_iterations = 1'000'000;  // substeps of a tick
 constexpr unsigned many_iterations = 10'000;     // beyond which a scene is doubted
 constexpr double strong_gravity = 1000;          // likewise [m/s^2]
-constexpr double usual_gravity = 10.0;  // [m/s^2], the dialect's default of `g`
+constexpr double usual_gravity = 10.0;           // [m/s^2], the dialect's default of `g`
 constexpr std::array<std::string_view, 3> engine_names{"dynamics3d", "dynamics2d", "pointmass3d"};
 
 void read_floor(Draft& draft, Element floor) {
@@ -27,12 +27,18 @@ void read_gravity(Draft& draft, Element gravity) {
   const double g = gravity.optional("g", number, usual_gravity);
   draft.scene.physics.gravity = g;
   if (std::abs(g) > strong_gravity) {
-    draft.report.warn(gravity.where("g"), "strong gravity",
-                      gravity.sentence("g", "is stronger than 1000 m/s^2, a hundred times what the Earth's is; write g=\"9.8\""));
+    draft.report.warn(
+        gravity.where("g"), "strong gravity",
+        gravity.sentence(
+            "g",
+            "is stronger than 1000 m/s^2, a hundred times what the Earth's is; write g=\"9.8\""));
   } else if (g < 0) {
-    draft.report.warn(gravity.where("g"), "gravity",
-                      gravity.sentence("g", fmt::format("lets everything fall up: g is the acceleration downwards; "
-                                                        "write g=\"{:.6g}\"", -g)));
+    draft.report.warn(
+        gravity.where("g"), "gravity",
+        gravity.sentence("g",
+                         fmt::format("lets everything fall up: g is the acceleration downwards; "
+                                     "write g=\"{:.6g}\"",
+                                     -g)));
   }
   gravity.done();
 }
@@ -157,8 +163,10 @@ void read_engines(Draft& draft, Element& root) {
     const std::string id = engine.required("id", identifier);
     const unsigned iterations = engine.optional("iterations", Whole{1, most_iterations}, 10);
     if (iterations > many_iterations) {
-      draft.report.warn(engine.where("iterations"), "iterations",
-                        engine.sentence("iterations", "are so many substeps of each tick, which takes long; write 10 to 1000"));
+      draft.report.warn(
+          engine.where("iterations"), "iterations",
+          engine.sentence("iterations",
+                          "are so many substeps of each tick, which takes long; write 10 to 1000"));
     }
     take_id(engine, ids, id, "engine");
     if (three && has_dynamics3d) {

@@ -1,6 +1,6 @@
 #pragma once
-// Old words of the dialect: attributes, elements and values that other versions of it have, and what they
-// are here. None of them is a fault; each is a notice.
+// Old words of the dialect: attributes, elements and values that other versions of it have, and
+// what they are here. None of them is a fault; each is a notice.
 
 #include <string>
 #include <string_view>

@@ -1,6 +1,6 @@
 #pragma once
-// Parameters of a scene: `<parameters gain="0.5"/>` declares them with their usual values, `--param`
-// gives others, and `${gain}` in any attribute stands for the value.
+// Parameters of a scene: `<parameters gain="0.5"/>` declares them with their usual values,
+// `--param` gives others, and `${gain}` in any attribute stands for the value.
 
 #include <cstddef>
 #include <string>

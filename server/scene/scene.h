@@ -181,8 +181,8 @@ struct Physics {
   std::string id;
   unsigned iterations = 10;  ///< substeps per tick, >= 1
   Clock clock = Clock::nominal;
-  /// Whether earlier versions moved it by a second core: by solver="sweeps", or under beta50 without
-  /// a solver. A recording of theirs can't be repeated.
+  /// Whether earlier versions moved it by a second core: by solver="sweeps", or under beta50
+  /// without a solver. A recording of theirs can't be repeated.
   bool had_second_core = false;
   std::optional<double> max_substep;  ///< [s]: longer substeps are split inside
   std::optional<Floor> floor;

@@ -28,7 +28,7 @@ struct Simulation::Parts {
     return {layout, state, observations, commands, physics, rays, *index, all};
   }
   void list_contacts(bool wanted);
-  void look_around();  // rays and index take the poses of the state
+  void look_around();          // rays and index take the poses of the state
   bool looks_are_old = false;  // they have not since something was moved, added or removed
   /// @throws std::runtime_error that names the first entity whose state is not finite then
   void step();

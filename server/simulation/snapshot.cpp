@@ -23,11 +23,16 @@ bool same_entities(const History& one, const History& other) {
 std::optional<std::string> fault_of_snapshot_name(std::string_view name) {
   constexpr std::size_t longest = 64;
   const auto is_allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '.';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+           c == '_' || c == '.';
   };
-  const bool is_name = !name.empty() && name.size() <= longest && name[0] != '.' && std::ranges::all_of(name, is_allowed);
+  const bool is_name = !name.empty() && name.size() <= longest && name[0] != '.' &&
+                       std::ranges::all_of(name, is_allowed);
   if (is_name) return std::nullopt;
-  return fmt::format("The name of a snapshot has 1 to {} letters, digits, '-', '_' and '.', and does not begin with '.'", longest);
+  return fmt::format(
+      "The name of a snapshot has 1 to {} letters, digits, '-', '_' and '.', and does not begin "
+      "with '.'",
+      longest);
 }
 
 std::size_t common_robots(const History& now, const History& then, const world::Layout& layout) {
@@ -79,7 +84,7 @@ Snapshot Simulation::snapshot() const {
 }
 
 void Simulation::Parts::repeat_edit(const scene::Scene& scene, const WorldEdit& edit,
-                                   world::Layout& grown) {
+                                    world::Layout& grown) {
   const std::size_t entities = grown.entities.size();
   const bool spawns = edit.kind == WorldEdit::Kind::spawn;
   if (spawns ? edit.entity != entities || !edit.spawned
@@ -137,7 +142,8 @@ void Simulation::restore(const scene::Scene& scene, const Snapshot& snapshot,
   }
   world::Layout before = *layout_;
   try {
-    auto fresh = std::make_unique<Parts>(scene, Options{seed.value_or(snapshot.seed), {}}, *layout_);
+    auto fresh =
+        std::make_unique<Parts>(scene, Options{seed.value_or(snapshot.seed), {}}, *layout_);
     fresh->repeat(scene, snapshot, *layout_);
     if (world::hash(fresh->state, fresh->observations) != snapshot.hash) {
       throw SnapshotError("The snapshot's state is not the one that its hash is of.");

@@ -1,5 +1,5 @@
-// A snapshot as bytes: a line for people, what it belongs to, what was done to the world, its state,
-// and a checksum.
+// A snapshot as bytes: a line for people, what it belongs to, what was done to the world, its
+// state, and a checksum.
 
 #include <fmt/format.h>
 
@@ -34,15 +34,18 @@ void archive_content(math::Archive& archive, Snapshot& snapshot) {
   archive.require(snapshot.seed != 0, "is 0");
   archive("tick", snapshot.tick);
   archive("hash", snapshot.hash);
-  archive.list("acts", snapshot.history.edits, [&](WorldEdit& edit) { archive_edit(archive, edit); });
+  archive.list("acts", snapshot.history.edits,
+               [&](WorldEdit& edit) { archive_edit(archive, edit); });
   archive.list("state", snapshot.state);
 }
 
 void check_order(const Snapshot& snapshot) {
-  const auto spawned = std::ranges::count(snapshot.history.edits, WorldEdit::Kind::spawn, &WorldEdit::kind);
+  const auto spawned =
+      std::ranges::count(snapshot.history.edits, WorldEdit::Kind::spawn, &WorldEdit::kind);
   if (static_cast<std::size_t>(spawned) > most_spawned) {
-    throw SnapshotError(fmt::format("In the snapshot {} entities have been spawned; at most {} may be.", spawned,
-                                    most_spawned));
+    throw SnapshotError(
+        fmt::format("In the snapshot {} entities have been spawned; at most {} may be.", spawned,
+                    most_spawned));
   }
   std::uint64_t tick = 0;
   for (const WorldEdit& edit : snapshot.history.edits) {
@@ -98,8 +101,9 @@ Snapshot from_bytes(std::span<const std::byte> bytes, const Origin& origin,
     archive("scene_hash", from.scene_hash);
     archive("build", from.build);
     if (!origin.scene_hash.empty() && from.scene_hash != origin.scene_hash) {
-      throw SnapshotError(fmt::format("The snapshot is of another scene: its hash is {}, this one's {}.",
-                                      from.scene_hash, origin.scene_hash));
+      throw SnapshotError(
+          fmt::format("The snapshot is of another scene: its hash is {}, this one's {}.",
+                      from.scene_hash, origin.scene_hash));
     }
     if (!origin.build.empty() && from.build != origin.build) {
       throw SnapshotError(fmt::format("The snapshot was made by another build: {}; this is {}.",

@@ -57,8 +57,9 @@ class Callers {
 
 enum class Reply { given, later };
 
-/// Answers the calls that wait, in order of arrival, and removes those that have an answer, or that no session waits for any
-/// more. Requests of one connection are answered in their order; different connections do not wait for each other.
+/// Answers the calls that wait, in order of arrival, and removes those that have an answer, or that
+/// no session waits for any more. Requests of one connection are answered in their order; different
+/// connections do not wait for each other.
 void answer_waiting(std::vector<network::Call>& waiting, const Callers& callers,
                     const std::function<Reply(const network::Call&)>& answer);
 

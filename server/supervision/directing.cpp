@@ -68,13 +68,14 @@ std::variant<std::size_t, wire::Fault> pushed_link(const world::Layout& layout, 
 
 /// Checks the number of values for the devices of a kind.
 /// @param is_set_by_robot  its controller sets them
-std::optional<wire::Fault> check_values(std::size_t given, std::size_t devices, bool is_set_by_robot,
-                                        const wire::Show& show, const char* field) {
+std::optional<wire::Fault> check_values(std::size_t given, std::size_t devices,
+                                        bool is_set_by_robot, const wire::Show& show,
+                                        const char* field) {
   if (given == 0) return std::nullopt;
   if (given != devices) {
     return make_fault(ErrorCode::bad_value, fmt::format("show.{}", field),
-                      fmt::format("'{}' has {} of these devices; {} values were given.", show.entity,
-                                  devices, given));
+                      fmt::format("'{}' has {} of these devices; {} values were given.",
+                                  show.entity, devices, given));
   }
   if (!is_set_by_robot) return std::nullopt;
   return make_fault(ErrorCode::not_yours, fmt::format("show.{}", field),
@@ -85,14 +86,15 @@ std::optional<wire::Fault> check_show(const world::Layout& layout, std::size_t i
                                       const wire::Show& show) {
   const world::EntityLayout& entity = layout.entities[index];
   // Robots ascend by entity.
-  const auto robot = std::ranges::lower_bound(layout.robots, index, {}, &world::RobotLayout::entity);
+  const auto robot =
+      std::ranges::lower_bound(layout.robots, index, {}, &world::RobotLayout::entity);
   const bool is_robot = robot != layout.robots.end() && robot->entity == index;
   auto fault = check_values(show.led_colors.size(), entity.leds.count,
                             is_robot && robot->leds.count > 0, show, "led_colors");
   if (!fault) {
-    fault = check_values(show.directional_led_colors.size(), entity.directional_leds.count,
-                         is_robot && robot->directional_leds.count > 0, show,
-                         "directional_led_colors");
+    fault =
+        check_values(show.directional_led_colors.size(), entity.directional_leds.count,
+                     is_robot && robot->directional_leds.count > 0, show, "directional_led_colors");
   }
   if (!fault) {
     fault = check_values(show.tag_payloads.size(), entity.tags.count,
@@ -168,12 +170,16 @@ wire::Fault at(std::size_t act, wire::Fault fault) {
 
 Directing::Directing(World& world, network::Server& server, Callers& callers,
                      Population& population, reports::Console& console)
-    : world_(world), directors_(server), callers_(callers), population_(population), console_(console) {
+    : world_(world),
+      directors_(server),
+      callers_(callers),
+      population_(population),
+      console_(console) {
   directors_.check_by([this](const wire::Direction& direction) { return check(direction); });
 }
 
-/// All acts are on entities that are there at the tick which is answered; those that the Direction itself
-/// has removed before are not.
+/// All acts are on entities that are there at the tick which is answered; those that the Direction
+/// itself has removed before are not.
 std::optional<wire::Fault> Directing::check(const wire::Direction& direction) const {
   Names names(world_.simulation);
   Asked asked;
@@ -227,7 +233,9 @@ std::optional<wire::Fault> Directing::apply(const wire::DirectorAct& act, Names&
     apply_show(simulation.layout().entities[*entity], *show, simulation.commands());
   } else if (const auto* push = std::get_if<wire::Push>(&act)) {
     const auto link = std::get<std::size_t>(pushed_link(simulation.layout(), *entity, *push));
-    const auto vector_of = [](const std::array<double, 3>& v) { return math::Vector3(v[0], v[1], v[2]); };
+    const auto vector_of = [](const std::array<double, 3>& v) {
+      return math::Vector3(v[0], v[1], v[2]);
+    };
     simulation.commands().pushes.push_back({link, vector_of(push->force), vector_of(push->torque)});
   } else if (is_removal(act)) {
     auto fault = population_.remove(id);
@@ -260,10 +268,12 @@ void Directing::note_left_out(const std::string& director, const std::string& wh
   ++untold_;
   const auto now = std::chrono::steady_clock::now();
   if (now < next_notice_) return;
-  const auto others = untold_ == 1 ? std::string() : fmt::format(" ({} acts were left out since the last line)", untold_);
+  const auto others = untold_ == 1
+                          ? std::string()
+                          : fmt::format(" ({} acts were left out since the last line)", untold_);
   const std::string_view sentence(why.data(), why.find_last_not_of('\n') + 1);
-  console_.notice(fmt::format("director '{}', tick {}: {}{}", director, world_.simulation.state().tick,
-                              sentence, others));
+  console_.notice(fmt::format("director '{}', tick {}: {}{}", director,
+                              world_.simulation.state().tick, sentence, others));
   untold_ = 0;
   next_notice_ = now + between_notices;
 }

@@ -23,9 +23,9 @@ class Directing {
 
   /// The tick is complete: a director ends the run with it. Of several the first by id counts.
   std::optional<reports::Summary::Result> result() const;
-  /// The tick is complete, and not the last: does all acts, director by director in the order of their ids.
-  /// One that can't be done, because another has changed the world before, is left out, and its director is
-  /// told.
+  /// The tick is complete, and not the last: does all acts, director by director in the order of
+  /// their ids. One that can't be done, because another has changed the world before, is left out,
+  /// and its director is told.
   void act();
   /// A director subscribed to contacts.
   bool wants_contacts() const { return directors_.wants_contacts(); }

@@ -24,8 +24,7 @@ std::vector<std::string> clients_without_restore(network::Server& server) {
     const bool is_known = std::ranges::find(clients, robot.holder) != clients.end();
     if (!robot.can_restore && !is_known) clients.push_back(robot.holder);
   }
-  for (const network::DirectorStatus& director :
-       network::ServerDirectors(server).status()) {
+  for (const network::DirectorStatus& director : network::ServerDirectors(server).status()) {
     if (!director.can_restore) clients.push_back(director.client);
   }
   return clients;
@@ -63,7 +62,8 @@ Reply Supervision::restore(const network::Call& call) {
                                        "clients that set can_restore in their Hello.",
                                        list_of(clients))));
   }
-  auto found = snapshots_.find(call.request.text, world_, opener(population_.allowed(), world_.path));
+  auto found =
+      snapshots_.find(call.request.text, world_, opener(population_.allowed(), world_.path));
   if (auto* fault = std::get_if<wire::Fault>(&found)) return fail(call, std::move(*fault));
   restoring_ = std::get<FoundSnapshot>(std::move(found));
   resetting_ = call;
@@ -104,11 +104,15 @@ bool Supervision::restart() {
                                        : simulation.layout().robots.size());
   is_gathered_ = false;  // until every robot has its controller again
   end_steps();
-  answer_waiting(waiting_, callers_, [this](const network::Call& call) {  // also those that waited for their turn
-    if (call.request.kind != wire::Request::Kind::step) return Reply::later;
-    return fail(call, make_fault(ErrorCode::out_of_state, {},
-                                 "A reset or restore has ended these steps; send a Step again for others."));
-  });
+  answer_waiting(
+      waiting_, callers_,
+      [this](const network::Call& call) {  // also those that waited for their turn
+        if (call.request.kind != wire::Request::Kind::step) return Reply::later;
+        return fail(
+            call,
+            make_fault(ErrorCode::out_of_state, {},
+                       "A reset or restore has ended these steps; send a Step again for others."));
+      });
   done(*resetting_);
   resetting_.reset();
   restoring_.reset();

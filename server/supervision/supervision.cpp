@@ -68,7 +68,8 @@ std::optional<wire::Fault> fault_of_reason(const std::string& reason) {
 wire::Fault held_up(const char* what) {
   return wire::make_fault(
       ErrorCode::out_of_state, "held_up",
-      fmt::format("The world waits for a session of the same program, which waits for this {0} instead: it would take "
+      fmt::format("The world waits for a session of the same program, which waits for this {0} "
+                  "instead: it would take "
                   "forever. Answer the tick first (next()), or {0} from another thread or program.",
                   what));
 }
@@ -129,7 +130,8 @@ Reply Supervision::handle(const network::Call& call) {
       auto overlapped = population_.overlapped(call.request);
       if (auto* fault = std::get_if<wire::Fault>(&overlapped)) return fail(call, std::move(*fault));
       server_.answer(call, [&](wire::Outbox& outbox) {
-        outbox.response(call.request.id, world_.simulation.state().tick, std::get<std::string>(overlapped));
+        outbox.response(call.request.id, world_.simulation.state().tick,
+                        std::get<std::string>(overlapped));
       });
       return Reply::given;
     }
@@ -153,7 +155,8 @@ Reply Supervision::handle(const network::Call& call) {
 
 Reply Supervision::pause(const network::Call& call) {
   const bool waits = !is_halted() && is_gathered_;
-  if (waits && network::need_of(server_, call.request.held_up) == network::Need::answer) return fail(call, held_up("pause"));
+  if (waits && network::need_of(server_, call.request.held_up) == network::Need::answer)
+    return fail(call, held_up("pause"));
   const bool was_asked = server_.pause() != network::Pause::none || steps_left_ > 0;
   steps_left_ = 0;
   server_.set_paused(true);
@@ -197,7 +200,8 @@ Reply Supervision::step(const network::Call& call) {
     return fail(call, wire::make_fault(ErrorCode::bad_value, "step.ticks",
                                        "A step has at least one tick."));
   }
-  if (server_.pause() != network::Pause::none && network::need_of(server_, call.request.held_up) != network::Need::nothing) {
+  if (server_.pause() != network::Pause::none &&
+      network::need_of(server_, call.request.held_up) != network::Need::nothing) {
     return fail(call, held_up("step"));
   }
   if (stepping_) return Reply::later;
@@ -246,7 +250,9 @@ Reply Supervision::read(const network::Call& call) {
 Reply Supervision::move(const network::Call& call) {
   const auto entity = entity_named(world_.simulation, call.request.text);
   const bool is_move = call.request.kind == Kind::move;
-  if (!entity) return fail(call, no_entity(is_move ? "move.entity" : "set_joint.entity", call.request.text, &world_.simulation));
+  if (!entity)
+    return fail(call, no_entity(is_move ? "move.entity" : "set_joint.entity", call.request.text,
+                                &world_.simulation));
   auto fault = supervision::move(world_.simulation, callers_, *entity, call.request);
   return fault ? fail(call, std::move(*fault)) : done(call);
 }

@@ -35,11 +35,12 @@ class Supervision {
   using clock = std::chrono::steady_clock;
 
   struct Settings {
-    std::uint64_t last_tick = 0;       ///< 0: until stopped
+    std::uint64_t last_tick = 0;  ///< 0: until stopped
     bool is_hardware_in_the_loop = false;
     std::string snapshot_folder;  ///< where snapshots are written to and read from; empty: nowhere
     std::string build;            ///< of this program
-    std::function<void()> write_outputs = {};  ///< all of them, before somebody is told that the world is halted; may be empty
+    std::function<void()> write_outputs =
+        {};  ///< all of them, before somebody is told that the world is halted; may be empty
   };
 
   /// Everything but the settings must outlive this.
@@ -59,7 +60,8 @@ class Supervision {
   /// A supervisor asks for a reset or a restore: the caller calls restart() between two ticks.
   bool requests_restart() const { return resetting_.has_value(); }
   /// Puts the world back to its start or to a snapshot, and tells all of it.
-  /// @return  false if that can't be; then the supervisor gets an error, and the world stays as it is
+  /// @return  false if that can't be; then the supervisor gets an error, and the world stays as it
+  /// is
   bool restart();
 
   /// A supervisor ends the run. The reason is empty if the end was not planned.

@@ -26,7 +26,8 @@ struct World {
   /// Puts the world back. @throws std::runtime_error; then nothing changes
   void restore(const simulation::Snapshot& snapshot);
 
-  /// Puts this world into the state of a world of a scene with other values, with this seed from then on.
+  /// Puts this world into the state of a world of a scene with other values, with this seed from
+  /// then on.
   /// @throws simulation::SnapshotError; then nothing changes
   void branch(const simulation::Snapshot& snapshot, std::uint64_t new_seed);
 

@@ -46,7 +46,8 @@ struct SnapshotTaken {
 struct Paused {};
 struct Resumed {};
 
-using WorldChange = std::variant<Moved, JointSet, Spawned, Removed, WasReset, Restored, SnapshotTaken, Paused, Resumed>;
+using WorldChange = std::variant<Moved, JointSet, Spawned, Removed, WasReset, Restored,
+                                 SnapshotTaken, Paused, Resumed>;
 using TellWorldChange = std::function<void(const WorldChange&)>;
 
 }  // namespace ziggurat::supervision

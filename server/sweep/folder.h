@@ -4,9 +4,9 @@
 //   experiment.json      definition of the sweep (definition.h);
 //   sweep.sqlite         results of runs on this machine (ledger.h);
 //   results.csv          all results, a row per run;
-//   runs/000017/         log.txt and summary.json of a run that runs or failed, run.mcap if recorded;
-//   tasks/0003.sqlite    results of one task of a cluster;
-//   cluster/             files submitted to the cluster.
+//   runs/000017/         log.txt and summary.json of a run that runs or failed, run.mcap if
+//   recorded; tasks/0003.sqlite    results of one task of a cluster; cluster/             files
+//   submitted to the cluster.
 
 #include <chrono>
 #include <cstddef>
@@ -21,7 +21,8 @@ namespace ziggurat::sweep {
 
 class Folder {
  public:
-  explicit Folder(const std::string& path) : path_(std::filesystem::absolute(path).lexically_normal()) {}
+  explicit Folder(const std::string& path)
+      : path_(std::filesystem::absolute(path).lexically_normal()) {}
 
   /// The sweep that the folder belongs to. @throws text::UsageError if it belongs to none
   Definition definition() const;

@@ -15,8 +15,8 @@ namespace ziggurat::sweep {
 struct Estimate {
   std::size_t count = 0;  ///< of the values
   double mean = std::numeric_limits<double>::quiet_NaN();
-  /// Half of the confidence interval of the mean, by Student's t for unknown variance (Gosset 1908):
-  /// t · s / √n. Not a number for fewer than two values.
+  /// Half of the confidence interval of the mean, by Student's t for unknown variance (Gosset
+  /// 1908): t · s / √n. Not a number for fewer than two values.
   double half_width = std::numeric_limits<double>::quiet_NaN();
 };
 /// @param confidence  in (0, 1): 0.95

@@ -26,7 +26,8 @@ std::string gnuplot_program(const Experiment& experiment, std::span<const Result
 std::filesystem::path program_beside(const std::filesystem::path& svg);
 
 /// Writes the picture, and the program for gnuplot beside it.
-/// @throws text::UsageError if gnuplot is missing or fails, or a file of another origin stands where the program would
+/// @throws text::UsageError if gnuplot is missing or fails, or a file of another origin stands
+/// where the program would
 void draw(const Experiment& experiment, std::span<const Result> results, const Plot& plot,
           const std::filesystem::path& svg);
 

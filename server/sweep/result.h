@@ -13,8 +13,8 @@ namespace ziggurat::sweep {
 
 enum class Outcome {
   finished,
-  failed,    ///< it ended with another exit code than 0, or without a summary
-  timed_out, ///< it took more wall time than `--timeout` allows
+  failed,     ///< it ended with another exit code than 0, or without a summary
+  timed_out,  ///< it took more wall time than `--timeout` allows
 };
 const char* to_text(Outcome outcome);
 /// Nothing for another text.

@@ -62,7 +62,8 @@ void take_problems(std::vector<scene::Problem> problems, std::vector<scene::Prob
     const bool is_known = std::ranges::any_of(warnings, [&](const auto& known) {
       return scene::to_string(known) == scene::to_string(each);
     });
-    if (each.severity == scene::Problem::Severity::warning && !is_known) warnings.push_back(std::move(each));
+    if (each.severity == scene::Problem::Severity::warning && !is_known)
+      warnings.push_back(std::move(each));
   }
 }
 
@@ -82,8 +83,8 @@ SceneFiles read_scene(const Experiment& experiment) {
   std::vector<fs::path> scripts;
   for (std::size_t i = 0; i < most_values; ++i) {
     scene::ReadOptions options;
-    options.lenient = std::ranges::find(experiment.run_arguments, "--lenient") !=
-                      experiment.run_arguments.end();
+    options.lenient =
+        std::ranges::find(experiment.run_arguments, "--lenient") != experiment.run_arguments.end();
     options.variation = variation(experiment, i);
     options.open = keep;
     auto scene = scene::read_file(experiment.scene, options);

@@ -23,7 +23,8 @@ std::string slurm_script(const Folder& folder, const std::vector<std::size_t>& t
                          const std::vector<std::string>& command, unsigned jobs,
                          const SlurmOptions& options);
 
-/// @throws text::UsageError if a job of the folder is still queued: its tasks and other runs would do the same
+/// @throws text::UsageError if a job of the folder is still queued: its tasks and other runs would
+/// do the same
 void refuse_if_queued(const Folder& folder);
 
 /// Writes the script to the folder and submits it. @returns the job's id

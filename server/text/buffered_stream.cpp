@@ -13,7 +13,8 @@
 
 namespace ziggurat::text {
 
-BufferedStream::BufferedStream(int descriptor, std::size_t most) : descriptor_(descriptor), most_(most) {
+BufferedStream::BufferedStream(int descriptor, std::size_t most)
+    : descriptor_(descriptor), most_(most) {
   struct stat status {};
   const bool is_known = ::fstat(descriptor, &status) == 0;
   is_file_ = !is_known || S_ISREG(status.st_mode);

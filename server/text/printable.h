@@ -20,7 +20,8 @@ std::string printable_json(std::string_view json);
 /// @param most  bytes of the result
 std::string printable_part(std::string_view text, std::size_t most = 4096);
 
-/// The text with four spaces before each line but the first: none of them looks like one of the program's own.
+/// The text with four spaces before each line but the first: none of them looks like one of the
+/// program's own.
 std::string indented(std::string_view text);
 
 bool is_utf8(std::string_view text);

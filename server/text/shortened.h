@@ -7,7 +7,8 @@
 
 namespace ziggurat::text {
 
-/// The text's beginning with `…` behind it, if it has more than `most` bytes; of UTF-8 whole characters.
+/// The text's beginning with `…` behind it, if it has more than `most` bytes; of UTF-8 whole
+/// characters.
 std::string shortened(std::string_view text, std::size_t most = 100);
 
 /// Shortens a whole message that quotes other texts. Words of more than 160 bytes, and a message of

@@ -15,9 +15,9 @@ std::string random_token();
 void check_token(const std::string& token);
 
 struct Rules {
-  std::string host;              ///< of the option: a name that clients may call the port
-  bool any_host = false;         ///< any name
-  bool look_needs_token = false; ///< also programs and pages of this server need it
+  std::string host;               ///< of the option: a name that clients may call the port
+  bool any_host = false;          ///< any name
+  bool look_needs_token = false;  ///< also programs and pages of this server need it
   std::string token;
 };
 

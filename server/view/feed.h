@@ -30,8 +30,8 @@ class Feed {
 
   // On the run's thread. None of them waits until something is encoded.
 
-  /// The world began, or entities came or went. Ticks of before that still wait are not shown: show()
-  /// follows, with all that is wanted.
+  /// The world began, or entities came or went. Ticks of before that still wait are not shown:
+  /// show() follows, with all that is wanted.
   void populate(const channels::Population& population);
   void set_layers(const channels::Layers& layers);
   /// If too many wait, the oldest is dropped; what must arrive of it goes to the next.
@@ -60,7 +60,7 @@ class Feed {
 
   std::mutex mutex_;  // of all up to the next remark
   std::deque<Item> waiting_;
-  std::size_t ticks_ = 0, events_ = 0;  // that wait; without answers
+  std::size_t ticks_ = 0, events_ = 0;                               // that wait; without answers
   std::shared_ptr<const channels::PopulationCopy> next_population_;  // null: none waits
   std::optional<channels::Layers> next_layers_;
   std::vector<std::unique_ptr<channels::TickCopy>> free_;  // whose memory is used again

@@ -37,7 +37,8 @@ std::string check(const Parameter& parameter) {
 }
 
 /// Parameters of these names; all if there is none.
-std::vector<Parameter> values_of(std::span<const std::string> names, const std::vector<Parameter>& all) {
+std::vector<Parameter> values_of(std::span<const std::string> names,
+                                 const std::vector<Parameter>& all) {
   if (names.empty()) return all;
   std::vector<Parameter> values;
   for (const Parameter& parameter : all) {
@@ -46,8 +47,9 @@ std::vector<Parameter> values_of(std::span<const std::string> names, const std::
   return values;
 }
 
-/// The clock comes before the messages of its time, to each viewer: one that has none takes the first for a jump, and
-/// may forget what was shown before. Some take a step away from 0 for a jump, too.
+/// The clock comes before the messages of its time, to each viewer: one that has none takes the
+/// first for a jump, and may forget what was shown before. Some take a step away from 0 for a jump,
+/// too.
 void tell_time(std::int64_t time_ns, Viewer& viewer, std::vector<Item>& to) {
   if (std::exchange(viewer.time_ns, time_ns) == time_ns) return;
   to.push_back(time(std::max<std::int64_t>(time_ns, 1)));
@@ -56,7 +58,9 @@ void tell_time(std::int64_t time_ns, Viewer& viewer, std::vector<Item>& to) {
 }  // namespace
 
 Hub::Hub(Introduction introduction, std::vector<Parameter> parameters, ViewerRequests& requests)
-    : introduction_(std::move(introduction)), parameters_(std::move(parameters)), requests_(requests) {}
+    : introduction_(std::move(introduction)),
+      parameters_(std::move(parameters)),
+      requests_(requests) {}
 
 Viewer& Hub::add(bool may_steer) {
   auto viewer = std::make_unique<Viewer>();
@@ -119,9 +123,9 @@ void Hub::handle(Viewer& viewer, const Subscribe& message) {
   for (const auto& [id, wanted] : message.entries) {
     const channels::Channel* found = channel(wanted);
     if (!found || viewer.channels.contains(id) || viewer.subscriptions.contains(wanted)) {
-      handle(viewer, Wrong{fmt::format(
-          "subscription {} of channel {}: {}", id, wanted,
-          found ? "that subscription is there already" : "there is no such channel")});
+      handle(viewer, Wrong{fmt::format("subscription {} of channel {}: {}", id, wanted,
+                                       found ? "that subscription is there already"
+                                             : "there is no such channel")});
       continue;
     }
     viewer.channels.emplace(id, wanted);
@@ -177,8 +181,9 @@ void Hub::handle(Viewer& viewer, const SetParameters& message) {
   std::vector<std::string> names;
   for (const Parameter& parameter : message.parameters) {
     names.push_back(parameter.name);
-    const std::string why =
-        viewer.may_steer ? set(parameter) : "Parameters are set with the token in the address only.";
+    const std::string why = viewer.may_steer
+                                ? set(parameter)
+                                : "Parameters are set with the token in the address only.";
     if (!why.empty()) send(viewer, warning(why));
   }
   if (!names.empty()) send(viewer, parameter_values(values_of(names, parameters_), message.id));
@@ -228,7 +233,8 @@ void Hub::set_channels(std::vector<channels::Channel> list) {
       gone.push_back(old.id);
     }
   }
-  const bool is_all_old = std::ranges::all_of(list, [&](const auto& each) { return channel(each.id); });
+  const bool is_all_old =
+      std::ranges::all_of(list, [&](const auto& each) { return channel(each.id); });
   channels_ = std::move(list);
   for (auto& [id, viewer] : viewers_) {
     for (const std::uint32_t channel : gone) {

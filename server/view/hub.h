@@ -24,12 +24,12 @@ struct Viewer {
   std::uint64_t id = 0;
   bool may_steer = false;
   SendQueue send_queue;
-  std::unordered_map<std::uint32_t, std::uint32_t> channels;  ///< subscription -> channel
+  std::unordered_map<std::uint32_t, std::uint32_t> channels;       ///< subscription -> channel
   std::unordered_map<std::uint32_t, std::uint32_t> subscriptions;  ///< channel -> subscription
   KnownChannels known;
   bool wants_parameters = false;
   bool wants_graph = false, lacks_graph = false;  ///< at each change; the one of now
-  std::int64_t time_ns = -1;  ///< the clock that it was told; -1: none yet
+  std::int64_t time_ns = -1;                      ///< the clock that it was told; -1: none yet
   unsigned faults = 0;      ///< messages in a row that are none of the protocol
   unsigned unanswered = 0;  ///< calls
   bool is_over = false;     ///< to be disconnected: it sends nonsense, or does not read
@@ -39,7 +39,8 @@ class Hub {
  public:
   static constexpr unsigned most_faults = 100;
   static constexpr unsigned most_unanswered = 64;
-  static constexpr std::size_t largest_queued = std::size_t{64} << 10;  ///< a call behind others [bytes]
+  static constexpr std::size_t largest_queued = std::size_t{64}
+                                                << 10;  ///< a call behind others [bytes]
 
   /// @param parameters  at the start
   /// @param requests  must outlive this
@@ -89,8 +90,8 @@ class Hub {
   std::uint64_t next_viewer_ = 1;
   std::map<std::uint64_t, std::unique_ptr<Viewer>> viewers_;
   std::vector<channels::Channel> channels_;
-  std::map<std::uint32_t, std::size_t> subscribers_;                    // by channel
-  std::unordered_map<std::uint32_t, channels::Message> newest_;         // of these
+  std::map<std::uint32_t, std::size_t> subscribers_;             // by channel
+  std::unordered_map<std::uint32_t, channels::Message> newest_;  // of these
   std::int64_t time_ns_ = -1;
 };
 

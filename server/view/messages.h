@@ -15,7 +15,8 @@
 
 namespace ziggurat::view {
 
-// --- from viewers ---------------------------------------------------------------------------------
+// --- from viewers
+// ---------------------------------------------------------------------------------
 
 struct Subscribe {
   struct Entry {
@@ -59,7 +60,8 @@ Incoming read_binary(std::string_view bytes);
 /// A call of a service, or what is wrong with it as a sentence.
 std::variant<ViewerCall, std::string> read_call(const CallService& call);
 
-// --- to viewers -----------------------------------------------------------------------------------
+// --- to viewers
+// -----------------------------------------------------------------------------------
 
 struct Introduction {
   std::string version, scene, session;

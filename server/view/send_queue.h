@@ -37,8 +37,9 @@ class SendQueue {
  public:
   static constexpr std::size_t most_answers = std::size_t{1} << 20;  ///< [bytes]
   static constexpr std::size_t most_frames = std::size_t{1} << 20;   ///< [bytes]
-  static constexpr std::size_t most_waiting = 4;  ///< frames: a tick is two, before its answers and after
-  static constexpr std::size_t most_kept = std::size_t{256} << 10;   ///< of Keep::all [bytes]
+  static constexpr std::size_t most_waiting =
+      4;  ///< frames: a tick is two, before its answers and after
+  static constexpr std::size_t most_kept = std::size_t{256} << 10;  ///< of Keep::all [bytes]
 
   /// False: too much waits; the viewer is to be disconnected.
   bool add_answer(Item item);

@@ -31,7 +31,7 @@ void ViewerRequests::remove_viewer(std::uint64_t viewer) {
 }
 
 void ViewerRequests::set_wanted(std::vector<std::uint32_t> wanted, std::vector<std::uint32_t> fresh,
-                      channels::Kinds kinds) {
+                                channels::Kinds kinds) {
   const std::lock_guard lock(mutex_);
   changes_.kinds = kinds;
   changes_.wanted = std::move(wanted);
@@ -49,7 +49,8 @@ void ViewerRequests::add_call(ViewerCall call) {
 
 void ViewerRequests::add_parameter(Parameter parameter) {
   const std::lock_guard lock(mutex_);
-  std::erase_if(changes_.parameters, [&](const Parameter& old) { return old.name == parameter.name; });
+  std::erase_if(changes_.parameters,
+                [&](const Parameter& old) { return old.name == parameter.name; });
   changes_.parameters.push_back(std::move(parameter));
   wake();
 }

@@ -34,8 +34,8 @@ using Field = beast::http::field;
 
 constexpr std::uint16_t usual_port = 8765;
 constexpr std::chrono::seconds request_time{10};  // for a request and for its answer
-constexpr std::size_t longest_message_to_look = std::size_t{64} << 10;     // [bytes]
-constexpr std::size_t longest_message_to_steer = std::size_t{2} << 20;     // [bytes]
+constexpr std::size_t longest_message_to_look = std::size_t{64} << 10;  // [bytes]
+constexpr std::size_t longest_message_to_steer = std::size_t{2} << 20;  // [bytes]
 // Messages of a viewer: 50 a second, with the token 500, as who drags an entity sends them.
 constexpr std::chrono::milliseconds time_of_a_message_to_look{20}, time_of_a_message_to_steer{2};
 constexpr int most_messages_at_once = 1000;  // some clients subscribe to each topic by itself
@@ -69,10 +69,12 @@ struct Shared {
   std::size_t connections = 0;
   bool is_closing = false;
   std::set<class ViewerConnection*> open{};
-  std::list<std::weak_ptr<class ViewerConnection>> refused{};  // there were too many; the oldest first
+  std::list<std::weak_ptr<class ViewerConnection>>
+      refused{};  // there were too many; the oldest first
 };
 
-// --- viewers --------------------------------------------------------------------------------------
+// --- viewers
+// --------------------------------------------------------------------------------------
 
 class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
  public:
@@ -168,7 +170,8 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
     });
   }
 
-  /// Reads on; later if more messages came than a viewer needs, so that each waits its turn in the system.
+  /// Reads on; later if more messages came than a viewer needs, so that each waits its turn in the
+  /// system.
   void read_in_time() {
     const auto now = std::chrono::steady_clock::now();
     const auto each = viewer_->may_steer ? time_of_a_message_to_steer : time_of_a_message_to_look;
@@ -190,10 +193,12 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
   std::chrono::steady_clock::time_point paid_until_{};  // the time of all messages so far
 };
 
-// --- the port -------------------------------------------------------------------------------------
+// --- the port
+// -------------------------------------------------------------------------------------
 
 RequestHead head_of(const http::Request& request) {
-  RequestHead head{http::view_of(request[Field::host]), std::nullopt, http::view_of(request.target())};
+  RequestHead head{http::view_of(request[Field::host]), std::nullopt,
+                   http::view_of(request.target())};
   if (request.count(Field::origin) > 0) head.origin = http::view_of(request[Field::origin]);
   return head;
 }
@@ -254,10 +259,11 @@ Rules rules_of(const Settings& settings) {
   const std::string host = settings.address ? settings.address->host : "127.0.0.1";
   const bool is_open = !http::is_loopback(host);
   if (is_open && !settings.insecure && settings.token.empty()) {
-    throw text::UsageError(fmt::format(
-        "--view: other machines can reach {}; use 127.0.0.1, or add --view-token TOKEN with a token "
-        "of your own, or --insecure",
-        host));
+    throw text::UsageError(
+        fmt::format("--view: other machines can reach {}; use 127.0.0.1, or add --view-token TOKEN "
+                    "with a token "
+                    "of your own, or --insecure",
+                    host));
   }
   if (!settings.token.empty()) check_token(settings.token);
   return {host, settings.insecure, is_open && !settings.insecure,
@@ -269,7 +275,8 @@ Rules rules_of(const Settings& settings) {
 struct ViewerServer::State {
   explicit State(const Settings& settings)
       : shared{rules_of(settings), Page(settings.folder), settings.silence,
-               Hub({settings.version, settings.scene, random_token()}, settings.parameters, requests)},
+               Hub({settings.version, settings.scene, random_token()}, settings.parameters,
+                   requests)},
         listening(listen(io, settings.address,
                          [this](http::Tcp::socket socket) { take(std::move(socket)); })),
         pause(io),
@@ -358,15 +365,14 @@ struct ViewerServer::State {
     if (host == "0.0.0.0" || host == "*") host = "127.0.0.1";
     if (host == "::") host = "::1";
     if (host.find(':') != std::string::npos) host = "[" + host + "]";
-    return fmt::format("{}://{}:{}/?token={}", scheme, host, listening.port(),
-                       shared.rules.token);
+    return fmt::format("{}://{}:{}/?token={}", scheme, host, listening.port(), shared.rules.token);
   }
 
   ViewerRequests requests;
   Shared shared;
   http::Service service = service_of(shared);
   std::list<std::weak_ptr<http::Exchange>> exchanges;  // the oldest first
-  asio::io_context io{1};  // behind what its connections use
+  asio::io_context io{1};                              // behind what its connections use
   http::Listening listening;
   asio::steady_timer pause, next_look;
   Feed feed;
@@ -407,7 +413,8 @@ void ViewerServer::show(const channels::Moment& moment, Wanted wanted) {
   state_->wake();
 }
 
-void ViewerServer::show_commands(const channels::Moment& moment, std::vector<std::uint32_t> wanted) {
+void ViewerServer::show_commands(const channels::Moment& moment,
+                                 std::vector<std::uint32_t> wanted) {
   state_->feed.show_commands(moment, std::move(wanted));
   state_->wake();
 }
@@ -422,9 +429,8 @@ void ViewerServer::set_parameter(Parameter parameter) {
 }
 
 void ViewerServer::answer(const ViewerCall& call, std::uint64_t tick) {
-  state_->post([call, tick](Hub& hub) {
-    hub.answer(call, true, fmt::format("{{\"tick\":{}}}", tick));
-  });
+  state_->post(
+      [call, tick](Hub& hub) { hub.answer(call, true, fmt::format("{{\"tick\":{}}}", tick)); });
 }
 
 void ViewerServer::refuse(const ViewerCall& call, const std::string& why) {

@@ -18,12 +18,14 @@
 namespace ziggurat::view {
 
 struct Settings {
-  std::optional<http::Address> address;  ///< nothing: 127.0.0.1:8765, or another port if that is taken
-  bool insecure = false;           ///< other machines may look without token
-  std::string token;               ///< the user's own; empty: a random one
-  std::string folder;              ///< of the page's files
-  std::string version, scene;      ///< that viewers are told
-  std::chrono::milliseconds silence{60'000};  ///< of a viewer, answers to pings included, until it is disconnected
+  std::optional<http::Address>
+      address;                 ///< nothing: 127.0.0.1:8765, or another port if that is taken
+  bool insecure = false;       ///< other machines may look without token
+  std::string token;           ///< the user's own; empty: a random one
+  std::string folder;          ///< of the page's files
+  std::string version, scene;  ///< that viewers are told
+  std::chrono::milliseconds silence{
+      60'000};  ///< of a viewer, answers to pings included, until it is disconnected
   std::vector<Parameter> parameters;
 };
 
@@ -31,7 +33,8 @@ class ViewerServer {
  public:
   static constexpr std::size_t most_viewers = 64;
   static constexpr std::size_t most_lookers = 48;  ///< of them, without token
-  static constexpr std::size_t most_connections = 128;  ///< the oldest that is no viewer makes place
+  static constexpr std::size_t most_connections =
+      128;  ///< the oldest that is no viewer makes place
 
   /// Listens at once. @throws text::UsageError; std::runtime_error if it can't listen
   explicit ViewerServer(const Settings& settings);

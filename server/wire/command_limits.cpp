@@ -14,8 +14,9 @@ constexpr std::size_t bytes_per_value = 64;  // of a number in either form, with
 constexpr std::size_t bytes_per_tag = kibibyte;
 constexpr std::size_t bytes_per_metric = 128;  // in either form, and of its fields
 constexpr std::size_t metrics_per_robot = 100;
-constexpr std::size_t bytes_per_robot = 2 * kibibyte + metrics_per_robot * bytes_per_metric;  // 2 KiB: log lines
-constexpr std::size_t radio_bytes_per_robot = 4 * kibibyte;   // of those that send
+constexpr std::size_t bytes_per_robot =
+    2 * kibibyte + metrics_per_robot * bytes_per_metric;     // 2 KiB: log lines
+constexpr std::size_t radio_bytes_per_robot = 4 * kibibyte;  // of those that send
 constexpr std::size_t radio_bytes_per_field = 64;
 constexpr std::size_t longest_json = 24 * mebibyte;
 

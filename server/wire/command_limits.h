@@ -14,8 +14,9 @@ struct CommandLimits {
   std::size_t fields = 0;  ///< as count_fields() and count_json_values() count them
 };
 
-/// For log lines, metrics, a value of each device of the robots and what they send by radio. Those of a few
-/// robots take about a millisecond to decode; JSON takes longer for each byte and has less of what is free.
+/// For log lines, metrics, a value of each device of the robots and what they send by radio. Those
+/// of a few robots take about a millisecond to decode; JSON takes longer for each byte and has less
+/// of what is free.
 CommandLimits command_limits(const Roster& roster, const world::Layout& layout, Encoding encoding);
 
 }  // namespace ziggurat::wire

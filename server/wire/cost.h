@@ -8,8 +8,8 @@
 
 namespace ziggurat::wire {
 
-/// Fields of a message, those of messages in it included; arrays count as one. A Command may have fewer:
-/// see CommandLimits.
+/// Fields of a message, those of messages in it included; arrays count as one. A Command may have
+/// fewer: see CommandLimits.
 inline constexpr std::size_t most_fields = std::size_t{1} << 18;
 
 using v1::bytes_per_field;
@@ -18,7 +18,8 @@ using v1::bytes_per_field;
 /// about 100 bytes of memory for each.
 std::size_t count_fields(std::string_view bytes);
 
-/// At least as many as a text of JSON has values: one for each comma and bracket that is in no text.
+/// At least as many as a text of JSON has values: one for each comma and bracket that is in no
+/// text.
 std::size_t count_json_values(std::string_view text);
 
 }  // namespace ziggurat::wire

@@ -240,7 +240,8 @@ std::optional<Fault> Inbox::check_direction() const {
   }
   const v1::Leave& leave = message_->other.content().leave();
   if (leave.reason() != v1::Leave::DONE && leave.reason() != v1::Leave::FAILED) {
-    return make_fault(ErrorCode::bad_value, "reason", "The reason of a Leave must be DONE or FAILED.");
+    return make_fault(ErrorCode::bad_value, "reason",
+                      "The reason of a Leave must be DONE or FAILED.");
   }
   if (!leave.robots().empty()) {
     return make_fault(ErrorCode::unknown_robot, "robots", "A director has no robots.");
@@ -257,8 +258,7 @@ Direction Inbox::direction() const {
 }
 
 std::optional<Fault> Inbox::check(const Roster& roster, const world::Layout& layout) const {
-  if (message_->kind == Kind::command)
-    return wire::check(*message_->command, roster, layout);
+  if (message_->kind == Kind::command) return wire::check(*message_->command, roster, layout);
   return wire::check(message_->other.content().leave(), roster, layout);
 }
 

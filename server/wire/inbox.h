@@ -35,8 +35,8 @@ class Inbox {
   Inbox();
   ~Inbox();
 
-  /// In either form, see encoding_of(). A message with more than `most` fields is too large; with more than
-  /// `most_fields` it is malformed, and so is one for which there is not enough memory.
+  /// In either form, see encoding_of(). A message with more than `most` fields is too large; with
+  /// more than `most_fields` it is malformed, and so is one for which there is not enough memory.
   Kind parse(std::string_view bytes, std::size_t most = most_fields);
   /// Fault that makes the current message malformed, for users; may be empty.
   const std::string& complaint() const;
@@ -44,8 +44,8 @@ class Inbox {
   // Content of the current message, if it is of that kind.
   Hello hello() const;
   Leave leave() const;
-  std::uint64_t heartbeat() const;  ///< its sequence
-  std::uint64_t command_tick() const;  ///< of a command or direction
+  std::uint64_t heartbeat() const;                     ///< its sequence
+  std::uint64_t command_tick() const;                  ///< of a command or direction
   std::optional<std::uint64_t> command_epoch() const;  ///< likewise; none: it does not say
   std::uint64_t request_id() const;
   Request request() const;

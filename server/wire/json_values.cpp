@@ -22,7 +22,7 @@ template <class Value>
 bool store(const FieldTarget& target, Value value, Setter<Value> set, Setter<Value> add) {
   const Reflection& reflection = *target.message.GetReflection();
   (reflection.*(target.field.is_repeated() ? add : set))(&target.message, &target.field,
-                                                        std::move(value));
+                                                         std::move(value));
   return true;
 }
 
@@ -66,8 +66,8 @@ bool put_real(const FieldTarget& target, double value) {
   }
   const bool is_too_large =
       std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max();
-  return !is_too_large && store(target, static_cast<float>(value), &Reflection::SetFloat,
-                                &Reflection::AddFloat);
+  return !is_too_large &&
+         store(target, static_cast<float>(value), &Reflection::SetFloat, &Reflection::AddFloat);
 }
 
 /// The whole text as a number.
@@ -147,12 +147,12 @@ bool put(const FieldTarget& target, bool value) {
 
 bool put(const FieldTarget& target, std::int64_t value) {
   return is_real(target.field) ? put_real(target, static_cast<double>(value))
-                              : put_integer(target, value);
+                               : put_integer(target, value);
 }
 
 bool put(const FieldTarget& target, std::uint64_t value) {
   return is_real(target.field) ? put_real(target, static_cast<double>(value))
-                              : put_integer(target, value);
+                               : put_integer(target, value);
 }
 
 bool put(const FieldTarget& target, double value) {
@@ -169,9 +169,11 @@ bool put(const FieldTarget& target, const std::string& text) {
   }
   if (target.field.type() == FieldDescriptor::TYPE_BYTES) {
     auto bytes = bytes_of(text);
-    return bytes && store(target, *std::move(bytes), &Reflection::SetString, &Reflection::AddString);
+    return bytes &&
+           store(target, *std::move(bytes), &Reflection::SetString, &Reflection::AddString);
   }
-  if (target.field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM) return put_enumeration(target, text);
+  if (target.field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM)
+    return put_enumeration(target, text);
   return is_real(target.field) ? put_real_text(target, text) : put_integer_text(target, text);
 }
 

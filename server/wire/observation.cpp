@@ -58,7 +58,8 @@ void add_packets(const Roster& roster, const world::Observations& from, v1::Obse
 
 }  // namespace
 
-ReadingSize size_of_readings(const Roster& roster, const world::Observations& from, std::span<const std::string> tag_payloads) {
+ReadingSize size_of_readings(const Roster& roster, const world::Observations& from,
+                             std::span<const std::string> tag_payloads) {
   constexpr std::size_t size_of_message = 32, size_of_packet = 64;
   ReadingSize size;
   for_each(
@@ -68,7 +69,8 @@ ReadingSize size_of_readings(const Roster& roster, const world::Observations& fr
         size.add_payload(entry.size);
       });
   for_each(
-      roster.range_and_bearing, from.range_and_bearing, [](const auto& packet) { return packet.receiver; },
+      roster.range_and_bearing, from.range_and_bearing,
+      [](const auto& packet) { return packet.receiver; },
       [&](const world::RangeAndBearingPacket& packet, std::size_t) {
         size.add(1, size_of_packet, v1::counted_packet);
         size.add_content(packet.data.count);

@@ -14,11 +14,12 @@ namespace ziggurat::wire {
 
 /// Readings of a session's robots from radios, tags and cameras.
 /// @param tag_payloads  of the same tick, for each of Layout::tags
-ReadingSize size_of_readings(const Roster& roster, const world::Observations& from, std::span<const std::string> tag_payloads);
+ReadingSize size_of_readings(const Roster& roster, const world::Observations& from,
+                             std::span<const std::string> tag_payloads);
 
 /// The part of it that cameras see.
-void count_cameras(const Roster& roster, const world::Observations& from, std::span<const std::string> tag_payloads,
-                   ReadingSize& to);
+void count_cameras(const Roster& roster, const world::Observations& from,
+                   std::span<const std::string> tag_payloads, ReadingSize& to);
 
 /// Writes what they see. A camera without a picture yet sends an empty one.
 void add_cameras(const Roster& roster, const world::Observations& from,

@@ -94,7 +94,7 @@ v1::End::Reason reason_of(EndReason reason) {
 struct Outbox::Message {
   v1::ServerMessage message;
   std::size_t size = 0;
-  std::string text;  // its JSON, or what is sent of an answer; empty otherwise
+  std::string text;          // its JSON, or what is sent of an answer; empty otherwise
   Answer* answer = nullptr;  // the message is made from this one
 
   // Memory that protobuf keeps for reuse is as large as the largest of each part ever was: now and
@@ -206,7 +206,8 @@ bool world_layout(Outbox& outbox, const Run& run, const Truth& truth, WorldView&
   const std::size_t size = outbox.message_->size;
   bool fits = is_short && size <= limit;
   if (fits) {
-    view.laid_out += v1::decoded_size(layout.SerializeAsString(), *v1::WorldLayout::descriptor(), v1::most_laid_out);
+    view.laid_out += v1::decoded_size(layout.SerializeAsString(), *v1::WorldLayout::descriptor(),
+                                      v1::most_laid_out);
     fits = view.laid_out <= v1::most_laid_out;
   }
   if (!fits) layout.Clear();
@@ -288,7 +289,8 @@ void Outbox::restart(const Roster& roster, const Restart& from) {
   finish();
 }
 
-void Outbox::response(std::uint64_t request, std::uint64_t tick, const std::optional<std::string>& overlapped) {
+void Outbox::response(std::uint64_t request, std::uint64_t tick,
+                      const std::optional<std::string>& overlapped) {
   v1::Response& response = *message_->message.mutable_response();
   response.Clear();
   response.set_id(request);

@@ -29,7 +29,8 @@ struct Truth {
   const std::vector<world::Contact>& contacts;
 };
 
-/// The entities that a session is told of, and where their parts stand in its arrays. It only grows.
+/// The entities that a session is told of, and where their parts stand in its arrays. It only
+/// grows.
 struct WorldView {
   Subscription subscription;
   std::vector<std::size_t> entities;  ///< into Layout::entities, in scene order

@@ -1,5 +1,6 @@
-// Recordings are files of anyone. Whatever their messages say, in files that are whole otherwise: all that reads
-// them without simulating ends with what could be read, or with the sentence that says what is wrong.
+// Recordings are files of anyone. Whatever their messages say, in files that are whole otherwise:
+// all that reads them without simulating ends with what could be read, or with the sentence that
+// says what is wrong.
 
 #include <numeric>
 
@@ -65,7 +66,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto turn = std::accumulate(data, data + size, std::uint8_t{0});
   switch (turn) {
     case 0:
-      attempt([] { require(replay::RecordingFile("recording", mcap::bytes_of(recorded.bytes())).shortcoming().empty()); });
+      attempt([] {
+        require(replay::RecordingFile("recording", mcap::bytes_of(recorded.bytes()))
+                    .shortcoming()
+                    .empty());
+      });
       break;
     case 1:
       attempt([&] { replay::export_jsonl(open, all, "/dev/null"); });

@@ -44,7 +44,8 @@ class Play {
     hub_.receive(*viewer, message, (what & 4) != 0);
     require(viewer->unanswered <= view::Hub::most_unanswered);
     require(viewer->may_steer || viewer->unanswered == 0);
-    if (viewer->send_queue.size() > view::SendQueue::most_answers + view::SendQueue::most_frames + message.size() + 4096) {
+    if (viewer->send_queue.size() >
+        view::SendQueue::most_answers + view::SendQueue::most_frames + message.size() + 4096) {
       require(viewer->is_over);
     }
     if (viewer->is_over) hub_.remove(viewer->id);
@@ -86,7 +87,8 @@ class Play {
   }
 
   view::ViewerRequests requests_;
-  view::Hub hub_{{"1", "s", "id", false}, {{"real_time_factor", 1.0}, {"phase", std::string("x")}}, requests_};
+  view::Hub hub_{
+      {"1", "s", "id", false}, {{"real_time_factor", 1.0}, {"phase", std::string("x")}}, requests_};
   std::vector<std::uint64_t> ids_;
   std::int64_t time_ = 0;
 };

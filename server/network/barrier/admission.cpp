@@ -117,8 +117,7 @@ Granted start_directing(Barrier& barrier, const wire::Hello& hello, const Access
 
 Granted begin(Barrier& barrier, const wire::Hello& hello, const Access& access) {
   if (auto refusal = check_hello(barrier, hello, access.roles)) return std::move(*refusal);
-  const bool has_ticks =
-      hello.role == wire::Role::controller || hello.role == wire::Role::director;
+  const bool has_ticks = hello.role == wire::Role::controller || hello.role == wire::Role::director;
   if (!has_ticks) return begin_without_robots(barrier, hello);
   if (!hello.session_token.empty()) return resume_session(barrier, hello, access);
   if (hello.role == wire::Role::director) return start_directing(barrier, hello, access);
@@ -129,10 +128,11 @@ Granted begin(Barrier& barrier, const wire::Hello& hello, const Access& access) 
 void bind(Barrier& barrier, Session& session, const std::string& connection) {
   session.connection = connection;
   if (session.role == wire::Role::controller && barrier.run) {
-    session.command_limits = wire::command_limits(
-        session.roster, barrier.run->layout, barrier.connections.find(connection)->encoding);
+    session.command_limits = wire::command_limits(session.roster, barrier.run->layout,
+                                                  barrier.connections.find(connection)->encoding);
   }
-  if (session.role == wire::Role::director) session.command_limits = {wire::longest_direction, wire::most_fields};
+  if (session.role == wire::Role::director)
+    session.command_limits = {wire::longest_direction, wire::most_fields};
   if (barrier.on_standing) {
     barrier.on_standing(connection, standing_of(&session), longest_message(barrier, &session));
   }
@@ -192,8 +192,9 @@ void refuse(Barrier& barrier, const std::string& connection, const wire::Hello& 
   refusal.client_version = hello.version;
   barrier.outbox.refusal(refusal);
   send(barrier, connection);
-  note(barrier, nullptr, fmt::format("{} was refused with {}: {}", label_of(hello), to_string(refusal.fault.code),
-                                     refusal.fault.message));
+  note(barrier, nullptr,
+       fmt::format("{} was refused with {}: {}", label_of(hello), to_string(refusal.fault.code),
+                   refusal.fault.message));
 }
 
 void admit(Barrier& barrier, const std::string& connection, const Access& access,

@@ -68,7 +68,8 @@ void measure_answer(Barrier& barrier, Session& session) {
 
 void expect_late_answer(Barrier& barrier, Session& session) {
   if (!barrier.reactions.are_kept) return;
-  session.pending_answer.missed.push_back({session.pending_answer.tick, session.pending_answer.waiting_since});
+  session.pending_answer.missed.push_back(
+      {session.pending_answer.tick, session.pending_answer.waiting_since});
 }
 
 void measure_late_answer(Barrier& barrier, Session& session, std::uint64_t tick) {

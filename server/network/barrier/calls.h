@@ -25,7 +25,8 @@ class Calls {
   static constexpr std::size_t most_unanswered_bytes = 8 * mebibyte;
 
   /// A session asks. If it has too many requests that are not answered, that is its fault.
-  std::optional<wire::Fault> add(SessionId session, const std::string& connection, wire::Request request);
+  std::optional<wire::Fault> add(SessionId session, const std::string& connection,
+                                 wire::Request request);
   void answered(const Call& call);
   /// The session is over: it waits for no answer any more.
   void forget(SessionId session);

@@ -20,10 +20,11 @@ namespace {
 /// Frees a robot that the session holds.
 /// @param may_resume  the session may have the robot back
 void release(Barrier& barrier, const Session& holder, std::size_t robot, bool may_resume) {
-  const bool is_skipped = barrier.gate.has_missed(holder.pending_answer);  // waited for once, not twice
+  const bool is_skipped =
+      barrier.gate.has_missed(holder.pending_answer);  // waited for once, not twice
   const Time since = is_skipped ? holder.pending_answer.waiting_since : barrier.now;
   barrier.ownership.release(robot, may_resume ? holder.id : SessionId::none, since, is_skipped,
-                        barrier.gate.waited(holder.pending_answer, barrier.now));
+                            barrier.gate.waited(holder.pending_answer, barrier.now));
   if (!is_skipped) expect_answer(barrier, robot);
 }
 
@@ -81,8 +82,9 @@ void take(Barrier& barrier, Session& session, std::span<const std::size_t> robot
     is_held ? release(barrier, session, robot, false) : barrier.ownership.drop_claim(robot);
     session.roster.hand_over(position_of(session, robot));
   }
-  note(barrier, &session, fmt::format("{} has taken over {} from {}, which keeps {}", by, names_of(barrier, robots),
-                                      session.client, robots_of(barrier, session)));
+  note(barrier, &session,
+       fmt::format("{} has taken over {} from {}, which keeps {}", by, names_of(barrier, robots),
+                   session.client, robots_of(barrier, session)));
   if (session.state == SessionState::lost) return;
   update_deadline(barrier, session);
   for (const std::size_t robot : robots) {
@@ -127,7 +129,8 @@ void handle_leave(Barrier& barrier, Session& session) {
 void lose(Barrier& barrier, Session& session, std::string_view why) {
   if (session.state == SessionState::lost) return;
   if (session.state != SessionState::draining && session.state != SessionState::hello) {
-    note(barrier, &session, fmt::format("{} ({}) is lost: {}", session.client, robots_of(barrier, session), why));
+    note(barrier, &session,
+         fmt::format("{} ({}) is lost: {}", session.client, robots_of(barrier, session), why));
   }
   const bool may_resume = session.state != SessionState::draining && session.has_ticks();
   if (!may_resume) return erase(barrier, session);
@@ -155,7 +158,8 @@ void take_over(Barrier& barrier, std::span<const std::size_t> robots, const std:
   for (const auto& [id, theirs] : taken) {
     Session* session = barrier.sessions.find(id);
     if (session == nullptr) continue;  // none had these
-    const bool is_whole = theirs.size() + session->roster.gone_count == session->roster.robots.size();
+    const bool is_whole =
+        theirs.size() + session->roster.gone_count == session->roster.robots.size();
     is_whole ? displace(barrier, *session, by) : take(barrier, *session, theirs, by);
   }
 }
@@ -194,7 +198,8 @@ void finish(Barrier& barrier, const wire::End& end) {
     barrier.gate.settle(session.pending_answer, barrier.now);
     barrier.outbox.end(end);
     const bool is_told = send(barrier, session) == Delivery::sent;
-    const bool may_answer = session.has_ticks() || session.role == wire::Role::controller;  // with its last log lines
+    const bool may_answer =
+        session.has_ticks() || session.role == wire::Role::controller;  // with its last log lines
     if (!is_told || !may_answer) return erase(barrier, session);
     session.state = SessionState::draining;
   });

@@ -45,7 +45,8 @@ wire::WorldView view_of(wire::Subscription subscription) {
 }
 
 /// Checks the fields of a director's Hello, also for a director that the scene does not name.
-std::optional<wire::Refusal> check_director_hello(const Barrier& barrier, const wire::Hello& hello) {
+std::optional<wire::Refusal> check_director_hello(const Barrier& barrier,
+                                                  const wire::Hello& hello) {
   if (!hello.robots.empty() || !hello.controller.empty() || hello.lua_only) {
     return refuse(ErrorCode::bad_value, "robots", "A director asks for no robots.");
   }
@@ -56,15 +57,17 @@ std::optional<wire::Refusal> check_director_hello(const Barrier& barrier, const 
   return check_policy(barrier, hello, {});
 }
 
-/// The director of that id; one from outside, if these are allowed, is a new one, behind all others.
-std::variant<std::size_t, wire::Refusal> find_director(const Barrier& barrier, const std::string& id) {
+/// The director of that id; one from outside, if these are allowed, is a new one, behind all
+/// others.
+std::variant<std::size_t, wire::Refusal> find_director(const Barrier& barrier,
+                                                       const std::string& id) {
   const Directors& directors = barrier.directors;
   if (const auto found = directors.find(id)) return *found;
   const std::string shown = id.substr(0, longest_id);
   if (!directors.are_allowed) {
-    return refuse(ErrorCode::forbidden, "director",
-                  fmt::format("The scene has no director '{}', and --allow-director was not given.",
-                              shown));
+    return refuse(
+        ErrorCode::forbidden, "director",
+        fmt::format("The scene has no director '{}', and --allow-director was not given.", shown));
   }
   if (!is_id(id)) {
     return refuse(ErrorCode::bad_value, "director",
@@ -78,11 +81,13 @@ std::variant<std::size_t, wire::Refusal> find_director(const Barrier& barrier, c
                   fmt::format("An entity has the id '{}'; a director has one of its own.", shown));
   }
   std::size_t present = 0;
-  for (std::size_t i = 0; i < directors.all.size(); ++i) present += directors.ownership[i].has_left ? 0 : 1;
+  for (std::size_t i = 0; i < directors.all.size(); ++i)
+    present += directors.ownership[i].has_left ? 0 : 1;
   if (present >= scene::Director::most || directors.all.size() >= most_in_a_run) {
-    auto refusal = refuse(ErrorCode::too_many, "director",
-                          fmt::format("The world has {} directors, and has had {}; it takes no more.",
-                                      present, directors.all.size()));
+    auto refusal =
+        refuse(ErrorCode::too_many, "director",
+               fmt::format("The world has {} directors, and has had {}; it takes no more.", present,
+                           directors.all.size()));
     refusal.fault.retryable = directors.all.size() < most_in_a_run;
     return refusal;
   }
@@ -120,8 +125,8 @@ std::optional<wire::Refusal> check_seat(Barrier& barrier, std::size_t director, 
   if (!is_held && !is_kept) return std::nullopt;
   auto refusal = refuse(ErrorCode::robot_taken, "director",
                         is_held ? fmt::format("The director '{}' is {}.", id, holder->client)
-                                : fmt::format("The director '{}' is kept for {}, which is lost.", id,
-                                              claimant->client));
+                                : fmt::format("The director '{}' is kept for {}, which is lost.",
+                                              id, claimant->client));
   refusal.fault.retryable = true;
   refusal.holder = is_held ? holder->client : claimant->client;
   return refusal;
@@ -133,8 +138,8 @@ void displace(Barrier& barrier, std::size_t director, const std::string& by) {
   Session* session = barrier.sessions.find(entry.owner());
   if (session == nullptr) return;
   if (session->state != SessionState::lost) {
-    barrier.outbox.displaced(by, fmt::format("{} is director '{}' now.", by,
-                                             barrier.directors.all[director].id));
+    barrier.outbox.displaced(
+        by, fmt::format("{} is director '{}' now.", by, barrier.directors.all[director].id));
     send(barrier, *session);
   }
   erase(barrier, *session);
@@ -150,8 +155,9 @@ void update_view(wire::WorldView& view, const wire::Truth& truth) {
   }
   for (std::size_t i = view.considered; i < truth.layout.entities.size(); ++i) {
     const std::string& id = truth.layout.entities[i].id;
-    const bool is_wanted = patterns.empty() || std::ranges::find(patterns, id) != patterns.end() ||
-                           std::ranges::any_of(globs, [&](const Glob& glob) { return glob.matches(id); });
+    const bool is_wanted =
+        patterns.empty() || std::ranges::find(patterns, id) != patterns.end() ||
+        std::ranges::any_of(globs, [&](const Glob& glob) { return glob.matches(id); });
     consider(view, truth, i, is_wanted && !truth.state.is_absent(i));
   }
 }
@@ -192,10 +198,12 @@ std::optional<wire::Fault> check(const Barrier& barrier, const Session& session,
 }
 
 std::string_view tell_view_too_large(Barrier& barrier, const Session& session) {
-  tell_fatal(barrier, session.connection,
-             make_fault(ErrorCode::too_large, "subscription",
-                        "What this director subscribed to is more than a message can hold; name fewer entities "
-                        "or groups."));
+  tell_fatal(
+      barrier, session.connection,
+      make_fault(
+          ErrorCode::too_large, "subscription",
+          "What this director subscribed to is more than a message can hold; name fewer entities "
+          "or groups."));
   return "what it subscribed to is more than a message can hold";
 }
 
@@ -230,10 +238,11 @@ std::optional<wire::Refusal> check_subscription(const wire::Hello& hello) {
   if (!hello.subscription) return std::nullopt;
   const auto& patterns = hello.subscription->entities;
   const auto is_long = [](const std::string& text) { return text.size() > longest_pattern; };
-  if (patterns.size() <= most_patterns && std::ranges::none_of(patterns, is_long)) return std::nullopt;
+  if (patterns.size() <= most_patterns && std::ranges::none_of(patterns, is_long))
+    return std::nullopt;
   return refuse(ErrorCode::too_many, "subscription.entities",
-                fmt::format("A subscription may have {} patterns of {} bytes at most.", most_patterns,
-                            longest_pattern));
+                fmt::format("A subscription may have {} patterns of {} bytes at most.",
+                            most_patterns, longest_pattern));
 }
 
 std::optional<wire::Refusal> check_fixed(const Barrier& barrier, std::size_t director,
@@ -259,7 +268,9 @@ std::variant<Session*, wire::Refusal> begin_directing(Barrier& barrier, const wi
     add_from_outside(barrier, hello.director);
   } else {
     if (!wire::is_decoded(barrier.directors.all[director])) {
-      return refuse(ErrorCode::too_large, "director", "A Welcome with the <params> of this director would be longer than clients decode.");
+      return refuse(
+          ErrorCode::too_large, "director",
+          "A Welcome with the <params> of this director would be longer than clients decode.");
     }
     if (auto refusal = check_seat(barrier, director, hello.takeover)) return std::move(*refusal);
     displace(barrier, director, client);
@@ -292,7 +303,7 @@ void release_director(Barrier& barrier, Session& session, bool may_resume) {
   const bool is_skipped = barrier.gate.has_missed(session.pending_answer);
   const Time since = is_skipped ? session.pending_answer.waiting_since : barrier.now;
   ownership.release(*session.director, may_resume ? session.id : SessionId::none, since, is_skipped,
-                barrier.gate.waited(session.pending_answer, barrier.now));
+                    barrier.gate.waited(session.pending_answer, barrier.now));
   if (!is_skipped) check_soon(barrier);
 }
 
@@ -387,9 +398,8 @@ void forget_directions(Barrier& barrier) {
   directors.metrics.clear();
   directors.deadlines.reset();
   directors.truth.reset();
-  barrier.sessions.for_each([](Session& session) {
-    session.view = view_of(std::move(session.view.subscription));
-  });
+  barrier.sessions.for_each(
+      [](Session& session) { session.view = view_of(std::move(session.view.subscription)); });
 }
 
 const std::vector<Directed>& directions(Barrier& barrier) {
@@ -422,29 +432,6 @@ void warn_director(Barrier& barrier, const std::string& director, wire::Fault fa
   barrier.outbox.error(fault);
   if (send(barrier, *session) != Delivery::unreachable) return;
   lose(barrier, *session, "its connection is gone");
-}
-
-std::vector<DirectorStatus> director_status(const Barrier& barrier) {
-  std::vector<DirectorStatus> result;
-  const Directors& directors = barrier.directors;
-  for (std::size_t i = 0; i < directors.all.size(); ++i) {
-    const Ownership::Entry& entry = directors.ownership[i];
-    const Session* session = barrier.sessions.find(entry.owner());
-    DirectorStatus status;
-    status.id = directors.all[i].id;
-    status.is_held = entry.holder != SessionId::none;
-    status.has_left = entry.has_left;
-    status.was_held = entry.was_held;
-    status.waits = directors.deadlines.policy(i).action == scene::DeadlineAction::wait;
-    if (session != nullptr) {
-      status.client = session->client;
-      status.can_restore = session->can_restore;
-    }
-    status.is_awaited = entry.holder == SessionId::none ? !entry.has_left && !entry.is_skipped
-                                                       : session->pending_answer.is_owed;
-    result.push_back(std::move(status));
-  }
-  return result;
 }
 
 }  // namespace ziggurat::network

@@ -1,5 +1,6 @@
 #pragma once
-// The rules for directors (docs/protocol.md, section 9.1), where they differ from those for controllers.
+// The rules for directors (docs/protocol.md, section 9.1), where they differ from those for
+// controllers.
 
 #include <string_view>
 #include <variant>
@@ -29,7 +30,8 @@ void release_director(Barrier& barrier, Session& session, bool may_resume);
 /// The director leaves the barrier for good, and its session goes on without it.
 void remove_director(Barrier& barrier, Session& session);
 
-/// Sends what the director is told of the current tick. @returns why its session is lost; empty: it is not
+/// Sends what the director is told of the current tick. @returns why its session is lost; empty: it
+/// is not
 std::string_view show_world(Barrier& barrier, Session& session);
 /// Handles the Direction in `barrier.inbox`. True if it is the expected answer.
 bool handle_direction(Barrier& barrier, Session& session, bool is_collecting);

@@ -62,19 +62,23 @@ bool may_send(Barrier& barrier, const std::string& id, Connection& connection, S
   const auto verdict = barrier.connections.spend(connection, barrier.now);
   if (verdict == Connections::Verdict::accepted) return true;
   if (verdict == Connections::Verdict::refused_and_told) return false;
-  tell_fatal(barrier, id,
-             make_fault(ErrorCode::too_many, {},
-                        fmt::format("More than {} messages a second, besides those that answer an Observation.",
-                                    barrier.config.rate.per_second)));
+  tell_fatal(
+      barrier, id,
+      make_fault(
+          ErrorCode::too_many, {},
+          fmt::format("More than {} messages a second, besides those that answer an Observation.",
+                      barrier.config.rate.per_second)));
   if (session != nullptr) {
     lose(barrier, *session, "it was closed because it sends too many messages");
   } else {
-    note(barrier, nullptr, "A peer without a session sends too many messages and is not answered any more.");
+    note(barrier, nullptr,
+         "A peer without a session sends too many messages and is not answered any more.");
   }
   return false;
 }
 
-/// The message in `barrier.inbox`, of a session. True if it is the Command that was owed, or a question before it.
+/// The message in `barrier.inbox`, of a session. True if it is the Command that was owed, or a
+/// question before it.
 bool handle(Barrier& barrier, Session& session, InboxKind kind, world::Commands* commands) {
   const bool is_waiting = session.state == SessionState::hello;
   if (kind == InboxKind::leave) {
@@ -132,8 +136,9 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
   if (kind == InboxKind::too_large) {
     return answer_fault(
         barrier, id, session,
-        make_fault(ErrorCode::too_large, {},
-                   fmt::format("The message has more fields than the {} that this session needs.", most)));
+        make_fault(
+            ErrorCode::too_large, {},
+            fmt::format("The message has more fields than the {} that this session needs.", most)));
   }
   if (session != nullptr) {
     if (handle(barrier, *session, kind, commands)) Connections::refund(connection, charge);

@@ -44,8 +44,10 @@ void keep_log(Barrier& barrier, const Session& session) {
 /// Answers a Command that can't be taken.
 void answer_bad_command(Barrier& barrier, Session& session, wire::Fault fault) {
   const StaleReason reason = take_stale_reason(session.pending_answer, fault.code);
-  if (reason == StaleReason::none) return answer_fault(barrier, session.connection, &session, std::move(fault));
-  if (reason == StaleReason::missed_deadline) measure_late_answer(barrier, session, barrier.inbox.command_tick());
+  if (reason == StaleReason::none)
+    return answer_fault(barrier, session.connection, &session, std::move(fault));
+  if (reason == StaleReason::missed_deadline)
+    measure_late_answer(barrier, session, barrier.inbox.command_tick());
   fault.tick = tick_of(barrier);
   barrier.outbox.error(fault);
   send(barrier, session);
@@ -57,7 +59,8 @@ void publish(Barrier& barrier, const world::Observations& observations,
              const std::vector<std::string>& tag_payloads, const wire::Truth* truth) {
   barrier.readings = {&observations, &tag_payloads};
   barrier.begin = {};
-  truth != nullptr ? void(barrier.directors.truth.emplace(*truth)) : barrier.directors.truth.reset();
+  truth != nullptr ? void(barrier.directors.truth.emplace(*truth))
+                   : barrier.directors.truth.reset();
   for (auto& answer : barrier.directors.answers) answer.reset();
   barrier.directors.metrics.begin_tick();
   barrier.directors.ownership.begin_tick(barrier.now);
@@ -65,12 +68,14 @@ void publish(Barrier& barrier, const world::Observations& observations,
   barrier.gate.begin(observations.tick);
   barrier.timers.deadline = never;
   barrier.ownership.begin_tick(barrier.now);
-  if (!barrier.ownership.all_taken() || !barrier.directors.ownership.all_taken()) check_soon(barrier);
+  if (!barrier.ownership.all_taken() || !barrier.directors.ownership.all_taken())
+    check_soon(barrier);
   barrier.sessions.for_each([&](Session& session) {
     if (session.state == SessionState::lost || !session.has_ticks()) return;
     session.pending_answer.is_resent = false;
     session.pending_answer.waited_before = {};
-    if (const std::string_view why = observe(barrier, session); !why.empty()) lose(barrier, session, why);
+    if (const std::string_view why = observe(barrier, session); !why.empty())
+      lose(barrier, session, why);
   });
   halt_if_paused(barrier);  // if no session owes an answer
 }
@@ -94,9 +99,12 @@ std::string_view observe(Barrier& barrier, Session& session) {
                                        epoch_for(barrier, session))) {
     tell_fatal(barrier, session.connection,
                make_fault(ErrorCode::too_large, {},
-                          "The robots of this session heard and saw more at this tick than a message can hold; share them among more "
-                          "sessions (--lua-processes for scripts), or give their cameras and radios a smaller range."));
-    return "its robots heard and saw more at a tick than a message can hold; share them among more sessions "
+                          "The robots of this session heard and saw more at this tick than a "
+                          "message can hold; share them among more "
+                          "sessions (--lua-processes for scripts), or give their cameras and "
+                          "radios a smaller range."));
+    return "its robots heard and saw more at a tick than a message can hold; share them among more "
+           "sessions "
            "(--lua-processes for scripts), or give their cameras and radios a smaller range";
   }
   session.state = SessionState::stepping;
@@ -173,7 +181,8 @@ void halt_if_paused(Barrier& barrier) {
   if (!gate.is_halted()) barrier.calls.notify();
   gate.set_halted(true);
   barrier.sessions.for_each([&](Session& session) {
-    const bool has_answered = session.state == SessionState::stepping && !session.pending_answer.is_owed;
+    const bool has_answered =
+        session.state == SessionState::stepping && !session.pending_answer.is_owed;
     if (!has_answered || !session.has_ticks()) return;
     session.state = SessionState::paused;
     barrier.outbox.paused(tick_of(barrier));

@@ -22,7 +22,8 @@ void publish(Barrier& barrier, const world::Observations& observations,
 /// Observations of the current tick leave the server only now: the deadlines of their answers
 /// begin.
 void await_from(Barrier& barrier, Time now);
-/// Sends a session what its robots sense at the current tick. @returns why it is lost; empty: it is not
+/// Sends a session what its robots sense at the current tick. @returns why it is lost; empty: it is
+/// not
 std::string_view observe(Barrier& barrier, Session& session);
 
 /// Handles the Command in `barrier.inbox`. True if it is the expected answer.

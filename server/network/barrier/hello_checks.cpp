@@ -35,7 +35,8 @@ const Scope* scope_of(const Barrier& barrier, const Access& access) {
   return &barrier.config.curve->clients[*access.key].scope;
 }
 
-bool is_in_scope(const Barrier& barrier, const std::optional<ScopeGlobs>& scope, std::size_t robot) {
+bool is_in_scope(const Barrier& barrier, const std::optional<ScopeGlobs>& scope,
+                 std::size_t robot) {
   if (!scope) return true;
   const auto& layout = barrier.run->layout.robots[robot];
   return scope->includes(layout.id, barrier.run->controllers[layout.controller].id);
@@ -112,10 +113,11 @@ wire::Refusal make_refusal(ErrorCode code, std::string field, std::string messag
 std::optional<wire::Refusal> check_hello(const Barrier& barrier, const wire::Hello& hello,
                                          const Roles& roles) {
   if (hello.version.major == 0) {
-    return make_refusal(ErrorCode::version_mismatch, "version",
-                        fmt::format("The Hello has no major version of the protocol; write the one of the client, "
-                                    "as {}.{}, the server's.",
-                                    wire::version.major, wire::version.minor));
+    return make_refusal(
+        ErrorCode::version_mismatch, "version",
+        fmt::format("The Hello has no major version of the protocol; write the one of the client, "
+                    "as {}.{}, the server's.",
+                    wire::version.major, wire::version.minor));
   }
   if (hello.version.major != wire::version.major) {
     return make_refusal(
@@ -159,7 +161,8 @@ std::optional<wire::Refusal> check_policy(const Barrier& barrier, const wire::He
                                           std::span<const std::size_t> robots) {
   if (!hello.deadline) return std::nullopt;
   const auto& requested = *hello.deadline;
-  if (requested.action < scene::DeadlineAction::wait || requested.action > scene::DeadlineAction::stop) {
+  if (requested.action < scene::DeadlineAction::wait ||
+      requested.action > scene::DeadlineAction::stop) {
     return make_refusal(ErrorCode::bad_value, "deadline_policy.action",
                         "The deadline policy has no action that this protocol knows.");
   }
@@ -182,7 +185,8 @@ std::optional<wire::Refusal> check_policy(const Barrier& barrier, const wire::He
 }
 
 std::optional<wire::Refusal> check_power(const Barrier& barrier, const wire::Hello& hello,
-                                         const Access& access, std::span<const std::size_t> robots) {
+                                         const Access& access,
+                                         std::span<const std::size_t> robots) {
   if (!hello.deadline || access.roles.supervisor) return std::nullopt;
   const scene::DeadlinePolicy& requested = *hello.deadline;
   for (const std::size_t robot : robots) {
@@ -197,9 +201,10 @@ std::optional<wire::Refusal> check_power(const Barrier& barrier, const wire::Hel
     if (requested == policy || !waits_longer(requested, usual)) continue;
     return make_refusal(
         ErrorCode::forbidden, "deadline_policy",
-        fmt::format("The world waits for robot '{}' by {}, and a key without the role `supervisor` may not "
-                    "let it wait longer.",
-                    barrier.run->layout.robots[robot].id, to_text(usual)));
+        fmt::format(
+            "The world waits for robot '{}' by {}, and a key without the role `supervisor` may not "
+            "let it wait longer.",
+            barrier.run->layout.robots[robot].id, to_text(usual)));
   }
   return std::nullopt;
 }
@@ -232,8 +237,10 @@ std::variant<std::vector<std::size_t>, wire::Refusal> grant_robots(Barrier& barr
   // At last: this takes as long as the Welcome itself.
   if (!wire::are_decoded(*barrier.run, robots)) {
     return make_refusal(ErrorCode::too_large, "robots",
-                        fmt::format("A Welcome with these {} robots would be longer than clients decode: ask for fewer in each session "
-                                    "(--lua-processes for scripts).", robots.size()));
+                        fmt::format("A Welcome with these {} robots would be longer than clients "
+                                    "decode: ask for fewer in each session "
+                                    "(--lua-processes for scripts).",
+                                    robots.size()));
   }
   return robots;
 }

@@ -32,7 +32,7 @@ std::optional<wire::Refusal> check_takeover(const Barrier& barrier, const wire::
 /// neither end nor stop the run is refused both (K11).
 /// @param robots  robots that the policy is for
 std::optional<wire::Refusal> check_power(const Barrier& barrier, const wire::Hello& hello,
-                                        const Access& access, std::span<const std::size_t> robots);
+                                         const Access& access, std::span<const std::size_t> robots);
 /// Because of the deadline policy that it asks for.
 /// @param robots  that it is to hold for
 std::optional<wire::Refusal> check_policy(const Barrier& barrier, const wire::Hello& hello,

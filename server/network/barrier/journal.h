@@ -28,7 +28,9 @@ class Journal {
   void fail(std::size_t robot, std::string_view message, std::uint64_t tick);
   /// A robot's controller took leave of it before the end.
   /// @param tick  of the last observation that it got
-  void depart(std::size_t robot, std::uint64_t tick) { report_.departures.push_back({robot, tick}); }
+  void depart(std::size_t robot, std::uint64_t tick) {
+    report_.departures.push_back({robot, tick});
+  }
   /// A director has failed.
   void fail(std::string director, std::string_view message, std::uint64_t tick);
   std::vector<DirectorLine>& log_of_directors() { return report_.log_of_directors; }

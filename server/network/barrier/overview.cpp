@@ -43,12 +43,14 @@ wire::SessionStatus status_of(const Barrier& barrier, const Session& session, Ti
     status.robots.push_back(barrier.run->layout.robots[robots[i]].id);
     status.deadline = barrier.deadlines.policy(robots[i]);
   }
-  if (session.pending_answer.is_owed) status.wall_waiting_s = seconds(now - session.pending_answer.waiting_since);
+  if (session.pending_answer.is_owed)
+    status.wall_waiting_s = seconds(now - session.pending_answer.waiting_since);
   if (session.state == SessionState::lost && !robots.empty()) {
     status.wall_waiting_s = seconds(now - barrier.ownership[robots.front()].free_since);
   }
   if (session.state == SessionState::lost && session.director) {
-    status.wall_waiting_s = seconds(now - barrier.directors.ownership[*session.director].free_since);
+    status.wall_waiting_s =
+        seconds(now - barrier.directors.ownership[*session.director].free_since);
   }
   status.wall_last_message_s = seconds(now - session.liveness.last_received);
   status.latency = session.latencies.recent();
@@ -61,7 +63,9 @@ wire::SessionStatus status_of(const Barrier& barrier, const Session& session, Ti
 namespace {
 
 bool has_any(const Barrier& barrier, const Session& session, const std::vector<std::string>& ids) {
-  const auto is_meant = [&](const std::string& id) { return std::ranges::find(ids, id) != ids.end(); };
+  const auto is_meant = [&](const std::string& id) {
+    return std::ranges::find(ids, id) != ids.end();
+  };
   if (session.director) return is_meant(barrier.directors.all[*session.director].id);
   const auto& robots = session.roster.robots;
   for (std::size_t i = 0; i < robots.size(); ++i) {
@@ -76,7 +80,8 @@ Need need_of(const Barrier& barrier, const std::vector<std::string>& ids) {
   Need need = Need::nothing;
   if (ids.empty()) return need;
   barrier.sessions.for_each([&](const Session& session) {
-    const bool has_end = session.pending_answer.deadline.has_value() || session.state == SessionState::draining;
+    const bool has_end =
+        session.pending_answer.deadline.has_value() || session.state == SessionState::draining;
     if (has_end || !session.has_ticks() || !has_any(barrier, session, ids)) return;
     need = std::max(need, session.pending_answer.is_owed ? Need::answer : Need::answers);
   });
@@ -161,8 +166,32 @@ void fill(const Barrier& barrier, Time now, wire::Status& status) {
   }
   for (std::size_t director = 0; director < barrier.directors.ownership.size(); ++director) {
     const Ownership::Entry& entry = barrier.directors.ownership[director];
-    if (entry.owner() == SessionId::none && !entry.has_left) status.free_directors.push_back(barrier.directors.all[director].id);
+    if (entry.owner() == SessionId::none && !entry.has_left)
+      status.free_directors.push_back(barrier.directors.all[director].id);
   }
+}
+
+std::vector<DirectorStatus> director_status(const Barrier& barrier) {
+  std::vector<DirectorStatus> result;
+  const Directors& directors = barrier.directors;
+  for (std::size_t i = 0; i < directors.all.size(); ++i) {
+    const Ownership::Entry& entry = directors.ownership[i];
+    const Session* session = barrier.sessions.find(entry.owner());
+    DirectorStatus status;
+    status.id = directors.all[i].id;
+    status.is_held = entry.holder != SessionId::none;
+    status.has_left = entry.has_left;
+    status.was_held = entry.was_held;
+    status.waits = directors.deadlines.policy(i).action == scene::DeadlineAction::wait;
+    if (session != nullptr) {
+      status.client = session->client;
+      status.can_restore = session->can_restore;
+    }
+    status.is_awaited = entry.holder == SessionId::none ? !entry.has_left && !entry.is_skipped
+                                                        : session->pending_answer.is_owed;
+    result.push_back(std::move(status));
+  }
+  return result;
 }
 
 }  // namespace ziggurat::network

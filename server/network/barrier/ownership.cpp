@@ -31,7 +31,7 @@ void Ownership::take(std::size_t robot, SessionId session, Time now) {
 }
 
 void Ownership::release(std::size_t robot, SessionId claimant, Time since, bool is_skipped,
-                    std::chrono::nanoseconds waited) {
+                        std::chrono::nanoseconds waited) {
   Entry& entry = entries_[robot];
   entry.waited += waited;
   has_changes_ = true;

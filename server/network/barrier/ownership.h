@@ -18,7 +18,8 @@ class Ownership {
     bool was_held = false;                 ///< by any session, ever
     bool is_skipped = false;               ///< free, and the current tick goes on without it
     Time free_since;                       ///< free: since when
-    std::chrono::nanoseconds waited{0};    ///< for it by the current tick, before what it waits for now
+    std::chrono::nanoseconds waited{
+        0};  ///< for it by the current tick, before what it waits for now
 
     /// The session that has the robot, or may resume; none: neither.
     SessionId owner() const { return holder == SessionId::none ? claimant : holder; }
@@ -58,10 +59,10 @@ class Ownership {
   void wait_over(Entry& entry, Time now);
 
   std::vector<Entry> entries_;  // per robot of the layout
-  Time begun_;               // the current tick, as far as deadlines are concerned
-  bool has_changes_ = false;  // of who has which robot, in the current tick
-  std::size_t free_ = 0;     // robots without holder that have not left
-  std::size_t skipped_ = 0;  // those of them that the tick does not wait for
+  Time begun_;                  // the current tick, as far as deadlines are concerned
+  bool has_changes_ = false;    // of who has which robot, in the current tick
+  std::size_t free_ = 0;        // robots without holder that have not left
+  std::size_t skipped_ = 0;     // those of them that the tick does not wait for
 };
 
 }  // namespace ziggurat::network

@@ -61,9 +61,11 @@ void answer_fault(Barrier& barrier, const std::string& connection, Session* sess
   const std::string client = session == nullptr        ? "A peer without a session"
                              : session->client.empty() ? "A client that waits for the world"
                                                        : session->client;
-  const bool ends_with_it = session != nullptr && session->role == wire::Role::director;  // and says why
+  const bool ends_with_it =
+      session != nullptr && session->role == wire::Role::director;  // and says why
   if (!ends_with_it || is_last) {
-    note(barrier, session, fmt::format("{} was answered {}: {}", client, to_string(fault.code), fault.message));
+    note(barrier, session,
+         fmt::format("{} was answered {}: {}", client, to_string(fault.code), fault.message));
   }
   if (session == nullptr) return;
   if (is_last) return lose(barrier, *session, "it was closed for its bad messages");
@@ -103,14 +105,17 @@ std::size_t longest_message(const Barrier& barrier, const Session* session) {
                                        : most);
 }
 
-std::uint64_t tick_of(const Barrier& barrier) { return barrier.gate.tick().value_or(barrier.begin.tick); }
+std::uint64_t tick_of(const Barrier& barrier) {
+  return barrier.gate.tick().value_or(barrier.begin.tick);
+}
 
 std::string names_of(const Barrier& barrier, std::span<const std::size_t> robots) {
   std::string text;
   for (const std::size_t robot : robots.first(std::min(robots_named, robots.size()))) {
     text += (text.empty() ? "" : ", ") + barrier.run->layout.robots[robot].id;
   }
-  if (robots.size() > robots_named) text += fmt::format(" and {} more", robots.size() - robots_named);
+  if (robots.size() > robots_named)
+    text += fmt::format(" and {} more", robots.size() - robots_named);
   return text.empty() ? "no robots" : text;
 }
 

@@ -96,7 +96,8 @@ void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Dead
   add_directors(barrier, deadlines);
 }
 
-void add_robots(Barrier& barrier, std::span<const std::string> scripts, const TickReadings& readings) {
+void add_robots(Barrier& barrier, std::span<const std::string> scripts,
+                const TickReadings& readings) {
   // A session that takes them at this tick is told what they sense.
   if (barrier.gate.tick()) barrier.readings = readings;
   const auto& robots = barrier.run->layout.robots;
@@ -129,8 +130,8 @@ void restart(Barrier& barrier, wire::Restart restart) {
   ++barrier.reactions.world;
   barrier.metrics.clear();
   forget_directions(barrier);
-  forget_robots(barrier, restart.snapshot ? restart.snapshot->robots
-                                          : barrier.run->layout.robots.size());
+  forget_robots(barrier,
+                restart.snapshot ? restart.snapshot->robots : barrier.run->layout.robots.size());
   barrier.gate.clear();  // a session that begins now gets no tick of the former world
   barrier.readings = {};
   barrier.begin = {};

@@ -21,12 +21,13 @@ void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Dead
 /// them.
 /// @param scripts  of them, as Run::scripts
 /// @param readings   of the current tick, theirs included
-void add_robots(Barrier& barrier, std::span<const std::string> scripts, const TickReadings& readings);
+void add_robots(Barrier& barrier, std::span<const std::string> scripts,
+                const TickReadings& readings);
 /// These robots have left the world.
 /// @param why  a sentence for their sessions; empty: they are not told
 void remove_robots(Barrier& barrier, std::span<const std::size_t> robots, const std::string& why);
-/// The world has begun anew or gone back, without tick: what was commanded and is owed is void. Robots
-/// that the layout has no more, or that are others now, are forgotten; these others come by
+/// The world has begun anew or gone back, without tick: what was commanded and is owed is void.
+/// Robots that the layout has no more, or that are others now, are forgotten; these others come by
 /// add_robots().
 /// @param restart  its epoch is the barrier's to know
 void restart(Barrier& barrier, wire::Restart restart);

@@ -51,11 +51,11 @@ struct Session {
   std::string connection;          ///< the one that it was made over; lost: the last one
   std::optional<std::size_t> key;  ///< that it was made with, see Access
   wire::Role role = wire::Role::controller;
-  std::string client;       ///< name and version, for messages
-  std::string token;        ///< to resume with
-  std::uint32_t minor = 0;  ///< of the protocol, as agreed
-  bool can_restore = false;  ///< its controllers can go back to a snapshot
-  wire::Roster roster;      ///< of other roles: empty
+  std::string client;                   ///< name and version, for messages
+  std::string token;                    ///< to resume with
+  std::uint32_t minor = 0;              ///< of the protocol, as agreed
+  bool can_restore = false;             ///< its controllers can go back to a snapshot
+  wire::Roster roster;                  ///< of other roles: empty
   std::optional<std::size_t> director;  ///< of that role: its number; none: it has left
   wire::WorldView view;                 ///< of that role: what it is told
   wire::CommandLimits command_limits;   ///< of what its robots can need, in its form
@@ -67,10 +67,10 @@ struct Session {
     std::uint64_t misses = 0;
     std::uint64_t first_tick = 0;
     Time until;
-  } unreported;  ///< misses that no notice has reported yet
-  Time lease_end;            ///< lost: until then no other session gets its robots
-  wire::Outbox observation;  ///< long-lived, for the tick path
-  WaitingHello waiting_hello;   ///< in HELLO
+  } unreported;                ///< misses that no notice has reported yet
+  Time lease_end;              ///< lost: until then no other session gets its robots
+  wire::Outbox observation;    ///< long-lived, for the tick path
+  WaitingHello waiting_hello;  ///< in HELLO
 
   /// It has a part in each tick.
   bool has_ticks() const { return !roster.empty() || director.has_value(); }

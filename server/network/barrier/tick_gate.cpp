@@ -43,7 +43,8 @@ void TickGate::give_up(PendingAnswer& answer, Time now) {
 }
 
 StaleReason take_stale_reason(PendingAnswer& answer, ErrorCode code) {
-  const bool is_of_tick = code == ErrorCode::stale_tick || code == ErrorCode::future_tick || code == ErrorCode::duplicate_tick;
+  const bool is_of_tick = code == ErrorCode::stale_tick || code == ErrorCode::future_tick ||
+                          code == ErrorCode::duplicate_tick;
   if (is_of_tick && answer.stale_commands > 0) {
     --answer.stale_commands;
     return StaleReason::world_restarted;
@@ -60,7 +61,8 @@ std::chrono::nanoseconds TickGate::waited(const PendingAnswer& answer, Time now)
   return answer.is_owed ? now - answer.waiting_since : answer.waited;
 }
 
-std::optional<wire::Fault> check_epoch(const PendingAnswer& answer, std::optional<std::uint64_t> epoch) {
+std::optional<wire::Fault> check_epoch(const PendingAnswer& answer,
+                                       std::optional<std::uint64_t> epoch) {
   if (!epoch || *epoch == answer.epoch) return std::nullopt;
   const bool is_past = *epoch < answer.epoch;
   return make_fault(

@@ -14,7 +14,8 @@ namespace ziggurat::network {
 class TickGate {
  public:
   /// @param robots, directors  must outlive the gate
-  TickGate(const Ownership& robots, const Ownership& directors) : robots_(robots), directors_(directors) {}
+  TickGate(const Ownership& robots, const Ownership& directors)
+      : robots_(robots), directors_(directors) {}
 
   /// A tick begins: it is published to all sessions.
   void begin(std::uint64_t tick);
@@ -34,7 +35,9 @@ class TickGate {
   /// Time that the current tick waits, or waited, for this answer.
   std::chrono::nanoseconds waited(const PendingAnswer& answer, Time now) const;
   /// The tick has gone on without an answer for this session.
-  bool has_missed(const PendingAnswer& answer) const { return answer.has_missed && answer.tick == tick_; }
+  bool has_missed(const PendingAnswer& answer) const {
+    return answer.has_missed && answer.tick == tick_;
+  }
 
   enum class Hold { paused, stopped, finished };
   /// No tick is complete while the world is paused or stopped (by a deadline). While there is any
@@ -77,7 +80,8 @@ StaleReason take_stale_reason(PendingAnswer& answer, wire::ErrorCode code);
 
 /// Why a Command of an epoch does not answer the last observation of a session, if it does not.
 /// @param epoch  none: the Command does not say
-std::optional<wire::Fault> check_epoch(const PendingAnswer& answer, std::optional<std::uint64_t> epoch);
+std::optional<wire::Fault> check_epoch(const PendingAnswer& answer,
+                                       std::optional<std::uint64_t> epoch);
 /// Why a Command for a tick does not answer the last observation of a session, if it does not.
 /// @param answer  of a session that has had an observation
 std::optional<wire::Fault> check_tick(const PendingAnswer& answer, std::uint64_t tick);

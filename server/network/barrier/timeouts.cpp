@@ -77,9 +77,9 @@ bool miss_director(Barrier& barrier, std::size_t director) {
       return true;
     case Consequence::stop:
       barrier.gate.hold(TickGate::Hold::stopped);
-      barrier.journal.stop(
-          fmt::format("director '{}' did not answer at tick {}: its deadline policy {} stops the run",
-                      id, tick_of(barrier), policy));
+      barrier.journal.stop(fmt::format(
+          "director '{}' did not answer at tick {}: its deadline policy {} stops the run", id,
+          tick_of(barrier), policy));
       return false;
   }
   return false;
@@ -95,12 +95,11 @@ bool warn(Barrier& barrier, Session& session, wire::Fault fault) {
 
 bool tell_missed(Barrier& barrier, Session& session, milliseconds deadline) {
   return warn(barrier, session,
-              wire::make_fault(wire::ErrorCode::deadline_missed, {},
-                               fmt::format("Tick {} went on without an answer after {} ms.{}",
-                                           session.pending_answer.tick, deadline.count(),
-                                           session.has_ticks()
-                                               ? ""
-                                               : " What it drives has left the barrier.")));
+              wire::make_fault(
+                  wire::ErrorCode::deadline_missed, {},
+                  fmt::format("Tick {} went on without an answer after {} ms.{}",
+                              session.pending_answer.tick, deadline.count(),
+                              session.has_ticks() ? "" : " What it drives has left the barrier.")));
 }
 
 /// @param robots  positions in the session
@@ -120,12 +119,13 @@ void note_miss(Barrier& barrier, Session& session, milliseconds deadline) {
   Session::UnreportedMisses& unreported = session.unreported;
   if (unreported.misses++ == 0) unreported.first_tick = session.pending_answer.tick;
   if (barrier.now < unreported.until) return;
-  const std::string ticks =
-      unreported.misses == 1 ? fmt::format("at tick {}", session.pending_answer.tick)
-                         : fmt::format("at {} of the ticks {} to {}", unreported.misses,
-                                       unreported.first_tick, session.pending_answer.tick);
-  note(barrier, &session, fmt::format("{} ({}) missed its deadline of {} ms {}", session.client,
-                                      robots_of(barrier, session), deadline.count(), ticks));
+  const std::string ticks = unreported.misses == 1
+                                ? fmt::format("at tick {}", session.pending_answer.tick)
+                                : fmt::format("at {} of the ticks {} to {}", unreported.misses,
+                                              unreported.first_tick, session.pending_answer.tick);
+  note(barrier, &session,
+       fmt::format("{} ({}) missed its deadline of {} ms {}", session.client,
+                   robots_of(barrier, session), deadline.count(), ticks));
   unreported = {0, 0, barrier.now + between_notices};
 }
 
@@ -146,8 +146,8 @@ void miss(Barrier& barrier, Session& session) {
   if (session.director && miss_director(barrier, *session.director)) {
     remove_director(barrier, session);
   }
-  const bool is_told = tell_missed(barrier, session, deadline) &&
-                       tell_dropped(barrier, session, std::move(dropped));
+  const bool is_told =
+      tell_missed(barrier, session, deadline) && tell_dropped(barrier, session, std::move(dropped));
   if (!is_told) {
     lose(barrier, session, "its connection is gone");
   }
@@ -173,7 +173,8 @@ Time deadline_of(const Ownership::Entry& entry, const scene::DeadlinePolicy& pol
 
 void check_free_robots(Barrier& barrier) {
   std::optional<std::size_t> controller;  // of the robot before
-  for (std::size_t robot = 0; robot < barrier.ownership.size() && barrier.ownership.is_awaited(); ++robot) {
+  for (std::size_t robot = 0; robot < barrier.ownership.size() && barrier.ownership.is_awaited();
+       ++robot) {
     const Ownership::Entry& entry = barrier.ownership[robot];
     if (entry.holder != SessionId::none || entry.has_left || entry.is_skipped) continue;
     const scene::DeadlinePolicy& policy = barrier.deadlines.policy(robot);
@@ -197,8 +198,7 @@ void check_free_directors(Barrier& barrier) {
   for (std::size_t i = 0; i < directors.all.size(); ++i) {
     const Ownership::Entry entry = directors.ownership[i];
     const scene::DeadlinePolicy& policy = directors.deadlines.policy(i);
-    const bool is_awaited =
-        entry.holder == SessionId::none && !entry.has_left && !entry.is_skipped;
+    const bool is_awaited = entry.holder == SessionId::none && !entry.has_left && !entry.is_skipped;
     if (!is_awaited || policy.action == DeadlineAction::wait) continue;
     const Time deadline = deadline_of(entry, policy);
     if (deadline > barrier.now) {
@@ -228,7 +228,8 @@ void check_deadlines(Barrier& barrier) {
 /// Sends a heartbeat to the session, if it is time.
 Delivery send_heartbeat(Barrier& barrier, Session& session) {
   const milliseconds usual = barrier.config.heartbeat;
-  const bool is_rare = session.pending_answer.is_owed && session.liveness.heartbeats >= most_heartbeats;
+  const bool is_rare =
+      session.pending_answer.is_owed && session.liveness.heartbeats >= most_heartbeats;
   const milliseconds interval = is_rare ? std::max(rare_heartbeat, usual) : usual;
   Delivery delivery = Delivery::sent;
   if (session.liveness.last_sent + interval <= barrier.now) {
@@ -284,7 +285,8 @@ void expect_answer(Barrier& barrier, std::size_t robot) {
 }
 
 void expect_answer(Barrier& barrier, const Session& session) {
-  if (session.pending_answer.deadline) wake_at(barrier, session.pending_answer.due_at(*session.pending_answer.deadline));
+  if (session.pending_answer.deadline)
+    wake_at(barrier, session.pending_answer.due_at(*session.pending_answer.deadline));
 }
 
 void update_deadline(Barrier& barrier, Session& session) {

@@ -12,12 +12,12 @@ btTransform Articulation::transform(std::size_t part) const { return transform_o
 
 void Articulation::apply_force(std::size_t part, const btVector3& force) const {
   system->apply_wrench(static_cast<int>(index), static_cast<int>(part),
-               {math::Vector3::Zero(), from_bullet(force)});
+                       {math::Vector3::Zero(), from_bullet(force)});
 }
 
 void Articulation::apply_torque(std::size_t part, const btVector3& torque) const {
   system->apply_wrench(static_cast<int>(index), static_cast<int>(part),
-               {from_bullet(torque), math::Vector3::Zero()});
+                       {from_bullet(torque), math::Vector3::Zero()});
 }
 
 void Articulation::motions(std::span<Twist> out) const {

@@ -2,11 +2,10 @@
 // A body as a tree of dynamics/: part i is link i of the tree.
 
 #include <LinearMath/btTransform.h>
+#include <LinearMath/btVector3.h>
 
 #include <cstddef>
 #include <span>
-
-#include <LinearMath/btVector3.h>
 
 namespace ziggurat::dynamics {
 class System;

@@ -13,9 +13,7 @@ Pose base_pose(const Body& body) {
   return root.placed * math::inverse(root.frame_in_part());
 }
 
-btTransform Body::transform(std::size_t part) const {
-  return articulation->transform(part);
-}
+btTransform Body::transform(std::size_t part) const { return articulation->transform(part); }
 
 btTransform Body::transform(const LinkBody& link) const {
   return transform(link.part) *

@@ -64,7 +64,7 @@ struct GroundMotion {
   // State of the coming substep:
   btVector3 along{1, 0, 0}, across{0, 1, 0};  ///< unit, level
   double speed = 0;                           ///< wanted along `along` [m/s]; 0 across
-  double time_step = 0;                          ///< of the substep [s]
+  double time_step = 0;                       ///< of the substep [s]
 };
 
 /// A frame on top of a robot that turns about the robot's z axis.

@@ -25,10 +25,12 @@ struct Convergence {
   std::size_t islands = 0;        ///< solved, over all substeps
   std::size_t not_converged = 0;  ///< of them
   double worst = 0;               ///< violation of the laws of contacts and motors [m/s], [rad/s]
-  std::size_t divided = 0;         ///< substeps that something took in `many_parts` or more
-  std::size_t divided_entity = 0;  ///< in order of adding: the first such, or of several the one of most links
+  std::size_t divided = 0;        ///< substeps that something took in `many_parts` or more
+  std::size_t divided_entity =
+      0;  ///< in order of adding: the first such, or of several the one of most links
 };
-/// A substep in so many parts, or so many evaluations of a tree's equations of motion, takes as many times longer.
+/// A substep in so many parts, or so many evaluations of a tree's equations of motion, takes as
+/// many times longer.
 constexpr int many_parts = 100;
 
 }  // namespace ziggurat::physics

@@ -88,15 +88,16 @@ void cross_edges(const OrientedBox& a, const OrientedBox& b, const Separation& e
 }
 
 /// A face of one of two boxes touches.
-void touch_face(const OrientedBox& a, const OrientedBox& b, const Separation& face, btScalar reach, Manifold& out) {
+void touch_face(const OrientedBox& a, const OrientedBox& b, const Separation& face, btScalar reach,
+                Manifold& out) {
   if (face.axis_a >= 0) return clip_faces(a, face.axis_a, face.a_to_b, b, true, reach, out);
   clip_faces(b, face.axis_b, -face.a_to_b, a, false, reach, out);
 }
 
 /// Adds further points of the best face, above the point where edges cross: they may touch within
 /// the substep. A plank that lies on another one's edge rocks on both of its own edges.
-void add_beside(const OrientedBox& a, const OrientedBox& b, const Separation& face, const Separation& edge, btScalar reach,
-                btScalar prefer, Manifold& out) {
+void add_beside(const OrientedBox& a, const OrientedBox& b, const Separation& face,
+                const Separation& edge, btScalar reach, btScalar prefer, Manifold& out) {
   constexpr btScalar along = btScalar(0.98);  // cosine of the angle between their normals
   const btScalar cosine = face.a_to_b.dot(edge.a_to_b);
   if (cosine < along) return;
@@ -141,17 +142,19 @@ bool find_parallel(const OrientedBox& a, const OrientedBox& b, int& axis_a, int&
   return false;
 }
 
-/// Two edges that lie along each other touch: the ends of what they share. Where they meet, a normal
-/// between those of their faces is as good as any; it is that of edges with a radius, so it changes
-/// steadily from one face to the other.
+/// Two edges that lie along each other touch: the ends of what they share. Where they meet, a
+/// normal between those of their faces is as good as any; it is that of edges with a radius, so it
+/// changes steadily from one face to the other.
 /// @param one, other  of A and of B
 /// @param radius      of the edges [m]
 /// @return  false if it is a face that touches
-bool meet_along_edges(const Edge& one, const Edge& other, btScalar radius, btScalar reach, Manifold& out) {
+bool meet_along_edges(const Edge& one, const Edge& other, btScalar radius, btScalar reach,
+                      Manifold& out) {
   const btVector3& u = one.direction;
   const btVector3 between = other.middle - one.middle;
   const btVector3 across = between - u * u.dot(between);
-  btVector3 normal = across + radius * (one.sides[0] + one.sides[1] - other.sides[0] - other.sides[1]);
+  btVector3 normal =
+      across + radius * (one.sides[0] + one.sides[1] - other.sides[0] - other.sides[1]);
   normal -= u * u.dot(normal);
   for (int k = 0; k < 2; ++k) {
     if (normal.dot(one.sides[k]) < 0 || normal.dot(other.sides[k]) > 0) return false;

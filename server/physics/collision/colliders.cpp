@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <tuple>
 
-#include "physics/multibody/prefetch.h"
-#include "physics/collision/sphere_grid.h"
 #include "physics/bodies/convert.h"
 #include "physics/collision/contact_limits.h"
 #include "physics/collision/shape.h"
+#include "physics/collision/sphere_grid.h"
+#include "physics/multibody/prefetch.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -93,7 +93,9 @@ Colliders::Colliders() : filter_(std::make_unique<Filter>(groups)) {
   broadphase_.getOverlappingPairCache()->setOverlapFilterCallback(filter_.get());
 }
 
-double speculative_margin(const Colliders& colliders, double time_step) { return 1e-3 + std::max(15.0, 1.5 * colliders.gravity) * time_step * time_step; }
+double speculative_margin(const Colliders& colliders, double time_step) {
+  return 1e-3 + std::max(15.0, 1.5 * colliders.gravity) * time_step * time_step;
+}
 
 /// Removes all pairs first, at once: a box without pairs is gone in logarithmic time.
 Colliders::~Colliders() {
@@ -135,7 +137,8 @@ void Colliders::add(const Body& body, const scene::Entity& entity, const dynamic
 }
 
 Bounds Collider::bounds() const {
-  btVector3 extent = pose.getBasis().absolute() * half_extents;  // at most that of the bounding sphere
+  btVector3 extent =
+      pose.getBasis().absolute() * half_extents;  // at most that of the bounding sphere
   extent.setMin(btVector3(radius, radius, radius));
   extent += btVector3(reach, reach, reach);
   return {pose.getOrigin() - extent, pose.getOrigin() + extent};
@@ -167,7 +170,8 @@ void Colliders::insert_new_groups() {
 
 int Colliders::tree_depth() {
   insert_new_groups();
-  return std::max(btDbvt::maxdepth(broadphase_.m_sets[0].m_root), btDbvt::maxdepth(broadphase_.m_sets[1].m_root));
+  return std::max(btDbvt::maxdepth(broadphase_.m_sets[0].m_root),
+                  btDbvt::maxdepth(broadphase_.m_sets[1].m_root));
 }
 
 std::span<ColliderGroup> Colliders::groups_of(std::size_t entity) {
@@ -235,7 +239,8 @@ void Colliders::update_box(ColliderGroup& group, double step, bool shrinks) {
 }
 
 void Colliders::update_poses(const dynamics::System& system, double time_step) {
-  for (std::size_t i = inserted_; i < groups.size(); ++i) update_poses(groups[i], system, time_step);  // with boxes that last
+  for (std::size_t i = inserted_; i < groups.size(); ++i)
+    update_poses(groups[i], system, time_step);  // with boxes that last
   insert_new_groups();
   const double least = speculative_margin(*this, time_step);
   has_woken = false;
@@ -253,7 +258,8 @@ void Colliders::update_poses(const dynamics::System& system, double time_step) {
   }
 }
 
-void Colliders::update_poses(const dynamics::System& system, double time_step, const TreeSet& active) {
+void Colliders::update_poses(const dynamics::System& system, double time_step,
+                             const TreeSet& active) {
   insert_new_groups();
   updated_groups_.clear();
   predicted.clear();
@@ -272,7 +278,8 @@ void Colliders::prefetch_after(const ColliderGroup& group, const dynamics::Syste
     const std::size_t index = static_cast<std::size_t>(&group - groups.data()) + by;
     return index < groups.size() && groups[index].moves ? &groups[index] : nullptr;
   };
-  if (const ColliderGroup* next = later(6)) dynamics::prefetch(&system.trees[next->entity], sizeof(dynamics::Tree));
+  if (const ColliderGroup* next = later(6))
+    dynamics::prefetch(&system.trees[next->entity], sizeof(dynamics::Tree));
   if (const ColliderGroup* next = later(3)) {
     const dynamics::Tree& tree = system.trees[next->entity];
     dynamics::prefetch(tree.rotation);
@@ -285,7 +292,8 @@ void Colliders::prefetch_after(const ColliderGroup& group, const dynamics::Syste
 
 /// Updates poses and velocities of a group's colliders, and notes whether it is fast.
 /// @return  how far it moves [m]
-double Colliders::update_poses(ColliderGroup& group, const dynamics::System& system, double time_step) {
+double Colliders::update_poses(ColliderGroup& group, const dynamics::System& system,
+                               double time_step) {
   double fastest = 0;
   if (group.moves) prefetch_after(group, system);
   for (std::size_t i = group.first; i < group.first + group.count; ++i) {
@@ -298,20 +306,25 @@ double Colliders::update_poses(ColliderGroup& group, const dynamics::System& sys
     fastest = std::max(fastest, speed);
   }
   enclose(group);
-  if (time_step * fastest > speculative_margin(*this, time_step) / 2) fast_entities.push_back(static_cast<int>(group.entity));
+  if (time_step * fastest > speculative_margin(*this, time_step) / 2)
+    fast_entities.push_back(static_cast<int>(group.entity));
   return time_step * fastest;
 }
 
-bool Colliders::add_predictions(std::span<const int> trees, const dynamics::System& system, double time_step) {
+bool Colliders::add_predictions(std::span<const int> trees, const dynamics::System& system,
+                                double time_step) {
   bool any = false;
   const auto is_known = [&](std::size_t index, const Collider& moved) {
     const auto moves_so = [&](const Collider& known) {
-      const double turns = (moved.angular_velocity - known.angular_velocity).length() * moved.radius;
-      return time_step * ((moved.velocity - known.velocity).length() + turns) <= speculative_margin(*this, time_step);
+      const double turns =
+          (moved.angular_velocity - known.angular_velocity).length() * moved.radius;
+      return time_step * ((moved.velocity - known.velocity).length() + turns) <=
+             speculative_margin(*this, time_step);
     };
-    return moves_so(all[index]) || std::ranges::any_of(predicted, [&](const PredictedCollider& known) {
-      return known.index == index && moves_so(known.collider);
-    });
+    return moves_so(all[index]) ||
+           std::ranges::any_of(predicted, [&](const PredictedCollider& known) {
+             return known.index == index && moves_so(known.collider);
+           });
   };
   for (const int tree : trees) {
     for (ColliderGroup& group : groups_of(static_cast<std::size_t>(tree))) {
@@ -321,7 +334,8 @@ bool Colliders::add_predictions(std::span<const int> trees, const dynamics::Syst
         set_pose(moved, system.trees[tree]);
         if (is_known(i, moved)) continue;
         const double speed = speed_of(moved);
-        all[i].reach = moved.reach = std::max(all[i].reach, btScalar(speculative_margin(*this, time_step) + 1.3 * time_step * speed));
+        all[i].reach = moved.reach = std::max(
+            all[i].reach, btScalar(speculative_margin(*this, time_step) + 1.3 * time_step * speed));
         predicted.push_back({i, std::move(moved)});
         fastest = std::max(fastest, speed);
       }
@@ -334,7 +348,8 @@ bool Colliders::add_predictions(std::span<const int> trees, const dynamics::Syst
   return any;
 }
 
-void Colliders::find_pairs(const ColliderGroup& a, const ColliderGroup& b, std::vector<ColliderPair>& out) {
+void Colliders::find_pairs(const ColliderGroup& a, const ColliderGroup& b,
+                           std::vector<ColliderPair>& out) {
   const Bounds all_of_b{b.low, b.high};
   if (!boxes_meet({a.low, a.high}, all_of_b)) return;
   bounds_.clear();
@@ -345,7 +360,8 @@ void Colliders::find_pairs(const ColliderGroup& a, const ColliderGroup& b, std::
       for (std::size_t j = 0; j < b.count; ++j) bounds_.push_back(all[b.first + j].bounds());
     }
     for (std::size_t j = 0; j < b.count; ++j) {
-      if (boxes_meet(one, bounds_[j])) out.push_back({std::min(i, b.first + j), std::max(i, b.first + j)});
+      if (boxes_meet(one, bounds_[j]))
+        out.push_back({std::min(i, b.first + j), std::max(i, b.first + j)});
     }
     check_near_pairs(out.size());
   }

@@ -4,18 +4,18 @@
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "physics/stepping/system.h"
 #include "physics/bodies/bodies.h"
-#include "physics/collision/shapes.h"
 #include "physics/collision/pair_lists.h"
+#include "physics/collision/shapes.h"
+#include "physics/stepping/system.h"
 #include "scene/scene.h"
-#include <cstddef>
 
 namespace ziggurat::physics {
 
@@ -34,18 +34,20 @@ struct alignas(64) Collider {
   btVector3 angular_velocity{0, 0, 0};            ///< [rad/s]
   double reach = 0;                               ///< distance that its surface may move [m]
 
-  double radius = 0;           ///< of the sphere about the shape's centre that holds it [m]
-  btVector3 half_extents{0, 0, 0};     ///< half extents of the box about it and its centre, in its axes [m]
+  double radius = 0;  ///< of the sphere about the shape's centre that holds it [m]
+  btVector3 half_extents{0, 0,
+                         0};   ///< half extents of the box about it and its centre, in its axes [m]
   std::size_t entity = floor;  ///< its number, and that of its tree
   std::uint32_t part = 0;      ///< into Body::parts
-  bool is_centred = true;         ///< in_part is the identity
+  bool is_centred = true;      ///< in_part is the identity
   bool moves = false;
   bool is_present = false;  ///< false: removed; also false of the floor
-  bool has_wheels = false;    ///< has wheels: no friction with bodies below or above it
+  bool has_wheels = false;  ///< has wheels: no friction with bodies below or above it
 
   std::size_t group = 0;  ///< into the broad phase's groups
   std::size_t link = 0;   ///< into Body::links
-  bool is_on_fixed_base = false;    ///< on joints from something that stands: its centre moves on a circle
+  bool is_on_fixed_base =
+      false;  ///< on joints from something that stands: its centre moves on a circle
   bool is_single_body = false;  ///< the only part of a free entity, with its centre at the part's
   scene::Surface surface;
   contact::Shape shape;
@@ -61,8 +63,8 @@ struct ColliderGroup {
   std::size_t entity = 0;
   std::size_t first = 0, count = 0;  ///< into Colliders::all
   bool moves = false;
-  bool is_static = false;                     ///< in the coming substep: it stands, or sleeps
-  bool was_static = false;                    ///< in the substep before
+  bool is_static = false;                 ///< in the coming substep: it stands, or sleeps
+  bool was_static = false;                ///< in the substep before
   btVector3 low{0, 0, 0}, high{0, 0, 0};  ///< corners of the box about those of its colliders [m]
   btBroadphaseProxy* proxy = nullptr;     ///< none: removed
 
@@ -83,7 +85,7 @@ class Colliders {
   std::vector<Collider> all;
   std::vector<ColliderGroup> groups;
   std::optional<std::size_t> floor;  ///< into `all`
-  bool has_woken = false;                 ///< one that rested in the substep before has woken
+  bool has_woken = false;            ///< one that rested in the substep before has woken
   /// Predicted motions of colliders, see add_predictions(): few.
   struct PredictedCollider {
     std::size_t index = 0;  ///< into `all`
@@ -122,7 +124,8 @@ class Colliders {
   /// Adds colliders of some trees whose motion differs from the known ones, and extends their
   /// reach. Until the next update_poses().
   /// @return  whether there are such: then there may be other pairs
-  bool add_predictions(std::span<const int> trees, const dynamics::System& system, double time_step);
+  bool add_predictions(std::span<const int> trees, const dynamics::System& system,
+                       double time_step);
   /// Moving groups that the last update_poses() updated, ascending.
   std::span<const std::size_t> updated_groups() const { return updated_groups_; }
   /// X_WS of a collider now.
@@ -149,7 +152,7 @@ class Colliders {
 
   std::unique_ptr<Filter> filter_;
   btDbvtBroadphase broadphase_;
-  std::size_t inserted_ = 0;  // groups that it knows
+  std::size_t inserted_ = 0;    // groups that it knows
   std::vector<Bounds> bounds_;  // of a group's colliders
   std::vector<std::size_t> updated_groups_, hits_;
 };
@@ -170,8 +173,8 @@ void make_room(std::vector<Item>& items, std::size_t more) {
 /// Round surfaces are followed to their touch or closest approach, because their normal rotates.
 /// @param near  distance that counts as an impact [m]
 /// @param time  out: of the impact, from the substep's beginning [s]
-contact::Manifold time_of_impact(const Collider& a, const Collider& b, double time_step, double near,
-                                double& time);
+contact::Manifold time_of_impact(const Collider& a, const Collider& b, double time_step,
+                                 double near, double& time);
 
 /// Rotation of a collider on a fixed base in a time [rad]; 0 of others.
 double arm_rotation(const Collider& collider, double time);

@@ -33,7 +33,8 @@ Nearest search(const Body& a, const btConvexShape& shape_a, const Body& b,
   const btVector3 guess = basis.transpose() * (at.a.getOrigin() - at.b.getOrigin());
   found.apart = btGjkEpaSolver2::Distance(&shape_a, at.a, &shape_b, at.b, guess, results) &&
                 results.distance > 0;
-  if (!found.apart && !btGjkEpaSolver2::Penetration(&shape_a, at.a, &shape_b, at.b, guess, results)) {
+  if (!found.apart &&
+      !btGjkEpaSolver2::Penetration(&shape_a, at.a, &shape_b, at.b, guess, results)) {
     return found;
   }
   const btScalar length = results.normal.length();
@@ -126,17 +127,22 @@ struct Station {
 Station station(const Line& side, btScalar along, const Line& other, const btVector3& normal) {
   const btVector3 here = side.middle + side.direction * along;
   const btScalar across = other.direction.dot(here - other.middle);
-  const btVector3 on_axis = other.middle + other.direction * btMax(-other.half_length, btMin(other.half_length, across));
+  const btVector3 on_axis =
+      other.middle + other.direction * btMax(-other.half_length, btMin(other.half_length, across));
   const btVector3 between = here - on_axis;
   // The side's rim at its end is turned against the other by as much as their axes are.
   const btScalar length = between.length();
   const btScalar along_side = side.direction.dot(between);
-  const btScalar rim = length > 0 ? side.radius * btSqrt(btMax(btScalar(0), 1 - along_side * along_side / (length * length))) : side.radius;
+  const btScalar rim =
+      length > 0 ? side.radius *
+                       btSqrt(btMax(btScalar(0), 1 - along_side * along_side / (length * length)))
+                 : side.radius;
   const btScalar height = normal.dot(between);
   return {on_axis + normal * other.radius, (height < 0 ? height : length) - rim - other.radius};
 }
 
-/// The side of A along an edge or side of B, and the part that they share, from the middle of A's [m].
+/// The side of A along an edge or side of B, and the part that they share, from the middle of A's
+/// [m].
 struct Shared {
   Line of_a, of_b;
   btScalar from = 0, to = 0;
@@ -155,7 +161,8 @@ bool lie_along(const Body& a, const Body& b, const Nearest& near, Shared& out) {
   return out.to - out.from >= btScalar(0.1) * out.of_a.half_length;
 }
 
-/// Takes the direction from the edge to the axis, if it separates better: exact where they touch, where GJK finds none.
+/// Takes the direction from the edge to the axis, if it separates better: exact where they touch,
+/// where GJK finds none.
 void look_across(const Body& a, const Body& b, Nearest& near) {
   Shared shared;
   if (!lie_along(a, b, near, shared)) return;
@@ -183,8 +190,8 @@ void add_line(const Body& a, const Body& b, const Nearest& near, btScalar reach,
 
 /// Adds further points of the best face, below the nearest point: they may touch within the
 /// substep.
-void add_beside(const BestFace& face, const Body& a, const Body& b, const Nearest& near, btScalar reach, btScalar prefer,
-                Manifold& out) {
+void add_beside(const BestFace& face, const Body& a, const Body& b, const Nearest& near,
+                btScalar reach, btScalar prefer, Manifold& out) {
   const btScalar cosine = face.b_to_a().dot(near.b_to_a);
   // The side of a capsule that faces the normal is not the one that faces the face.
   if (cosine < btScalar(0.98) || std::holds_alternative<const Capsule*>(a.shape)) return;
@@ -198,8 +205,8 @@ void add_beside(const BestFace& face, const Body& a, const Body& b, const Neares
 
 constexpr btScalar touching = btScalar(1e-6);  // what is nearer to a surface is on it [m]
 
-/// The nearest direction and point of the shapes themselves. Where they touch GJK finds none, and what it finds may be
-/// anything: then as if they were a little apart.
+/// The nearest direction and point of the shapes themselves. Where they touch GJK finds none, and
+/// what it finds may be anything: then as if they were a little apart.
 /// @param near  by cores
 Nearest nearest_sharp(const Body& a, const Body& b, const PosedPair& at, const Nearest& near) {
   constexpr btScalar apart = btScalar(1e-4);  // [m]
@@ -260,7 +267,8 @@ void clipped_contacts(const Body& a, const Body& b, const PosedPair& at, Manifol
   if (near.distance > at.reach) return;
   out.normal = near.b_to_a;
   add_line(a, b, near, at.reach, out);
-  if (out.count == 0 || least(out) > near.distance + btScalar(0.1) * prefer) out.add(near.on_b, near.distance);
+  if (out.count == 0 || least(out) > near.distance + btScalar(0.1) * prefer)
+    out.add(near.on_b, near.distance);
   if (out.count == 1) add_beside(face, a, b, near, at.reach, prefer, out);
 }
 

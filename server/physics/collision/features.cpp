@@ -64,8 +64,8 @@ void clip_to(const Box& box, const Body& body, int face, Polygon& polygon) {
 
 bool side_of(const Box&, const Body&, Line&) { return false; }
 
-bool edge_of(const Box& box, const Body& b, const btVector3&, const btVector3& on_b, const btVector3& direction,
-             Line& line) {
+bool edge_of(const Box& box, const Body& b, const btVector3&, const btVector3& on_b,
+             const btVector3& direction, Line& line) {
   for (int i = 0; i < 3; ++i) {
     if (btFabs(b.axis[i].dot(direction)) < almost_parallel) continue;
     line = {b.centre, b.axis[i], box.half[i], 0};
@@ -85,7 +85,8 @@ Line side_line(const Body& body, btScalar radius, btScalar half_length) {
 }
 
 bool is_along(const Body& b, const btVector3& b_to_a, const btVector3& direction) {
-  return btFabs(b.axis[2].dot(b_to_a)) <= almost_across && btFabs(b.axis[2].dot(direction)) >= almost_parallel;
+  return btFabs(b.axis[2].dot(b_to_a)) <= almost_across &&
+         btFabs(b.axis[2].dot(direction)) >= almost_parallel;
 }
 
 // --- cylinder -----------------------------------------------------------------------------------
@@ -231,7 +232,8 @@ btVector3 normal_of(const Hull& hull, const Body& body, int face, const btVector
 
 Polygon feature_of(const Hull& hull, const Body& body, const btVector3& towards) {
   Polygon polygon;
-  for (const int corner : face_along(*hull.polyhedron, to_body(body, towards)).corners) polygon.add(corner_of(hull, body, corner));
+  for (const int corner : face_along(*hull.polyhedron, to_body(body, towards)).corners)
+    polygon.add(corner_of(hull, body, corner));
   return polygon;
 }
 
@@ -249,8 +251,8 @@ void clip_to(const Hull& hull, const Body& body, int face, Polygon& polygon) {
 
 bool side_of(const Hull&, const Body&, Line&) { return false; }
 
-bool edge_of(const Hull& hull, const Body& b, const btVector3&, const btVector3& on_b, const btVector3& direction,
-             Line& line) {
+bool edge_of(const Hull& hull, const Body& b, const btVector3&, const btVector3& on_b,
+             const btVector3& direction, Line& line) {
   const btVector3 along = to_body(b, direction), near = to_body(b, on_b - b.centre);
   btScalar least = BT_LARGE_FLOAT;
   for (const Polyhedron::Face& face : hull.polyhedron->faces) {
@@ -262,7 +264,8 @@ bool edge_of(const Hull& hull, const Body& b, const btVector3&, const btVector3&
       const btScalar length = edge.length();
       if (btFabs(edge.dot(along)) < almost_parallel * length) continue;
       const btVector3 unit = edge / length;
-      const btVector3 nearest = start + unit * btMax(btScalar(0), btMin(length, unit.dot(near - start)));
+      const btVector3 nearest =
+          start + unit * btMax(btScalar(0), btMin(length, unit.dot(near - start)));
       if ((near - nearest).length2() >= least) continue;
       least = (near - nearest).length2();
       line = {b.centre + to_world(b, start + edge / 2), to_world(b, unit), length / 2, 0};
@@ -304,8 +307,11 @@ bool side(const Body& body, Line& line) {
   return std::visit([&](const auto* shape) { return side_of(*shape, body, line); }, body.shape);
 }
 
-bool edge_along(const Body& b, const btVector3& b_to_a, const btVector3& on_b, const btVector3& direction, Line& line) {
-  return std::visit([&](const auto* shape) { return edge_of(*shape, b, b_to_a, on_b, direction, line); }, b.shape);
+bool edge_along(const Body& b, const btVector3& b_to_a, const btVector3& on_b,
+                const btVector3& direction, Line& line) {
+  return std::visit(
+      [&](const auto* shape) { return edge_of(*shape, b, b_to_a, on_b, direction, line); },
+      b.shape);
 }
 
 }  // namespace ziggurat::physics::contact

@@ -55,6 +55,7 @@ bool side(const Body& body, Line& line);
 
 /// An edge or side of B that a line on the side of A may lie along. False if there is none.
 /// @param on_b  the point of B nearest to A: of parallel edges the one there
-bool edge_along(const Body& b, const btVector3& b_to_a, const btVector3& on_b, const btVector3& direction, Line& line);
+bool edge_along(const Body& b, const btVector3& b_to_a, const btVector3& on_b,
+                const btVector3& direction, Line& line);
 
 }  // namespace ziggurat::physics::contact

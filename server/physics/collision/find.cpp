@@ -163,7 +163,9 @@ struct Across {
 /// vibrate.
 int steadily_deepest(const Manifold& contacts, const Across& across) {
   constexpr btScalar same = btScalar(1e-6);  // depth [m]
-  const btVector3 towards = across.first + btScalar(0.6) * across.second;  // no symmetry of squares has points at the same place
+  const btVector3 towards =
+      across.first +
+      btScalar(0.6) * across.second;  // no symmetry of squares has points at the same place
   const auto& points = contacts.points;
   btScalar least = points[0].distance;
   for (int i = 1; i < contacts.count; ++i) least = btMin(least, points[i].distance);
@@ -175,7 +177,8 @@ int steadily_deepest(const Manifold& contacts, const Across& across) {
   return best;
 }
 
-/// Keeps the deepest point, the one farthest from it, and those farthest to both sides of the line between them.
+/// Keeps the deepest point, the one farthest from it, and those farthest to both sides of the line
+/// between them.
 void keep_four(Manifold& contacts, int deepest) {
   auto& points = contacts.points;
   // Ties go to the first: a later point must be better by more than rounding.

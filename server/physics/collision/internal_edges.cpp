@@ -10,7 +10,7 @@ namespace ziggurat::physics {
 namespace {
 
 constexpr btScalar most_step = 1e-5;  // largest step in a surface that counts as flush [m]
-constexpr btScalar slack = 1e-4;  // tolerance of points inside a collider [m]
+constexpr btScalar slack = 1e-4;      // tolerance of points inside a collider [m]
 
 /// Height of a collider along a direction, from the world's origin [m].
 btScalar support_height(const Collider& collider, const btVector3& up) {
@@ -24,16 +24,19 @@ btScalar support_height(const Collider& collider, const btVector3& up) {
 /// mover, which ends flush with it. The pair of `hidden` does not count. Notes the pair, rather one
 /// without contacts.
 /// @param height  of the surface of `cover` along `up` [m]
-bool ContactCache::is_inside_neighbour(const Collider& cover, const CachedPair& hidden, std::size_t mover, const btVector3& up, btScalar height,
-                              const btVector3& point) {
+bool ContactCache::is_inside_neighbour(const Collider& cover, const CachedPair& hidden,
+                                       std::size_t mover, const btVector3& up, btScalar height,
+                                       const btVector3& point) {
   neighbours_.clear();
   pairs_of_collider_.collect(mover, neighbours_);
   CachedPair* carrier = nullptr;
   for (const int number : neighbours_) {
     CachedPair& pair = pairs_[number];
     const Collider& other = colliders_.all[pair.a == mover ? pair.b : pair.a];
-    const bool same_base = cover.moves ? other.entity == cover.entity && other.part == cover.part : !other.moves;
-    if (!same_base || !other.is_present || &pair == &hidden || btFabs(support_height(other, up) - height) > most_step ||
+    const bool same_base =
+        cover.moves ? other.entity == cover.entity && other.part == cover.part : !other.moves;
+    if (!same_base || !other.is_present || &pair == &hidden ||
+        btFabs(support_height(other, up) - height) > most_step ||
         !contact::contains(other.shape, other.pose.invXform(point), slack)) {
       continue;
     }
@@ -98,7 +101,8 @@ void ContactCache::drop_internal_edges() {
     for (std::size_t j = i; j-- > 0 && same_base(supports_[j], one) && pair.count > 0;) {
       CachedPair& other = pairs_[supports_[j].pair];
       if (other.count == 0) continue;
-      dropped |= drops_internal_edge(other, pair, one.mover) || drops_internal_edge(pair, other, one.mover);
+      dropped |= drops_internal_edge(other, pair, one.mover) ||
+                 drops_internal_edge(pair, other, one.mover);
     }
   }
   if (dropped) keep_if([](const CachedPair& pair) { return pair.count > 0; });

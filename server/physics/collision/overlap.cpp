@@ -6,7 +6,8 @@
 
 namespace ziggurat::physics {
 
-std::vector<PlacedCollider> placed_colliders(const scene::Entity& entity, const math::Pose& origin) {
+std::vector<PlacedCollider> placed_colliders(const scene::Entity& entity,
+                                             const math::Pose& origin) {
   std::vector<PlacedCollider> placed;
   const std::vector<math::Pose> assembled = assemble(entity);
   for (std::size_t i = 0; i < entity.links.size(); ++i) {

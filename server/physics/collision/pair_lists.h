@@ -1,12 +1,12 @@
 #pragma once
 // Lists of each collider's pairs: removing a collider visits no other pairs.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
-#include <algorithm>
-#include <cstdint>
 
 namespace ziggurat::physics {
 
@@ -33,11 +33,11 @@ class PairLists {
     std::size_t side(std::size_t collider) const { return colliders[0] == collider ? 0 : 1; }
   };
   std::vector<Links> links_;  // by the pairs' numbers
-  std::vector<int> first_;     // of each collider; 0: none
+  std::vector<int> first_;    // of each collider; 0: none
 };
 
 struct TreeSet {
-  std::vector<int> trees;           ///< ascending
+  std::vector<int> trees;              ///< ascending
   std::vector<std::uint8_t> contains;  ///< of each tree of the system whether it is in the set
 };
 

@@ -5,8 +5,9 @@
 // All take the poses of the shapes' frames in the world and fill `out` with points no farther apart
 // than `reach`.
 
-#include "physics/collision/features.h"
 #include <algorithm>
+
+#include "physics/collision/features.h"
 
 namespace ziggurat::physics::contact {
 

@@ -54,7 +54,8 @@ void add_lower_face(const Hull& hull, const PosedPair& at, Manifold& out) {
   const btScalar lowest = reach_along(hull, down);
   for (std::size_t i = 0; i < polyhedron.corners.size(); ++i) {
     const btVector3& corner = polyhedron.corners[i];
-    const bool carries = corner.dot(down) > lowest - as_low || std::ranges::find(face, static_cast<int>(i)) != face.end();
+    const bool carries = corner.dot(down) > lowest - as_low ||
+                         std::ranges::find(face, static_cast<int>(i)) != face.end();
     if (carries) add(at.a * corner, at.b, at.reach, out);
   }
 }

@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "physics/collision/sphere_grid.h"
 #include "physics/bodies/convert.h"
+#include "physics/collision/sphere_grid.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -164,7 +164,8 @@ btDbvtVolume volume(const scene::Geometry& geometry, const math::Pose& pose, dou
   return btDbvtVolume::FromCE(to_bullet(center), to_bullet(half));
 }
 
-/// Whether the tree can have it. Bullet builds a tree by comparing sizes, and writes outside of its list if all are infinite.
+/// Whether the tree can have it. Bullet builds a tree by comparing sizes, and writes outside of its
+/// list if all are infinite.
 bool is_bounded(const btDbvtVolume& volume) {
   constexpr double farthest = 1e30;  // [m], whose third power is finite; no ray is as long
   const auto is_near = [](const btVector3& v) {
@@ -330,7 +331,8 @@ void Rays::find(const Vector3& low, const Vector3& high, std::span<const std::si
       continue;
     }
     const auto collider = static_cast<std::size_t>(node.dataAsInt);
-    if (std::ranges::find(ignored, p.solids[collider].entity) == ignored.end()) out.colliders.push_back(collider);
+    if (std::ranges::find(ignored, p.solids[collider].entity) == ignored.end())
+      out.colliders.push_back(collider);
   }
   out.are_few = out.colliders.size() <= few;
 }

@@ -59,7 +59,8 @@ btScalar bounding_radius(const Shape& shape);
 struct ManifoldPoint {
   btVector3 on_b;     ///< on the surface of B, in the world [m]
   btScalar distance;  ///< along the normal; negative = overlap [m]
-  /// From the place opposite, along the normal, to where the other body meets it: of what stands, or of B [m].
+  /// From the place opposite, along the normal, to where the other body meets it: of what stands,
+  /// or of B [m].
   btVector3 offset_when_met;
 };
 
@@ -77,16 +78,15 @@ struct Manifold {
 
 /// Which points of a box or a hull carry it on a half-space.
 enum class Support {
-  face,    ///< the corners of the face that looks down most: those that land when a plank falls flat
-  all      ///< all its corners, for what tumbles
+  face,  ///< the corners of the face that looks down most: those that land when a plank falls flat
+  all    ///< all its corners, for what tumbles
 };
 
 /// Contacts of two bodies whose shape centres stand at the given world poses.
 /// @param reach   points farther apart than this are left out [m]
 /// @param useful  where all points would surely be farther apart than this, there may be none [m]
 Manifold find(const Shape& a, const btTransform& pose_a, const Shape& b, const btTransform& pose_b,
-              btScalar reach, Support support = Support::face,
-              btScalar useful = BT_LARGE_FLOAT);
+              btScalar reach, Support support = Support::face, btScalar useful = BT_LARGE_FLOAT);
 
 /// Whether a point lies in a shape or within `slack` of it.
 /// @param point  in the shape's frame [m];  @param slack  [m]

@@ -91,7 +91,9 @@ void contact_points(const Sphere& a, const Cylinder& b, const PosedPair& at, Man
     outward = centre - nearest;
     depth = outward.length();
     // On the surface but for rounding there is no way to it.
-    outward = depth > 1e-9 * b.radius ? outward / depth : beyond_side > 0 ? side : btVector3(0, 0, up);
+    outward = depth > 1e-9 * b.radius ? outward / depth
+              : beyond_side > 0       ? side
+                                      : btVector3(0, 0, up);
   }
   add(a, pose_b * nearest, pose_b.getBasis() * outward, depth, reach, out);
 }

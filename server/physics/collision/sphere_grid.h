@@ -5,13 +5,13 @@
 #include <LinearMath/btVector3.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <unordered_map>
 #include <vector>
-#include <bit>
 
 namespace ziggurat::physics {
 
@@ -71,8 +71,9 @@ class SphereGrid {
   std::vector<std::size_t> unbounded_;
 };
 
-/// Calls visit(i) once for each i below count, in the order of their numbers with the bits reversed. Bullet's trees
-/// of boxes put each new box where it fits best: in a row, one after another, they make a list.
+/// Calls visit(i) once for each i below count, in the order of their numbers with the bits
+/// reversed. Bullet's trees of boxes put each new box where it fits best: in a row, one after
+/// another, they make a list.
 template <class Visit>
 void in_bit_reversed_order(std::size_t count, Visit visit) {
   const std::size_t places = std::bit_ceil(count);

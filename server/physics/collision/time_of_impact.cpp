@@ -1,11 +1,10 @@
-#include "physics/collision/colliders.h"
-
 #include <LinearMath/btTransformUtil.h>
 
 #include <algorithm>
 
-#include "physics/multibody/rotation.h"
 #include "physics/bodies/convert.h"
+#include "physics/collision/colliders.h"
+#include "physics/multibody/rotation.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -29,7 +28,8 @@ btVector3 surface_angular_velocity(const Collider& collider) {
 /// Pose of a collider's surface after some time. On a fixed base it continues its screw motion.
 btTransform pose_after(const Collider& collider, double time) {
   if (!collider.moves) return collider.pose;
-  const math::Quaternion turn = dynamics::exponential(from_bullet(surface_angular_velocity(collider)) * time);
+  const math::Quaternion turn =
+      dynamics::exponential(from_bullet(surface_angular_velocity(collider)) * time);
   btVector3 way = collider.velocity * time;
   const btVector3& w = collider.angular_velocity;
   if (arm_rotation(collider, time) > 0) {
@@ -46,7 +46,8 @@ double fastest_approach(const Collider& a, const Collider& b, const btVector3& n
   const auto centre = [](const Collider& collider, const btVector3& towards) {
     return collider.is_on_fixed_base ? collider.velocity.length() : towards.dot(collider.velocity);
   };
-  return centre(b, normal) + centre(a, -normal) + surface_angular_velocity(a).cross(normal).length() * a.radius +
+  return centre(b, normal) + centre(a, -normal) +
+         surface_angular_velocity(a).cross(normal).length() * a.radius +
          surface_angular_velocity(b).cross(normal).length() * b.radius;
 }
 
@@ -62,7 +63,9 @@ struct ColliderAtImpact {
   const btTransform& pose_at_impact;
 
   /// A point of its surface at its present position.
-  btVector3 point_now(const btVector3& point) const { return collider.pose * pose_at_impact.invXform(point); }
+  btVector3 point_now(const btVector3& point) const {
+    return collider.pose * pose_at_impact.invXform(point);
+  }
   /// A point with the lever that it has at the impact.
   btVector3 point_with_impact_lever(const btVector3& point) const {
     return point - pose_at_impact.getOrigin() + collider.pose.getOrigin();
@@ -76,7 +79,8 @@ struct ColliderAtImpact {
 /// Carries points of the impact back to the present poses. Rebounds keep the levers of the touch,
 /// and their distance is that of their closing velocity over the time.
 /// @param time  until then [s]
-void carry_points_back(contact::Manifold& found, const ColliderAtImpact& a, const ColliderAtImpact& b, double time) {
+void carry_points_back(contact::Manifold& found, const ColliderAtImpact& a,
+                       const ColliderAtImpact& b, double time) {
   const bool turned = rebounds_at_touch_pose(a.collider, b.collider);
   for (int i = 0; i < found.count; ++i) {
     contact::ManifoldPoint& point = found.points[i];
@@ -118,8 +122,8 @@ double arm_rotation(const Collider& collider, double time) {
                      : double(surface_angular_velocity(collider).length()));
 }
 
-contact::Manifold time_of_impact(const Collider& a, const Collider& b, double time_step, double near,
-                                double& time) {
+contact::Manifold time_of_impact(const Collider& a, const Collider& b, double time_step,
+                                 double near, double& time) {
   constexpr int most_steps = 256;  // for bodies that rotate much faster than they approach
   constexpr int most_near = 12;    // steps that follow to the touch, below `near`
   constexpr double touch = 1e-7;   // [m]
@@ -143,7 +147,8 @@ contact::Manifold time_of_impact(const Collider& a, const Collider& b, double ti
     }
     if (approach <= 0) break;
     const double next = now + (distance - follow / 2) / approach;
-    const bool ends_near = distance - approach * (time_step - now) <= near;  // gravity may bring them together where their speeds do not
+    const bool ends_near = distance - approach * (time_step - now) <=
+                           near;  // gravity may bring them together where their speeds do not
     if (next >= time_step && (met.count > 0 || !ends_near)) break;
     now = std::min(next, time_step);
   }

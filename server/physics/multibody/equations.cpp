@@ -70,7 +70,7 @@ void compute_mass_matrix(const Tree& tree, Workspace& work) {
     work.composite_inertia[i] = work.link_inertia[i];
   }
   if (size > 1) work.mass.assign(work.mass.size(), 0);  // dofs on different branches do not couple
-  const int root = tree.has_floating_base ? 6 : 0;              // dofs along the world's axes
+  const int root = tree.has_floating_base ? 6 : 0;      // dofs along the world's axes
   for (int i = size - 1; i >= 0; --i) {
     const int first = tree.first_dof[i];
     for (int k = std::max(first, root); k < first + tree.dof_count[i]; ++k) {
@@ -182,7 +182,8 @@ double mobility(const Tree& tree, Workspace& work, int dof) {
   return sum;
 }
 
-void solve_prescribed(const Tree& tree, Workspace& work, const PrescribedJoints& drive, std::span<double> x) {
+void solve_prescribed(const Tree& tree, Workspace& work, const PrescribedJoints& drive,
+                      std::span<double> x) {
   const int n = tree.dofs;
   for (std::size_t k = 0; k < drive.prescribed.size(); ++k) {
     if (!drive.prescribed[k]) continue;
@@ -196,14 +197,16 @@ void solve_prescribed(const Tree& tree, Workspace& work, const PrescribedJoints&
   solve_mass_matrix(tree, work, x.data());
 }
 
-void forward_dynamics(Tree& tree, Workspace& work, const PrescribedJoints& drive, std::span<double> out) {
+void forward_dynamics(Tree& tree, Workspace& work, const PrescribedJoints& drive,
+                      std::span<double> out) {
   forward_kinematics(tree);
   velocity_kinematics(tree);
   compute_mass_matrix(tree, work);
   external_forces(tree, work, out, false, true);
   bias_forces(tree, work, work.scratch);
   for (int k = 0; k < tree.dofs; ++k) out[k] -= work.scratch[k] + tree.damping[k] * tree.v[k];
-  for (std::size_t k = 0; k < drive.prescribed.size(); ++k) out[k] = drive.prescribed[k] ? 0 : out[k] + drive.force[k];
+  for (std::size_t k = 0; k < drive.prescribed.size(); ++k)
+    out[k] = drive.prescribed[k] ? 0 : out[k] + drive.force[k];
   solve_prescribed(tree, work, drive, out);
 }
 

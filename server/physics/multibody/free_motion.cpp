@@ -9,12 +9,13 @@
 namespace ziggurat::dynamics {
 namespace {
 
-constexpr double most_rotation = 0.05; // of a Runge-Kutta step of a single body [rad]
-constexpr int most_rotation_steps = 8000;      // of one substep, of a single body
-constexpr int most_steps = 4000;      // of one substep, of the longest tree
-constexpr double tolerance = 1e-7;    // of a Dormand-Prince step, relative
-constexpr double most_bias_change = 3e-3;         // relative change of velocity by bias forces
-constexpr double most_driven_bias_change = 0.045; // its square, of trees that servos hold, over a second [1/s]
+constexpr double most_rotation = 0.05;     // of a Runge-Kutta step of a single body [rad]
+constexpr int most_rotation_steps = 8000;  // of one substep, of a single body
+constexpr int most_steps = 4000;           // of one substep, of the longest tree
+constexpr double tolerance = 1e-7;         // of a Dormand-Prince step, relative
+constexpr double most_bias_change = 3e-3;  // relative change of velocity by bias forces
+constexpr double most_driven_bias_change =
+    0.045;  // its square, of trees that servos hold, over a second [1/s]
 
 using Quaternion4 = Eigen::Vector4d;  // w x y z
 
@@ -50,8 +51,8 @@ int integrate_rotation(double* place, const Vector3& inertia, double time_step, 
     q = Quaternion4(turned.w(), turned.x(), turned.y(), turned.z());
   } else {
     const double fastest = momentum.norm() / inertia.minCoeff();
-    steps = static_cast<int>(
-        std::clamp(std::ceil(fastest * time_step / most_rotation), 1.0, double(most_rotation_steps)));
+    steps = static_cast<int>(std::clamp(std::ceil(fastest * time_step / most_rotation), 1.0,
+                                        double(most_rotation_steps)));
     const double h = time_step / steps;
     for (int i = 0; i < steps; ++i) {
       const Quaternion4 k1 = quaternion_rate(q, angular_velocity_of(q, inertia, momentum));
@@ -101,8 +102,8 @@ void position_rates(const Tree& tree, const double* q, const double* v, double* 
         for (int k = 0, next = 0; k < 6; ++k) {
           if (tree.freedoms >> k & 1) all[k] = speed[next++];
         }
-        const Quaternion4 turned =
-            quaternion_rate(Quaternion4(at[3], at[4], at[5], at[6]), Vector3(all[0], all[1], all[2]));
+        const Quaternion4 turned = quaternion_rate(Quaternion4(at[3], at[4], at[5], at[6]),
+                                                   Vector3(all[0], all[1], all[2]));
         std::copy_n(all + 3, 3, rates);
         std::copy_n(turned.data(), 4, rates + 3);
         break;
@@ -149,7 +150,8 @@ constexpr double error_weights[stage_count] = {
 /// One step of Dormand and Prince: stages in `k`, each the rates of q and v; the new state in the
 /// tree.
 /// @return  the estimated error relative to the tolerance
-double dormand_prince_step(Tree& tree, Workspace& work, const PrescribedJoints& drive, const double* start, double* k, double h) {
+double dormand_prince_step(Tree& tree, Workspace& work, const PrescribedJoints& drive,
+                           const double* start, double* k, double h) {
   const int positions = static_cast<int>(tree.q.size()), size = positions + tree.dofs;
   for (int stage = 1; stage < stage_count; ++stage) {
     for (int i = 0; i < size; ++i) {
@@ -158,7 +160,8 @@ double dormand_prince_step(Tree& tree, Workspace& work, const PrescribedJoints& 
       (i < positions ? tree.q[i] : tree.v[i - positions]) = start[i] + h * sum;
     }
     position_rates(tree, tree.q.data(), tree.v.data(), k + stage * size);
-    forward_dynamics(tree, work, drive, {k + stage * size + positions, static_cast<std::size_t>(tree.dofs)});
+    forward_dynamics(tree, work, drive,
+                     {k + stage * size + positions, static_cast<std::size_t>(tree.dofs)});
   }
   double speed = 0;  // scale of the error: the fastest coordinate
   for (int i = 0; i < tree.dofs; ++i) speed = std::max(speed, std::abs(tree.v[i]));
@@ -179,7 +182,8 @@ double dormand_prince_step(Tree& tree, Workspace& work, const PrescribedJoints& 
 /// Applies the impulse of external wrenches and of prescribed velocities.
 void kick(Tree& tree, Workspace& work, double time_step, const PrescribedJoints& drive) {
   const auto acts = [](const Wrench& w) { return !w.moment.isZero(0) || !w.force.isZero(0); };
-  if (drive.prescribed.empty() && std::none_of(tree.external.begin(), tree.external.end(), acts)) return;
+  if (drive.prescribed.empty() && std::none_of(tree.external.begin(), tree.external.end(), acts))
+    return;
   compute_mass_matrix(tree, work);
   auto& change = work.scratch;
   external_forces(tree, work, change, true, false);
@@ -188,7 +192,8 @@ void kick(Tree& tree, Workspace& work, double time_step, const PrescribedJoints&
     if (drive.prescribed[k]) change[k] = drive.velocity[k] - tree.v[k];
   }
   solve_prescribed(tree, work, drive, change);
-  for (int i = 0; i < tree.dofs; ++i) tree.v[i] = drive.prescribes(i) ? drive.velocity[i] : tree.v[i] + change[i];
+  for (int i = 0; i < tree.dofs; ++i)
+    tree.v[i] = drive.prescribes(i) ? drive.velocity[i] : tree.v[i] + change[i];
 }
 
 /// Largest number of steps in a substep: as many link updates as take some tenths of a second.
@@ -203,7 +208,8 @@ int integrate_tree(Tree& tree, Workspace& work, double time_step, const Prescrib
   double* start = work.stages.data();
   double* k = start + size;
   kick(tree, work, time_step, drive);
-  if (!drive.prescribed.empty() && std::ranges::all_of(drive.prescribed, [](unsigned char held) { return held != 0; })) {
+  if (!drive.prescribed.empty() &&
+      std::ranges::all_of(drive.prescribed, [](unsigned char held) { return held != 0; })) {
     std::copy(tree.v.begin(), tree.v.end(), work.scratch.begin());
     for (double& step : work.scratch) step *= time_step;
     integrate_positions(tree, work.scratch);
@@ -215,7 +221,8 @@ int integrate_tree(Tree& tree, Workspace& work, double time_step, const Prescrib
   std::copy(tree.v.begin(), tree.v.end(), start + positions);
   position_rates(tree, tree.q.data(), tree.v.data(), k);
   forward_dynamics(tree, work, drive, {k + positions, static_cast<std::size_t>(tree.dofs)});
-  double done = 0, h = std::min(time_step, tree.integrator_step > 0 ? tree.integrator_step : time_step);
+  double done = 0,
+         h = std::min(time_step, tree.integrator_step > 0 ? tree.integrator_step : time_step);
   const int most = most_steps_of(tree);
   int steps = 0;
   while (done < time_step && steps < most) {
@@ -252,7 +259,8 @@ void momentum_by_free_motion(Tree& tree, Workspace& work, double time_step, std:
   integrate_tree(tree, work, time_step, {});
   std::copy(tree.v.begin(), tree.v.end(), work.stages.begin());
   std::copy_n(work.saved_state.begin(), tree.q.size(), tree.q.begin());
-  std::copy_n(work.saved_state.begin() + static_cast<std::ptrdiff_t>(tree.q.size()), n, tree.v.begin());
+  std::copy_n(work.saved_state.begin() + static_cast<std::ptrdiff_t>(tree.q.size()), n,
+              tree.v.begin());
   forward_kinematics(tree);
   velocity_kinematics(tree);
   compute_mass_matrix(tree, work);
@@ -273,7 +281,8 @@ void kick(Tree& tree, Workspace& work, double time_step) {
   velocity_kinematics(tree);
 }
 
-int integrate_free_motion(Tree& tree, Workspace& work, double time_step, const PrescribedJoints& drive) {
+int integrate_free_motion(Tree& tree, Workspace& work, double time_step,
+                          const PrescribedJoints& drive) {
   if (tree.is_single_body) return integrate_single_body(tree, time_step);
   return tree.dofs > 0 ? integrate_tree(tree, work, time_step, drive) : 0;
 }
@@ -320,14 +329,15 @@ void momentum_of_body(const Tree& tree, Workspace& work, double time_step, std::
   }
   for (int k = 0; k < 3; ++k) {
     out[k] = momentum[k];
-    out[3 + k] =
-        link.mass * (tree.v[3 + k] + time_step * tree.gravity[k]) + time_step * tree.external[0].force[k];
+    out[3 + k] = link.mass * (tree.v[3 + k] + time_step * tree.gravity[k]) +
+                 time_step * tree.external[0].force[k];
   }
 }
 
 }  // namespace
 
-void predict_momentum(Tree& tree, Workspace& work, double time_step, bool driven, std::span<double> out) {
+void predict_momentum(Tree& tree, Workspace& work, double time_step, bool driven,
+                      std::span<double> out) {
   if (tree.is_single_body) return momentum_of_body(tree, work, time_step, out);
   const int n = tree.dofs;
   // Bias forces do no work, but an explicit step of them adds energy of second order in the
@@ -345,7 +355,9 @@ void predict_momentum(Tree& tree, Workspace& work, double time_step, bool driven
   const int root = std::min(6, n);
   std::copy_n(out.begin(), root, work.root_bias_impulse.begin());
   work.bias_velocity_change = energy > 0 ? std::sqrt(change / energy) : 0;
-  if (work.bias_velocity_change > (driven ? std::max(most_bias_change, std::sqrt(most_driven_bias_change * time_step)) : most_bias_change)) {
+  if (work.bias_velocity_change >
+      (driven ? std::max(most_bias_change, std::sqrt(most_driven_bias_change * time_step))
+              : most_bias_change)) {
     momentum_by_free_motion(tree, work, time_step, out);
   } else {
     for (int i = 0; i < n; ++i) out[i] -= time_step * work.scratch[i];

@@ -21,7 +21,8 @@ inline constexpr int evaluations_per_step = 6;
 /// @param time_step  [s]
 /// @param drive   prescribed joints; a single body has none
 /// @return        the number of steps
-int integrate_free_motion(Tree& tree, Workspace& work, double time_step, const PrescribedJoints& drive = {});
+int integrate_free_motion(Tree& tree, Workspace& work, double time_step,
+                          const PrescribedJoints& drive = {});
 
 /// Applies the impulse of a tree's external wrenches over a time [s]. Leaves its velocity
 /// kinematics valid.
@@ -38,6 +39,7 @@ void kick(Tree& tree, Workspace& work, double time_step);
 /// @param driven  whether servos hold some coordinates. Then free motion over the whole substep
 ///                would let go of them, and is used for large changes of velocity only
 /// @param out     of each dof [kg m/s] or [kg m^2/s]
-void predict_momentum(Tree& tree, Workspace& work, double time_step, bool driven, std::span<double> out);
+void predict_momentum(Tree& tree, Workspace& work, double time_step, bool driven,
+                      std::span<double> out);
 
 }  // namespace ziggurat::dynamics

@@ -1,6 +1,7 @@
 #pragma once
 // Asks for memory that is read soon, so that it is in the processor's cache by then. A world of a
-// thousand robots is larger than that cache, and each of its robots is read several times a substep.
+// thousand robots is larger than that cache, and each of its robots is read several times a
+// substep.
 
 #include <cstddef>
 #include <vector>

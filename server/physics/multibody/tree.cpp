@@ -121,13 +121,19 @@ void TreeModel::find_symmetric_rotors() {
   for (std::size_t i = 0; i < links.size(); ++i) {
     const Link& link = links[i];
     if (link.joint == JointType::revolute) {
-      const Vector3 axis = link.joint_in_link.orientation * link.axis, arm = link.joint_in_link.position;
+      const Vector3 axis = link.joint_in_link.orientation * link.axis,
+                    arm = link.joint_in_link.position;
       const Vector3 across = axis.unitOrthogonal(), other = axis.cross(across);
-      const auto inertia = [&](const Vector3& a, const Vector3& b) { return a.dot(link.inertia.cwiseProduct(b)); };
+      const auto inertia = [&](const Vector3& a, const Vector3& b) {
+        return a.dot(link.inertia.cwiseProduct(b));
+      };
       const double most = rounding * link.inertia.maxCoeff();
-      const bool round = std::abs(inertia(across, across) - inertia(other, other)) <= most && std::abs(inertia(across, other)) <= most &&
-                         std::abs(inertia(axis, across)) <= most && std::abs(inertia(axis, other)) <= most;
-      is_symmetric_rotor[first_dof[i]] = round && arm.cross(axis).norm() <= rounding * (1 + arm.norm());
+      const bool round = std::abs(inertia(across, across) - inertia(other, other)) <= most &&
+                         std::abs(inertia(across, other)) <= most &&
+                         std::abs(inertia(axis, across)) <= most &&
+                         std::abs(inertia(axis, other)) <= most;
+      is_symmetric_rotor[first_dof[i]] =
+          round && arm.cross(axis).norm() <= rounding * (1 + arm.norm());
     }
     int carrier = link.parent;
     while (carrier >= 0 && dof_count[carrier] == 0) carrier = links[carrier].parent;
@@ -228,7 +234,8 @@ void Tree::set_root(const math::Pose& pose) {
 }
 
 Vector3 Tree::velocity(int link) const {
-  return spatial_velocity[link].linear + spatial_velocity[link].angular.cross(position[link] - origin);
+  return spatial_velocity[link].linear +
+         spatial_velocity[link].angular.cross(position[link] - origin);
 }
 
 Vector3 Tree::angular_velocity(int link) const { return spatial_velocity[link].angular; }

@@ -45,24 +45,26 @@ struct TreeModel {
   TreeModel(std::vector<Link> links, unsigned freedoms);
 
   std::vector<Link> links;
-  unsigned freedoms;             ///< of a floating root
-  int position_count = 0;                ///< size of q
-  int dofs = 0;                  ///< size of v
-  std::vector<int> first_dof;    ///< of each link, into v
-  std::vector<int> dof_count;    ///< of each link
+  unsigned freedoms;                ///< of a floating root
+  int position_count = 0;           ///< size of q
+  int dofs = 0;                     ///< size of v
+  std::vector<int> first_dof;       ///< of each link, into v
+  std::vector<int> dof_count;       ///< of each link
   std::vector<int> first_position;  ///< of each link, into q
-  std::vector<int> parent_dof;   ///< of each dof: the one before it on the way to the root, or -1
-  std::vector<double> damping;   ///< of each dof [N m s] or [N s/m]
-  std::vector<int> ancestor_dofs;         ///< the dofs from the root to each link, one after the other
-  std::vector<int> ancestor_dofs_end;      ///< of each link, into `ways`
-  std::vector<int> dof_numbers;   ///< 0, 1, … dofs - 1
+  std::vector<int> parent_dof;     ///< of each dof: the one before it on the way to the root, or -1
+  std::vector<double> damping;     ///< of each dof [N m s] or [N s/m]
+  std::vector<int> ancestor_dofs;  ///< the dofs from the root to each link, one after the other
+  std::vector<int> ancestor_dofs_end;  ///< of each link, into `ways`
+  std::vector<int> dof_numbers;        ///< 0, 1, … dofs - 1
   /// Symmetric rotors, for each dof: its joint turns a link without children that is symmetric
   /// about the axis. Then the mass matrix does not depend on the angle, and other motion leaves the
   /// link's axial angular momentum unchanged.
   std::vector<unsigned char> is_symmetric_rotor;
-  std::vector<Matrix3> joint_in_parent_rotation, link_in_joint_rotation;  ///< rotations X_PJ and X_JL of each link
-  bool has_floating_base = false;  ///< floating with all six freedoms: dofs 0 to 5 are the world's axes
-  bool is_single_body = false;     ///< one link, with a free root
+  std::vector<Matrix3> joint_in_parent_rotation,
+      link_in_joint_rotation;  ///< rotations X_PJ and X_JL of each link
+  bool has_floating_base =
+      false;  ///< floating with all six freedoms: dofs 0 to 5 are the world's axes
+  bool is_single_body = false;  ///< one link, with a free root
 
  private:
   void list_ancestor_dofs();
@@ -105,10 +107,10 @@ class Tree {
   std::vector<Wrench> external_at_sleep;
 
   // Results of forward_kinematics(), from q.
-  std::vector<Matrix3> rotation;  ///< of each link in the world
-  std::vector<Vector3> position;  ///< of each link's centre of mass in the world [m]
-  std::vector<Motion> motion_subspace;       ///< of each dof: motion vector of its unit speed, about O
-  Vector3 origin{0, 0, 0};        ///< O: the root's centre of mass [m]
+  std::vector<Matrix3> rotation;        ///< of each link in the world
+  std::vector<Vector3> position;        ///< of each link's centre of mass in the world [m]
+  std::vector<Motion> motion_subspace;  ///< of each dof: motion vector of its unit speed, about O
+  Vector3 origin{0, 0, 0};              ///< O: the root's centre of mass [m]
 
   // Results of velocity_kinematics(), from q and v.
   std::vector<Motion> spatial_velocity;  ///< of each link, about O
@@ -125,13 +127,13 @@ class Tree {
   /// Becomes one link that is fixed to the world, without dofs. Takes no memory.
   void clear() noexcept;
 
-  std::span<const int> dofs_of(int link) const;   ///< that move a link, ascending
+  std::span<const int> dofs_of(int link) const;  ///< that move a link, ascending
   std::span<const int> dof_span(int dof) const;  ///< a span of it
-  math::Pose pose(int link) const;                ///< X_WL, after forward_kinematics()
-  bool has_rotations() const;                     ///< all quaternions in q have length 1
-  void set_root(const math::Pose& pose);          ///< of a floating or fixed root
-  Vector3 velocity(int link) const;               ///< of the centre of mass, after velocity_kinematics() [m/s]
-  Vector3 angular_velocity(int link) const;       ///< after velocity_kinematics() [rad/s]
+  math::Pose pose(int link) const;               ///< X_WL, after forward_kinematics()
+  bool has_rotations() const;                    ///< all quaternions in q have length 1
+  void set_root(const math::Pose& pose);         ///< of a floating or fixed root
+  Vector3 velocity(int link) const;  ///< of the centre of mass, after velocity_kinematics() [m/s]
+  Vector3 angular_velocity(int link) const;  ///< after velocity_kinematics() [rad/s]
 
  private:
   void use_model(std::shared_ptr<const TreeModel> mechanism) noexcept;
@@ -157,7 +159,8 @@ void integrate_positions(Tree& tree, std::span<const double> step);
 inline std::span<const int> Tree::dofs_of(int link) const {
   const TreeModel& m = *model_;
   const int begin = link > 0 ? m.ancestor_dofs_end[link - 1] : 0;
-  return {m.ancestor_dofs.data() + begin, static_cast<std::size_t>(m.ancestor_dofs_end[link] - begin)};
+  return {m.ancestor_dofs.data() + begin,
+          static_cast<std::size_t>(m.ancestor_dofs_end[link] - begin)};
 }
 inline std::span<const int> Tree::dof_span(int dof) const {
   return {model_->dof_numbers.data() + dof, 1};

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/solver/newton.h"
 #include "physics/solver/constraint_hessian.h"
+#include "physics/solver/newton.h"
 
 namespace ziggurat::dynamics {
 
@@ -66,12 +66,16 @@ double momentum_residual(const Problem& problem, std::vector<double>& out) {
   return worst;
 }
 
-bool is_momentum_balanced(const Problem& problem, std::span<const double> residual, double share, double least, std::vector<double>& impulse_sum) {
+bool is_momentum_balanced(const Problem& problem, std::span<const double> residual, double share,
+                          double least, std::vector<double>& impulse_sum) {
   impulse_sum.assign(problem.momentum.size(), 0.0);
-  const auto add_side = [&](const Constraint& constraint, int index, int first, std::span<const int> dofs) {
+  const auto add_side = [&](const Constraint& constraint, int index, int first,
+                            std::span<const int> dofs) {
     for (std::size_t e = 0; index >= 0 && e < dofs.size(); ++e) {
       double& sum = impulse_sum[problem.offset[index] + dofs[e]];
-      for (int r = 0; r < constraint.rows; ++r) sum += std::abs(problem.jacobian[first + dofs[e] * constraint.rows + r] * constraint.impulse[r]);
+      for (int r = 0; r < constraint.rows; ++r)
+        sum += std::abs(problem.jacobian[first + dofs[e] * constraint.rows + r] *
+                        constraint.impulse[r]);
     }
   };
   for (const Constraint& constraint : problem.constraints) {
@@ -83,7 +87,8 @@ bool is_momentum_balanced(const Problem& problem, std::span<const double> residu
     const int n = problem.trees[i]->dofs;
     for (int k = 0; k < n; ++k) {
       const int index = problem.offset[i] + k;
-      const double enough = share * (impulse_sum[index] + std::abs(problem.momentum[index])) + least * problem.mass_of(i)[k * n + k];
+      const double enough = share * (impulse_sum[index] + std::abs(problem.momentum[index])) +
+                            least * problem.mass_of(i)[k * n + k];
       if (std::abs(residual[index]) > enough) return false;
     }
   }
@@ -95,10 +100,11 @@ namespace {
 /// Sets impulses by the regularised law.
 /// @param linear  out: its linearisations; may be null
 void regularise(Problem& problem, std::span<const std::array<double, Constraint::most_rows>> speeds,
-            double regularisation, bool about_multipliers, LinearisedLaw* linear) {
+                double regularisation, bool about_multipliers, LinearisedLaw* linear) {
   for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
     Constraint& constraint = problem.constraints[k];
-    regularise(constraint, speeds[k].data(), regularisation, about_multipliers, constraint.impulse.data(), linear ? linear + k : nullptr);
+    regularise(constraint, speeds[k].data(), regularisation, about_multipliers,
+               constraint.impulse.data(), linear ? linear + k : nullptr);
   }
 }
 
@@ -118,7 +124,9 @@ double square(const Problem& problem, const std::vector<double>& missing) {
 /// @param shortest    step length; below 1 with a line search on the momentum residual
 /// @param unbalanced  out: the largest residual velocity of a coordinate
 /// @return            false if no step length reduces the residual
-bool VelocitySolver::augmented_lagrangian_step(Problem& problem, double regularisation, bool about_multipliers, double shortest, double& unbalanced) {
+bool VelocitySolver::augmented_lagrangian_step(Problem& problem, double regularisation,
+                                               bool about_multipliers, double shortest,
+                                               double& unbalanced) {
   constexpr double enough = 0.1;
   assemble_mass(problem, matrix_);
   regularise(problem, constraint_velocities_, regularisation, about_multipliers, laws_.data());
@@ -194,7 +202,8 @@ bool VelocitySolver::damped_augmented_lagrangian(Problem& problem, SolverResult&
   bool enough = false;
   for (int i = 0, steps = 1; i < options.most_damped_steps; ++i, ++steps) {
     ++outcome.augmented_lagrangian_steps;
-    const bool nearer = augmented_lagrangian_step(problem, regularisation, true, shortest, unbalanced);
+    const bool nearer =
+        augmented_lagrangian_step(problem, regularisation, true, shortest, unbalanced);
     const double law = current_residual(problem, scale), now = std::max(law, unbalanced);
     if (nearer && now < best) {
       best = now;

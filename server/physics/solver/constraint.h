@@ -25,20 +25,21 @@ inline constexpr double touching_gap = 1e-6;
 /// A point where two links touch or may touch within the substep.
 struct ContactPoint {
   LinkIndex a, b;
-  Vector3 point{0, 0, 0};   ///< in the world; on a, where both move and are apart [m]
+  Vector3 point{0, 0, 0};  ///< in the world; on a, where both move and are apart [m]
   /// Offset from the point on a to that on b, where both move: they meet later in the substep [m].
   Vector3 offset_to_b{0, 0, 0};
   Vector3 normal{0, 0, 1};  ///< unit, from b to a
   /// Velocity of the point of contact where a round body touches a moving one [m/s]. It is the
   /// velocity of neither body's material.
   Vector3 point_velocity{0, 0, 0};
-  bool has_point_velocity = false;       ///< it has that velocity
-  Vector3 face_angular_velocity{0, 0, 0};  ///< of the other body, with which the normal turns [rad/s]
-  double gap = 0;           ///< along the normal; negative = overlap [m]
-  double friction = 0;      ///< Coulomb coefficient
+  bool has_point_velocity = false;  ///< it has that velocity
+  Vector3 face_angular_velocity{0, 0,
+                                0};  ///< of the other body, with which the normal turns [rad/s]
+  double gap = 0;                    ///< along the normal; negative = overlap [m]
+  double friction = 0;               ///< Coulomb coefficient
   double rolling_friction = 0;       ///< lever arm of rolling friction [m]
   double spinning_friction = 0;      ///< lever arm of spinning friction, about the normal [m]
-  double restitution = 0;   ///< coefficient of restitution: separation over approach speed, 0 to 1
+  double restitution = 0;  ///< coefficient of restitution: separation over approach speed, 0 to 1
   /// Impulse on a in world axes. In: of the last substep, 0 if it is new. Out: of this one.
   Vector3 impulse{0, 0, 0};          ///< [N s]
   Vector3 angular_impulse{0, 0, 0};  ///< of rolling and spinning friction [N m s]
@@ -48,12 +49,12 @@ struct ContactPoint {
 /// drives that speed to a target.
 struct Servo {
   int tree = -1;
-  int dof = -1;                ///< of the tree; -1: along `direction` at `link`
+  int dof = -1;  ///< of the tree; -1: along `direction` at `link`
   int link = 0;
-  Motion direction;            ///< world axes; the linear part at the link's centre of mass
-  double target_velocity = 0;            ///< at the end of the substep [rad/s] or [m/s]
-  double lower = 0, upper = 0; ///< of the impulse [N m s] or [N s]; lower <= 0 <= upper
-  double impulse = 0;          ///< in: of the last substep; out: of this one
+  Motion direction;             ///< world axes; the linear part at the link's centre of mass
+  double target_velocity = 0;   ///< at the end of the substep [rad/s] or [m/s]
+  double lower = 0, upper = 0;  ///< of the impulse [N m s] or [N s]; lower <= 0 <= upper
+  double impulse = 0;           ///< in: of the last substep; out: of this one
 };
 
 /// A bound of a revolute or prismatic joint.

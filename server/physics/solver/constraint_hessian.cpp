@@ -16,7 +16,8 @@ struct Side {
 
 Side side_of(const Problem& problem, int index, int first, std::span<const int> dofs) {
   const Tree& tree = *problem.trees[index];
-  return {index, tree.dofs, problem.jacobian.data() + first, dofs, tree.has_floating_base && begins_with_floating_base(dofs) ? 6 : 0};
+  return {index, tree.dofs, problem.jacobian.data() + first, dofs,
+          tree.has_floating_base && begins_with_floating_base(dofs) ? 6 : 0};
 }
 
 /// Adds J^T H J of a constraint of R rows to the matrix: to the columns of side s, in the rows of
@@ -104,8 +105,10 @@ template <int R>
 void add_slope_of(const Problem& problem, const Constraint& constraint, const double* slope,
                   std::vector<double>& sloped, BlockMatrix& matrix) {
   Side sides[2];
-  if (constraint.a >= 0) sides[0] = side_of(problem, constraint.a, constraint.jacobian_a, constraint.dofs_a);
-  if (constraint.b >= 0) sides[1] = side_of(problem, constraint.b, constraint.jacobian_b, constraint.dofs_b);
+  if (constraint.a >= 0)
+    sides[0] = side_of(problem, constraint.a, constraint.jacobian_a, constraint.dofs_a);
+  if (constraint.b >= 0)
+    sides[1] = side_of(problem, constraint.b, constraint.jacobian_b, constraint.dofs_b);
   for (const Side& s : sides) {
     if (s.index < 0) continue;
     const std::size_t more = s.touched.size() - s.leading;
@@ -121,8 +124,9 @@ void add_slope_of(const Problem& problem, const Constraint& constraint, const do
 
 }  // namespace
 
-void add_constraint_hessian(const Problem& problem, const Constraint& constraint, const LinearisedLaw& linear,
-               std::vector<double>& memory, BlockMatrix& matrix) {
+void add_constraint_hessian(const Problem& problem, const Constraint& constraint,
+                            const LinearisedLaw& linear, std::vector<double>& memory,
+                            BlockMatrix& matrix) {
   if (linear.is_zero) return;
   dispatch_rows(constraint.rows, [&](auto rows) {
     add_slope_of<rows()>(problem, constraint, linear.hessian.data(), memory, matrix);

@@ -12,7 +12,8 @@ namespace ziggurat::dynamics {
 /// matrix += J^T H J, with H the law's Hessian, in the blocks of the trees that the constraint acts
 /// on.
 /// @param memory  to work in
-void add_constraint_hessian(const Problem& problem, const Constraint& constraint, const LinearisedLaw& linear,
-               std::vector<double>& memory, BlockMatrix& matrix);
+void add_constraint_hessian(const Problem& problem, const Constraint& constraint,
+                            const LinearisedLaw& linear, std::vector<double>& memory,
+                            BlockMatrix& matrix);
 
 }  // namespace ziggurat::dynamics

@@ -8,7 +8,8 @@ constexpr double least_compliance = 1e-8;  // of held rows, over the mobility
 /// The projection's argument y of one row, see contact_law.h.
 double argument(const Constraint& constraint, const double* u, int row) {
   const double give_way = row == 0 ? constraint.compliance * constraint.impulse[0] : 0;
-  return constraint.impulse[row] - (u[row] + give_way - constraint.target_velocity[row]) / constraint.mobility[row];
+  return constraint.impulse[row] -
+         (u[row] + give_way - constraint.target_velocity[row]) / constraint.mobility[row];
 }
 
 /// The projection's argument y in the rows of a disc.
@@ -26,25 +27,31 @@ DiscArgument argument(const Constraint& constraint, const double* u, const Frict
 }
 
 /// Linearises a row that is held at its target velocity.
-void linearise_held(const Constraint& constraint, int row, int rows, double stiffness, LinearisedLaw& out) {
+void linearise_held(const Constraint& constraint, int row, int rows, double stiffness,
+                    LinearisedLaw& out) {
   out.hessian[row * rows + row] = stiffness;
   out.constant[row] = constraint.impulse[row] + stiffness * constraint.target_velocity[row];
 }
 
 /// Linearises friction within a disc: it sticks, or slides with its whole bound against the slip.
 /// @param normal  impulse, linearised in the first row
-void linearise(const Constraint& constraint, const double* u, const FrictionDisc& disc, double normal, int rows, LinearisedLaw& out) {
+void linearise(const Constraint& constraint, const double* u, const FrictionDisc& disc,
+               double normal, int rows, LinearisedLaw& out) {
   const double mobility = constraint.mobility[disc.first];
-  const auto [bound, per_normal] = friction_bound(disc, constraint.friction, normal, u + disc.first);
+  const auto [bound, per_normal] =
+      friction_bound(disc, constraint.friction, normal, u + disc.first);
   const auto [y, square] = argument(constraint, u, disc);
   if (square <= bound * bound) {
     const double stiffness = 1 / (least_compliance * mobility);
-    for (int r = 0; r < disc.size; ++r) linearise_held(constraint, disc.first + r, rows, stiffness, out);
+    for (int r = 0; r < disc.size; ++r)
+      linearise_held(constraint, disc.first + r, rows, stiffness, out);
     return;
   }
   const double length = std::sqrt(square), direction[] = {y[0] / length, y[1] / length};
   // Across the slip the direction of friction turns with the velocity.
-  const double across = disc.size < 2 || bound <= 0 ? 0 : std::min(bound / (length - bound), 1 / least_compliance) / mobility;
+  const double across = disc.size < 2 || bound <= 0
+                            ? 0
+                            : std::min(bound / (length - bound), 1 / least_compliance) / mobility;
   for (int r = 0; r < disc.size; ++r) {
     const int row = disc.first + r;
     const double share = per_normal * direction[r];
@@ -62,7 +69,8 @@ void linearise(const Constraint& constraint, const double* u, const FrictionDisc
 template <int R>
 void linearise_rows(const Constraint& constraint, const double* u, LinearisedLaw& out) {
   const int rows = R == 1 ? constraint.rows : R;  // without impulses in the others
-  const double y = argument(constraint, u, 0), normal = std::clamp(y, constraint.lower, constraint.upper);
+  const double y = argument(constraint, u, 0),
+               normal = std::clamp(y, constraint.lower, constraint.upper);
   const bool is_saturated = normal <= constraint.lower || normal >= constraint.upper;
   out.is_zero = is_saturated && normal == 0;
   if (out.is_zero) return;
@@ -89,7 +97,8 @@ void visit_errors(const Constraint& constraint, const double* u, Visit visit) {
     const double bound = friction_bound(disc, constraint.friction, normal, u + disc.first).value;
     const auto [y, square] = bound == 0 ? DiscArgument{} : argument(constraint, u, disc);
     const double share = friction_share(bound, square);
-    for (int r = 0; r < disc.size; ++r) visit(disc.first + r, constraint.impulse[disc.first + r] - share * y[r]);
+    for (int r = 0; r < disc.size; ++r)
+      visit(disc.first + r, constraint.impulse[disc.first + r] - share * y[r]);
   }
 }
 
@@ -120,10 +129,12 @@ void set_law(const Limit&, Constraint& constraint) {
 void linearise(const Constraint& constraint, const double* u, LinearisedLaw& out) {
   out.is_zero = true;
   if (constraint.law == Constraint::Law::off) return;
-  dispatch_rows(acting_rows(constraint), [&](auto rows) { linearise_rows<rows()>(constraint, u, out); });
+  dispatch_rows(acting_rows(constraint),
+                [&](auto rows) { linearise_rows<rows()>(constraint, u, out); });
 }
 
-void regularise(const Constraint& constraint, const double* u, double regularisation, bool about_multipliers, double* impulse, LinearisedLaw* out) {
+void regularise(const Constraint& constraint, const double* u, double regularisation,
+                bool about_multipliers, double* impulse, LinearisedLaw* out) {
   const int rows = constraint.rows, acting = acting_rows(constraint);
   std::fill_n(impulse, rows, 0.0);
   if (out) {
@@ -133,7 +144,8 @@ void regularise(const Constraint& constraint, const double* u, double regularisa
   if (acting == 0) return;
   double y[Constraint::most_rows];
   for (int r = 0; r < acting; ++r) {
-    y[r] = (about_multipliers ? constraint.multiplier[r] : 0) - (u[r] - constraint.target_velocity[r]) / (regularisation * constraint.mobility[r]);
+    y[r] = (about_multipliers ? constraint.multiplier[r] : 0) -
+           (u[r] - constraint.target_velocity[r]) / (regularisation * constraint.mobility[r]);
   }
   const auto set_hessian = [&](int row, int column, double share) {
     if (!out) return;
@@ -141,13 +153,16 @@ void regularise(const Constraint& constraint, const double* u, double regularisa
     out->hessian[row * rows + column] = share / (regularisation * constraint.mobility[row]);
   };
   const double normal_compliance = regularisation * constraint.mobility[0];
-  const double normal_share = normal_compliance / (about_multipliers ? normal_compliance + constraint.compliance : std::max(normal_compliance, constraint.compliance));
+  const double normal_share =
+      normal_compliance / (about_multipliers ? normal_compliance + constraint.compliance
+                                             : std::max(normal_compliance, constraint.compliance));
   y[0] *= normal_share;
   impulse[0] = std::clamp(y[0], constraint.lower, constraint.upper);
   if (y[0] > constraint.lower && y[0] < constraint.upper) set_hessian(0, 0, normal_share);
   for (const FrictionDisc& disc : discs_of(acting)) {
     const int first = disc.first, size = disc.size;
-    const auto [bound, per_normal] = friction_bound(disc, constraint.friction, impulse[0], u + first);
+    const auto [bound, per_normal] =
+        friction_bound(disc, constraint.friction, impulse[0], u + first);
     double square = 0;
     for (int r = first; r < first + size; ++r) square += y[r] * y[r];
     const double length = std::sqrt(square), share = friction_share(bound, square);
@@ -167,7 +182,9 @@ double residual(const Constraint& constraint, const double* u) {
   double worst = 0;
   if (constraint.law == Constraint::Law::off) return worst;
   dispatch_rows(acting_rows(constraint), [&](auto rows) {
-    visit_errors<rows()>(constraint, u, [&](int r, double error) { worst = std::max(worst, std::abs(error) * constraint.mobility[r]); });
+    visit_errors<rows()>(constraint, u, [&](int r, double error) {
+      worst = std::max(worst, std::abs(error) * constraint.mobility[r]);
+    });
   });
   return worst;
 }
@@ -176,7 +193,8 @@ double merit(const Constraint& constraint, const double* u) {
   double sum = 0;
   if (constraint.law == Constraint::Law::off) return sum;
   dispatch_rows(acting_rows(constraint), [&](auto rows) {
-    visit_errors<rows()>(constraint, u, [&](int r, double error) { sum += error * error * constraint.mobility[r]; });
+    visit_errors<rows()>(
+        constraint, u, [&](int r, double error) { sum += error * error * constraint.mobility[r]; });
   });
   return sum;
 }

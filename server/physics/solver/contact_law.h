@@ -2,12 +2,12 @@
 // The laws of constraints: contacts with sliding, spinning and rolling friction, servos and limits.
 // All are one law, exact and linearised: g = P(y) with y = g - (u + c g - s) / m.
 // u: constraint velocity; s: target velocity; m: mobility; c: compliance of the first row.
-// P clips the first impulse to an interval, and friction to discs whose radii friction_bound() gives
-// (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991). It is Coulomb's law; an associated
-// cone would lift sliding contacts.
+// P clips the first impulse to an interval, and friction to discs whose radii friction_bound()
+// gives (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991). It is Coulomb's law; an
+// associated cone would lift sliding contacts.
 //
-// A solver asks for linearise() or regularise(), residual() and merit(). Gauss-Seidel projects disc by
-// disc, and the interior point method asks for cone_slope(). Another law of friction changes
+// A solver asks for linearise() or regularise(), residual() and merit(). Gauss-Seidel projects disc
+// by disc, and the interior point method asks for cone_slope(). Another law of friction changes
 // friction_bound(), and nothing else.
 
 #include <algorithm>
@@ -32,20 +32,26 @@ struct Constraint {
   Law law = Law::off;
   int rows = 0;        ///< 1, 3 or 6
   int a = -1, b = -1;  ///< indices of the trees in the island, or -1
-  int jacobian_a = 0, jacobian_b = 0;  ///< into Problem::jacobian: per dof of the tree, a column of `rows`
+  int jacobian_a = 0,
+      jacobian_b = 0;  ///< into Problem::jacobian: per dof of the tree, a column of `rows`
   std::span<const int> dofs_a, dofs_b;  ///< that move each side, ascending; other columns are zero
-  std::array<double, 3> friction{};  ///< coefficients of the discs: sliding [1], spinning and rolling [m]
-  double lower = 0, upper = std::numeric_limits<double>::infinity();  ///< of the first impulse [N s], [N m s]
-  std::array<double, most_rows> target_velocity{};      ///< the velocities that impulses drive to [m/s], [rad/s]
+  std::array<double, 3>
+      friction{};  ///< coefficients of the discs: sliding [1], spinning and rolling [m]
+  double lower = 0,
+         upper = std::numeric_limits<double>::infinity();  ///< of the first impulse [N s], [N m s]
+  std::array<double, most_rows>
+      target_velocity{};  ///< the velocities that impulses drive to [m/s], [rad/s]
   std::array<double, most_rows> impulse{};   ///< [N s], [N m s]
-  std::array<double, most_rows> mobility{};  ///< velocity change by a unit impulse, without coupling of dofs; equal within a disc
+  std::array<double, most_rows> mobility{};  ///< velocity change by a unit impulse, without
+                                             ///< coupling of dofs; equal within a disc
 
   double compliance = 0;  ///< of a contact: closing velocity that a normal impulse leaves [1/kg]
 
   std::array<double, most_rows> multiplier{};  ///< of the regularised law [N s], [N m s]
 
-  double gap = 0;                   ///< of contacts and limits [m] or [rad]
-  double gap_acceleration = 0;                  ///< of a contact that rotates: the gap's second derivative without forces [m/s^2]
+  double gap = 0;  ///< of contacts and limits [m] or [rad]
+  double gap_acceleration =
+      0;  ///< of a contact that rotates: the gap's second derivative without forces [m/s^2]
   double range = 0;                 ///< of a limit: distance of its bounds [m] or [rad]
   double restitution = 0;           ///< of a contact
   Matrix3 frame = Matrix3::Zero();  ///< columns: normal and tangents of a contact
@@ -75,7 +81,9 @@ void set_law(const Limit& limit, Constraint& constraint);
 
 /// Rows that may have an impulse; the first of `rows`.
 inline int acting_rows(const Constraint& constraint) {
-  return constraint.law == Constraint::Law::contact ? constraint.rows : constraint.law == Constraint::Law::bounded ? 1 : 0;
+  return constraint.law == Constraint::Law::contact   ? constraint.rows
+         : constraint.law == Constraint::Law::bounded ? 1
+                                                      : 0;
 }
 
 /// Rows whose friction has one bound.
@@ -83,10 +91,13 @@ struct FrictionDisc {
   int coefficient;  ///< index into Constraint::friction
   int first, size;  ///< rows: two, or one
 };
-inline constexpr std::array<FrictionDisc, 3> friction_discs{{{0, 1, 2}, {1, 3, 1}, {2, 4, 2}}};  // sliding, spinning, rolling
+inline constexpr std::array<FrictionDisc, 3> friction_discs{
+    {{0, 1, 2}, {1, 3, 1}, {2, 4, 2}}};  // sliding, spinning, rolling
 
 /// Discs of a constraint with so many acting rows.
-constexpr std::span<const FrictionDisc> discs_of(int rows) { return std::span(friction_discs).first(rows / 2); }
+constexpr std::span<const FrictionDisc> discs_of(int rows) {
+  return std::span(friction_discs).first(rows / 2);
+}
 
 /// Whether the impulse along row r may change with the velocity along row c. Normal and tangents
 /// may all; torques change with the normal velocity and those of their own disc.
@@ -102,16 +113,20 @@ struct FrictionBound {
 
 /// Coulomb's law, for a disc.
 /// @param friction  coefficients of the constraint;  @param normal  impulse [N s]
-/// @param slip      velocities of the disc's rows, on which Coulomb's law does not depend; a step of Newton's
+/// @param slip      velocities of the disc's rows, on which Coulomb's law does not depend; a step
+/// of Newton's
 ///                  method takes a bound that does as constant in them
-inline FrictionBound friction_bound(const FrictionDisc& disc, const std::array<double, 3>& friction, double normal, const double* /*slip*/) {
+inline FrictionBound friction_bound(const FrictionDisc& disc, const std::array<double, 3>& friction,
+                                    double normal, const double* /*slip*/) {
   const double coefficient = friction[disc.coefficient];
   return {coefficient * normal, coefficient};
 }
 
 /// Projection on a disc: the share of y that is within the bound.
 /// @param square  |y|^2
-inline double friction_share(double bound, double square) { return square > bound * bound ? bound / std::sqrt(square) : 1; }
+inline double friction_share(double bound, double square) {
+  return square > bound * bound ? bound / std::sqrt(square) : 1;
+}
 
 /// Slope of the cone of sliding friction at velocities u: the bound over the normal impulse, > 0.
 inline double cone_slope(const Constraint& constraint, const double* u) {
@@ -123,7 +138,8 @@ inline double cone_slope(const Constraint& constraint, const double* u) {
 struct LinearisedLaw {
   bool is_zero = true;  ///< no impulse at all
   std::array<double, Constraint::most_rows> constant{};
-  std::array<double, Constraint::most_rows * Constraint::most_rows> hessian{};  ///< row by row, rows x rows
+  std::array<double, Constraint::most_rows * Constraint::most_rows>
+      hessian{};  ///< row by row, rows x rows
 };
 
 /// Linearises the law at velocities u. A held row without compliance gets 1e-8 of its mobility,
@@ -136,7 +152,8 @@ void linearise(const Constraint& constraint, const double* u, LinearisedLaw& out
 /// @param about_multipliers  false: y is taken about 0, so friction is viscous until it slides
 /// @param impulse  out: of each row
 /// @param out      out: its linearisation; may be null
-void regularise(const Constraint& constraint, const double* u, double regularisation, bool about_multipliers, double* impulse, LinearisedLaw* out);
+void regularise(const Constraint& constraint, const double* u, double regularisation,
+                bool about_multipliers, double* impulse, LinearisedLaw* out);
 
 /// Residual of the law at a constraint: the largest |g - P(y)| m [m/s] or [rad/s].
 double residual(const Constraint& constraint, const double* u);

@@ -85,7 +85,8 @@ void GaussSeidel::factor(const Problem& problem) {
 void GaussSeidel::add(const Problem& problem, const Constraint& constraint, int index) {
   const int rows = acting_rows(constraint);
   if (rows == 0) return;
-  const int trees[] = {constraint.a, constraint.b}, jacobians[] = {constraint.jacobian_a, constraint.jacobian_b};
+  const int trees[] = {constraint.a, constraint.b},
+            jacobians[] = {constraint.jacobian_a, constraint.jacobian_b};
   int size[2] = {}, at[2] = {};
   for (int s = 0; s < 2; ++s) {
     if (trees[s] < 0) continue;
@@ -99,7 +100,8 @@ void GaussSeidel::add(const Problem& problem, const Constraint& constraint, int 
   }
   ++pairs_.back().last;
   const int first = static_cast<int>(rows_.size()), impulse = static_cast<int>(impulses_.size());
-  points_.push_back({index, first, impulse, rows, constraint.lower, constraint.upper, constraint.friction});
+  points_.push_back(
+      {index, first, impulse, rows, constraint.lower, constraint.upper, constraint.friction});
   rows_.resize(first + rows * (size[0] + size[1]));
   for (int r = 0; r < rows; ++r) {
     double square = 0;
@@ -134,7 +136,8 @@ void GaussSeidel::add(const Problem& problem, const Constraint& constraint, int 
 
 void GaussSeidel::start(const Problem& problem) {
   points_.clear(), pairs_.clear(), rows_.clear();
-  impulses_.clear(), target_velocities_.clear(), compliances_.clear(), inverse_.clear(), coupling_.clear();
+  impulses_.clear(), target_velocities_.clear(), compliances_.clear(), inverse_.clear(),
+      coupling_.clear();
   factor(problem);
   for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
     add(problem, problem.constraints[i], static_cast<int>(i));
@@ -169,7 +172,8 @@ void GaussSeidel::solve_sliding(const Rows& point, const Sides& sides) {
   const double slip[] = {u1 + coupling[1] * change0, u2 + coupling[2] * change0};
   const double x1 = g[1] - (slip[0] - seek[1]) * inverse[1];
   const double x2 = g[2] - (slip[1] - seek[2]) * inverse[2];
-  const double factor = friction_share(friction_bound(friction_discs[0], point.friction, now, slip).value, x1 * x1 + x2 * x2);
+  const double factor = friction_share(
+      friction_bound(friction_discs[0], point.friction, now, slip).value, x1 * x1 + x2 * x2);
   const double change1 = factor * x1 - g[1], change2 = factor * x2 - g[2];
   g[0] = now, g[1] += change1, g[2] += change2;
   for (int k = 0; k < na; ++k) {
@@ -187,7 +191,9 @@ void GaussSeidel::solve_other(const Rows& point, const Sides& sides) {
   const int na = size_of<A>(sides.size_a), nb = size_of<B>(sides.size_b);
   double* g = impulses_.data() + point.impulse;
   const auto row = [&](int r) { return rows_.data() + point.first + r * (na + nb); };
-  const auto velocity = [&](int r) { return dot<A>(row(r), sides.a, na) + dot<B>(row(r) + na, sides.b, nb); };
+  const auto velocity = [&](int r) {
+    return dot<A>(row(r), sides.a, na) + dot<B>(row(r) + na, sides.b, nb);
+  };
   const auto wanted = [&](int r, double u) {
     const int i = point.impulse + r;
     return g[r] - (u + compliances_[i] * g[r] - target_velocities_[i]) * inverse_[i];
@@ -207,7 +213,8 @@ void GaussSeidel::solve_other(const Rows& point, const Sides& sides) {
       x[r] = wanted(disc.first + r, slip[r]);
       square += x[r] * x[r];
     }
-    const double factor = friction_share(friction_bound(disc, point.friction, g[0], slip).value, square);
+    const double factor =
+        friction_share(friction_bound(disc, point.friction, g[0], slip).value, square);
     for (int r = 0; r < disc.size; ++r) give(disc.first + r, factor * x[r]);
   }
 }

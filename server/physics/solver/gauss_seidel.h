@@ -33,12 +33,12 @@ class GaussSeidel {
  private:
   /// A contact, servo or limit: its rows for both trees stand in rows_, one after the other.
   struct Rows {
-    int block;                           // into Problem::constraints
-    int first;                           // into rows_: of each row `a` and `b` values
-    int impulse;                         // into impulses_, and so of seek_, yield_ and inverse_
-    int rows;                            // that are solved
-    double lower, upper;                 // of the first impulse
-    std::array<double, 3> friction;      // coefficients of the discs
+    int block;                       // into Problem::constraints
+    int first;                       // into rows_: of each row `a` and `b` values
+    int impulse;                     // into impulses_, and so of seek_, yield_ and inverse_
+    int rows;                        // that are solved
+    double lower, upper;             // of the first impulse
+    std::array<double, 3> friction;  // coefficients of the discs
   };
   /// Points of the same two trees, one after the other.
   struct TreePair {

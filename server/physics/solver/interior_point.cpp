@@ -12,14 +12,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/solver/newton.h"
 #include "physics/solver/constraint_hessian.h"
+#include "physics/solver/newton.h"
 
 namespace ziggurat::dynamics {
 namespace {
 
-constexpr double compliance = 1e-8;  // of all impulses, over the mobility
-constexpr double boundary_fraction = 0.95;       // of the way to the border of the cones
+constexpr double compliance = 1e-8;         // of all impulses, over the mobility
+constexpr double boundary_fraction = 0.95;  // of the way to the border of the cones
 constexpr double least_centering = 1e-4;
 
 double tangential(const Vector3& x) { return std::sqrt(x[1] * x[1] + x[2] * x[2]); }
@@ -95,12 +95,14 @@ void scale_cone(InteriorPointConstraint& c) {
 
 /// Right side of a constraint's step towards the complementarity product `target`.
 /// @param corrects  with the second-order term of the step before
-void set_right_side(const Constraint& constraint, double target, bool corrects, InteriorPointConstraint& c) {
+void set_right_side(const Constraint& constraint, double target, bool corrects,
+                    InteriorPointConstraint& c) {
   if (is_cone(constraint)) {
     Vector3 wanted = -product(c.scaled_point, c.scaled_point);
     wanted[0] += target;
     if (corrects) {
-      wanted -= product(Vector3(c.inverse_scaling * c.speed_step), Vector3(c.scaling * c.impulse_step));
+      wanted -=
+          product(Vector3(c.inverse_scaling * c.speed_step), Vector3(c.scaling * c.impulse_step));
     }
     c.scaled_target = c.scaling * quotient(c.scaled_point, wanted);
     c.right_side = c.scaled_target - c.residual;
@@ -136,11 +138,13 @@ void VelocitySolver::enter_cones(const Problem& problem, double margin) {
     if (is_cone(constraint)) {
       const double mu = cone_slope(constraint, u);
       c.scale = Vector3(1 / mu, 1, 1);
-      const Vector3 mobility(constraint.mobility[0], constraint.mobility[1], constraint.mobility[2]);
+      const Vector3 mobility(constraint.mobility[0], constraint.mobility[1],
+                             constraint.mobility[2]);
       c.compliance = compliance * mobility.cwiseProduct(c.scale).cwiseProduct(c.scale);
       c.impulse = Vector3(constraint.impulse[0] * mu, constraint.impulse[1], constraint.impulse[2]);
       c.reference_impulse = c.impulse;
-      c.speed = Vector3((u[0] - constraint.target_velocity[0]) / mu, u[1] - constraint.target_velocity[1], u[2] - constraint.target_velocity[2]);
+      c.speed = Vector3((u[0] - constraint.target_velocity[0]) / mu,
+                        u[1] - constraint.target_velocity[1], u[2] - constraint.target_velocity[2]);
       c.speed[0] = std::max(c.speed[0], 0.0) + tangential(c.speed) + margin / mu;
       c.impulse[0] =
           std::max(c.impulse[0], tangential(c.impulse)) + mu * margin / constraint.mobility[0];
@@ -179,7 +183,8 @@ double VelocitySolver::linearise_interior_point(Problem& problem) {
     const double over = c.scale[0] * (u[0] - constraint.target_velocity[0]);
     if (solved == 3) {
       scale_cone(c);
-      c.residual = Vector3(over + tangential(c.speed), u[1] - constraint.target_velocity[1], u[2] - constraint.target_velocity[2]) +
+      c.residual = Vector3(over + tangential(c.speed), u[1] - constraint.target_velocity[1],
+                           u[2] - constraint.target_velocity[2]) +
                    c.compliance.cwiseProduct(c.impulse - c.reference_impulse) - c.speed;
       products += c.impulse.dot(c.speed);
       ++count;
@@ -239,8 +244,8 @@ double VelocitySolver::interior_point_direction(Problem& problem, double target,
     if (solved == 3) {
       c.impulse_step = c.hessian * (c.right_side - Vector3(c.scale[0] * u[0], u[1], u[2]));
       c.speed_step = c.scaled_target - c.scaling * Vector3(c.scaling * c.impulse_step);
-      step_length = std::min(
-          {step_length, step_to_cone_boundary(c.impulse, c.impulse_step), step_to_cone_boundary(c.speed, c.speed_step)});
+      step_length = std::min({step_length, step_to_cone_boundary(c.impulse, c.impulse_step),
+                              step_to_cone_boundary(c.speed, c.speed_step)});
       continue;
     }
     const double change = c.hessian(0, 0) * (c.right_side[0] - u[0]);
@@ -248,12 +253,14 @@ double VelocitySolver::interior_point_direction(Problem& problem, double target,
     if (c.lower_dual > 0) {
       const double room = c.impulse[0] - c.lower;
       c.lower_dual_step = (target - c.lower_dual * change) / room - c.lower_dual;
-      step_length = std::min({step_length, step_to_bound(room, change), step_to_bound(c.lower_dual, c.lower_dual_step)});
+      step_length = std::min({step_length, step_to_bound(room, change),
+                              step_to_bound(c.lower_dual, c.lower_dual_step)});
     }
     if (c.upper_dual > 0) {
       const double room = c.upper - c.impulse[0];
       c.upper_dual_step = (target + c.upper_dual * change) / room - c.upper_dual;
-      step_length = std::min({step_length, step_to_bound(room, -change), step_to_bound(c.upper_dual, c.upper_dual_step)});
+      step_length = std::min({step_length, step_to_bound(room, -change),
+                              step_to_bound(c.upper_dual, c.upper_dual_step)});
     }
   }
   std::swap(problem.velocity, direction_);
@@ -268,7 +275,9 @@ double VelocitySolver::complementarity_after(const Problem& problem, double step
     const InteriorPointConstraint& c = interior_[k];
     if (acting_rows(problem.constraints[k]) == 0) continue;
     if (is_cone(problem.constraints[k])) {
-      products += (c.impulse + step_length * c.impulse_step).dot(c.speed + step_length * c.speed_step), ++count;
+      products +=
+          (c.impulse + step_length * c.impulse_step).dot(c.speed + step_length * c.speed_step),
+          ++count;
       continue;
     }
     const double impulse = c.impulse[0] + step_length * c.impulse_step[0];
@@ -284,7 +293,8 @@ double VelocitySolver::complementarity_after(const Problem& problem, double step
 
 /// Goes along the direction.
 void VelocitySolver::interior_point_step(Problem& problem, double step_length) {
-  for (std::size_t i = 0; i < direction_.size(); ++i) problem.velocity[i] += step_length * direction_[i];
+  for (std::size_t i = 0; i < direction_.size(); ++i)
+    problem.velocity[i] += step_length * direction_[i];
   for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
     Constraint& constraint = problem.constraints[k];
     InteriorPointConstraint& c = interior_[k];
@@ -319,7 +329,8 @@ bool VelocitySolver::interior_point(Problem& problem, SolverResult& outcome) {
     const double straight = interior_point_direction(problem, 0, false);
     const double left = std::clamp(complementarity_after(problem, straight) / product, 0.0, 1.0);
     const double centering = std::max(left * left * left, least_centering);
-    const double step_length = interior_point_direction(problem, centering * product, straight > 0.1);
+    const double step_length =
+        interior_point_direction(problem, centering * product, straight > 0.1);
     interior_point_step(problem, std::min(1.0, boundary_fraction * step_length));
     compute_constraint_velocities(problem);
     outcome.residual = current_residual(problem, scale);
@@ -328,7 +339,8 @@ bool VelocitySolver::interior_point(Problem& problem, SolverResult& outcome) {
       best = outcome.residual;
       best_.save(problem);
     }
-    if (outcome.residual <= options.absolute_tolerance + options.regularised_tolerance * scale) return true;
+    if (outcome.residual <= options.absolute_tolerance + options.regularised_tolerance * scale)
+      return true;
   }
   best_.restore(problem);
   outcome.residual = best;

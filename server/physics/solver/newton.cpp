@@ -52,7 +52,8 @@ void set_impulse(const LinearisedLaw& linear, const double* u, Constraint& const
 
 /// Changes a constraint's impulses by its linearised law, from velocities u to w.
 template <int R>
-void change_impulse(const LinearisedLaw& linear, const double* u, const double* w, Constraint& constraint) {
+void change_impulse(const LinearisedLaw& linear, const double* u, const double* w,
+                    Constraint& constraint) {
   double change[R];
   for (int c = 0; c < R; ++c) change[c] = w[c] - u[c];
   for (int r = 0; r < R; ++r) {
@@ -127,9 +128,11 @@ InitialVelocities initial_velocities(const Problem& problem) {
     if (constraint.kind != Constraint::Kind::contact) continue;
     double u[Constraint::most_rows];
     problem.constraint_velocity(constraint, u);
-    for (int r = 0; r < std::min(constraint.rows, 3); ++r) out.fastest_contact = std::max(out.fastest_contact, std::abs(u[r]));
+    for (int r = 0; r < std::min(constraint.rows, 3); ++r)
+      out.fastest_contact = std::max(out.fastest_contact, std::abs(u[r]));
   }
-  for (const Tree* tree : problem.trees) out.gravity_change = std::max(out.gravity_change, problem.time_step * tree->gravity.norm());
+  for (const Tree* tree : problem.trees)
+    out.gravity_change = std::max(out.gravity_change, problem.time_step * tree->gravity.norm());
   return out;
 }
 
@@ -180,7 +183,9 @@ bool VelocitySolver::newton_step(Problem& problem) {
       constraint.impulse.fill(0);
       continue;
     }
-    dispatch_rows(constraint.rows, [&](auto rows) { set_impulse<rows()>(linear, constraint_velocities_[i].data(), constraint); });
+    dispatch_rows(constraint.rows, [&](auto rows) {
+      set_impulse<rows()>(linear, constraint_velocities_[i].data(), constraint);
+    });
   }
   return true;
 }
@@ -195,7 +200,9 @@ void VelocitySolver::simplified_newton_step(Problem& problem) {
       constraint.impulse.fill(0);
       continue;
     }
-    dispatch_rows(constraint.rows, [&](auto rows) { set_impulse<rows()>(law_, constraint_velocities_[i].data(), constraint); });
+    dispatch_rows(constraint.rows, [&](auto rows) {
+      set_impulse<rows()>(law_, constraint_velocities_[i].data(), constraint);
+    });
   }
   momentum_residual(problem, residual_);
   kept_constraint_velocities_ = constraint_velocities_;
@@ -205,8 +212,8 @@ void VelocitySolver::simplified_newton_step(Problem& problem) {
   for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
     if (laws_[i].is_zero) continue;
     dispatch_rows(problem.constraints[i].rows, [&](auto rows) {
-      change_impulse<rows()>(laws_[i], kept_constraint_velocities_[i].data(), constraint_velocities_[i].data(),
-                             problem.constraints[i]);
+      change_impulse<rows()>(laws_[i], kept_constraint_velocities_[i].data(),
+                             constraint_velocities_[i].data(), problem.constraints[i]);
     });
   }
 }
@@ -216,7 +223,9 @@ void VelocitySolver::simplified_newton_step(Problem& problem) {
 /// @return       infinite if a speed or an impulse is not finite
 double VelocitySolver::current_residual(const Problem& problem, double& scale) const {
   double of_joints = 0;
-  return find_scale(problem, constraint_velocities_, scale, of_joints) ? residual_beyond(problem, constraint_velocities_, HUGE_VAL) : HUGE_VAL;
+  return find_scale(problem, constraint_velocities_, scale, of_joints)
+             ? residual_beyond(problem, constraint_velocities_, HUGE_VAL)
+             : HUGE_VAL;
 }
 
 void Iterate::save(const Problem& problem) {
@@ -296,7 +305,8 @@ bool VelocitySolver::newton(Problem& problem, SolverResult& outcome, int most_fa
     if (outcome.residual <= options.tolerance(scale)) return true;
     if (!shortens) wrong = merit(problem, constraint_velocities_);
     const bool nears = wrong < 0.5 * wrong_before;
-    if (outcome.residual > options.stalled_residual * scale && !nears && ++far >= most_far) return false;
+    if (outcome.residual > options.stalled_residual * scale && !nears && ++far >= most_far)
+      return false;
     if (outcome.residual <= options.rounding * scale && !nears) return true;
     if (outcome.residual > options.simplified_newton_residual * scale) continue;
     if (simplified_newton(problem, outcome)) return true;
@@ -326,122 +336,12 @@ bool VelocitySolver::is_warm_start_solved(const Problem& problem, SolverResult& 
   const double enough = options.tolerance(scale);
   outcome.residual = finite ? residual_beyond(problem, constraint_velocities_, enough) : HUGE_VAL;
   if (outcome.residual > enough) return false;
-  const double balanced = options.absolute_tolerance + options.warm_start_tolerance * std::max(scale, of_joints);
+  const double balanced =
+      options.absolute_tolerance + options.warm_start_tolerance * std::max(scale, of_joints);
   if (momentum_residual(problem, residual_) > balanced) return false;
-  return have_similar_masses(problem.total_mass) || is_momentum_balanced(problem, residual_, options.warm_start_tolerance, options.absolute_tolerance, impulse_sum_);
-}
-
-SolverResult VelocitySolver::solve(Problem& problem) {
-  SolverResult outcome;
-  if (is_warm_start_solved(problem, outcome)) return outcome;
-  const double work = analyse(problem);
-  if (work > options.most_factorisation_work) {
-    problem.make_rigid();
-    gauss_seidel(problem, outcome, options.most_passes);
-    return outcome;
-  }
-  if (options.suits_newton(problem.trees.size(), work)) {
-    if (newton(problem, outcome, options.most_stalled_iterations)) return outcome;
-    start_.restore(problem);
-    continuation(problem, outcome);
-    outcome.converged = damped_augmented_lagrangian(problem, outcome);
-    if (!outcome.converged) {
-      start_.restore(problem);
-      augmented_lagrangian_after_gauss_seidel(problem, outcome);
-    }
-    if (outcome.converged) {
-      polish(problem, outcome);
-      return outcome;
-    }
-    start_.restore(problem);
-    problem.make_rigid();
-  } else {
-    problem.make_rigid();
-    if (augmented_lagrangian(problem, outcome)) return outcome;
-  }
-  start_.restore(problem);
-  const bool found = interior_point(problem, outcome);
-  outcome.converged = augmented_lagrangian(problem, outcome);
-  if (outcome.converged && found) return outcome;
-  const SolverResult before = outcome;  // large impulses of redundant contacts hide a residual
-  start_.save(problem);
-  augmented_lagrangian_after_gauss_seidel(problem, outcome);
-  if (outcome.residual > before.residual) {
-    start_.restore(problem);
-    outcome.residual = before.residual;
-    outcome.converged = before.converged;
-  }
-  return outcome;
-}
-
-bool VelocitySolver::gauss_seidel(Problem& problem, SolverResult& outcome, int most) {
-  constexpr int between = 10;  // passes between two evaluations of the residual
-  gauss_seidel_.start(problem);
-  for (int pass = 1; pass <= most; ++pass) {
-    ++outcome.passes;
-    gauss_seidel_.pass();
-    if (pass % between != 0 && pass < most) {
-      gauss_seidel_.accelerate();
-      continue;
-    }
-    gauss_seidel_.finish(problem);
-    double scale = 0;
-    compute_constraint_velocities(problem);
-    outcome.residual = current_residual(problem, scale);
-    outcome.converged = outcome.residual <= options.tolerance_of_regularised(initial_, scale);
-    if (outcome.converged) return true;
-    gauss_seidel_.accelerate();
-  }
-  return false;
-}
-
-/// Polishes a solution of the regularised problem by Newton's method. Its residual exceeds the
-/// contacts' compliance, and would share loads at random.
-void VelocitySolver::polish(Problem& problem, SolverResult& outcome) {
-  const double before = outcome.residual;
-  start_.save(problem);
-  compute_constraint_velocities(problem);
-  if (newton(problem, outcome, options.most_stalled_iterations)) return;
-  start_.restore(problem);
-  outcome.residual = before;
-}
-
-/// Passes, then the augmented Lagrangian from their result. Passes find which contacts hold, stick
-/// and slide. Where these conflict, as rolling friction and the two ends of a line do, only the
-/// augmented Lagrangian converges.
-bool VelocitySolver::augmented_lagrangian_after_gauss_seidel(Problem& problem, SolverResult& outcome) {
-  gauss_seidel_.start(problem);
-  for (int pass = 1; pass <= options.passes_before_augmented_lagrangian; ++pass) {
-    gauss_seidel_.pass();
-    if (pass < options.passes_before_augmented_lagrangian) gauss_seidel_.accelerate();
-  }
-  gauss_seidel_.finish(problem);
-  outcome.passes += options.passes_before_augmented_lagrangian;
-  return outcome.converged = damped_augmented_lagrangian(problem, outcome);
-}
-
-void VelocitySolver::solve_displacement(Problem& problem) {
-  SolverResult outcome;
-  const double work = analyse(problem);
-  if (options.suits_newton(problem.trees.size(), work)) {
-    compute_constraint_velocities(problem);
-    if (newton(problem, outcome, options.most_iterations)) return;
-    start_.restore(problem);
-  }
-  gauss_seidel(problem, outcome, options.displacement_passes);
-  if (outcome.residual > options.displacement_residual && work <= options.most_factorisation_work) damped_augmented_lagrangian(problem, outcome);
-}
-
-SolverResult solve_velocities(Problem& problem, VelocitySolver& solver) {
-  constexpr int most_switches = 3;
-  problem.bound_penetration();
-  SolverResult outcome = solver.solve(problem);
-  for (int i = 0; i < most_switches && problem.switch_limits(); ++i) {
-    const int iterations = outcome.iterations;
-    outcome = solver.solve(problem);
-    outcome.iterations += iterations;
-  }
-  return outcome;
+  return have_similar_masses(problem.total_mass) ||
+         is_momentum_balanced(problem, residual_, options.warm_start_tolerance,
+                              options.absolute_tolerance, impulse_sum_);
 }
 
 }  // namespace ziggurat::dynamics

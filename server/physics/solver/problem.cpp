@@ -41,9 +41,12 @@ bool has_normal_mobility(const Problem& problem, const Constraint& constraint) {
   const auto moves = [&](int index, int first, std::span<const int> dofs) {
     if (index < 0) return false;
     if (problem.trees[index]->has_floating_base) return true;
-    return std::ranges::any_of(dofs, [&](int k) { return std::abs(problem.jacobian[first + k * constraint.rows]) > tangential_mobility; });
+    return std::ranges::any_of(dofs, [&](int k) {
+      return std::abs(problem.jacobian[first + k * constraint.rows]) > tangential_mobility;
+    });
   };
-  return moves(constraint.a, constraint.jacobian_a, constraint.dofs_a) || moves(constraint.b, constraint.jacobian_b, constraint.dofs_b);
+  return moves(constraint.a, constraint.jacobian_a, constraint.dofs_a) ||
+         moves(constraint.b, constraint.jacobian_b, constraint.dofs_b);
 }
 
 /// Whether a link rotates enough that the paths of its points are curved.
@@ -89,13 +92,14 @@ void Problem::add(Tree& tree, Workspace& work, bool is_driven) {
   momentum.resize(first + tree.dofs);
   compute_mass_matrix(tree, work);
   predict_momentum(tree, work, time_step, is_driven,
-                 {momentum.data() + first, static_cast<std::size_t>(tree.dofs)});
+                   {momentum.data() + first, static_cast<std::size_t>(tree.dofs)});
   for (int k = 0; k < tree.dofs; ++k) inverse_mass.push_back(1 / work.mass[k * tree.dofs + k]);
   first_bias_acceleration.push_back(-1);
   if (has_several_trees && rotates(tree, time_step)) {
     first_bias_acceleration.back() = static_cast<int>(bias_acceleration.size());
     bias_accelerations(tree, work);
-    bias_acceleration.insert(bias_acceleration.end(), work.acceleration.begin(), work.acceleration.end());
+    bias_acceleration.insert(bias_acceleration.end(), work.acceleration.begin(),
+                             work.acceleration.end());
   }
   double total = 0;
   for (const Link& link : tree.links) total += link.mass;
@@ -118,8 +122,8 @@ int Problem::add_columns(const Tree& tree, int rows) {
 
 /// Adds the Jacobian columns of a contact on one side.
 /// @return  where they begin in the Jacobian
-int Problem::add_contact_columns(const Tree& tree, int link, const Vector3& point, const Constraint& constraint,
-                      double sign) {
+int Problem::add_contact_columns(const Tree& tree, int link, const Vector3& point,
+                                 const Constraint& constraint, double sign) {
   const int rows = constraint.rows, first = add_columns(tree, rows);
   const Matrix3 frame = sign * constraint.frame;
   const Vector3 arm = point - tree.origin;
@@ -171,21 +175,27 @@ void Problem::compute_mobility(Constraint& constraint) const {
   add_side(constraint.a, constraint.jacobian_a, constraint.dofs_a);
   add_side(constraint.b, constraint.jacobian_b, constraint.dofs_b);
   for (const FrictionDisc& disc : discs_of(constraint.rows)) {
-    double &first = constraint.mobility[disc.first], &last = constraint.mobility[disc.first + disc.size - 1];
+    double &first = constraint.mobility[disc.first],
+           &last = constraint.mobility[disc.first + disc.size - 1];
     first = last = (first + last) / 2;
   }
-  for (int r = 0; r < constraint.rows; ++r) constraint.mobility[r] = std::max(constraint.mobility[r], 1e-12);
+  for (int r = 0; r < constraint.rows; ++r)
+    constraint.mobility[r] = std::max(constraint.mobility[r], 1e-12);
 }
 
 /// Bias acceleration of a link at a point of contact, at dv/dt = 0 [m/s^2].
 /// @param tree  its index in the island
-Vector3 Problem::point_bias_acceleration(int tree, int link, const Vector3& point, const ContactPoint& contact) const {
+Vector3 Problem::point_bias_acceleration(int tree, int link, const Vector3& point,
+                                         const ContactPoint& contact) const {
   const Motion& motion = trees[tree]->spatial_velocity[link];
-  if (first_bias_acceleration[tree] < 0 || (rotates_far(motion, time_step) && !contact.has_point_velocity)) return Vector3::Zero();
+  if (first_bias_acceleration[tree] < 0 ||
+      (rotates_far(motion, time_step) && !contact.has_point_velocity))
+    return Vector3::Zero();
   const Motion& spatial = bias_acceleration[first_bias_acceleration[tree] + link];
   const Vector3 arm = point - trees[tree]->origin;
   const Vector3 with_it = motion.linear + motion.angular.cross(arm);
-  return spatial.linear + spatial.angular.cross(arm) + motion.angular.cross(contact.has_point_velocity ? contact.point_velocity : with_it);
+  return spatial.linear + spatial.angular.cross(arm) +
+         motion.angular.cross(contact.has_point_velocity ? contact.point_velocity : with_it);
 }
 
 /// Sets the target velocity and compliance of a contact without restitution. Touching surfaces are
@@ -198,21 +208,27 @@ void Problem::set_normal_target(Constraint& constraint) const {
     return;
   }
   const auto inverse = [&](int index) { return index >= 0 ? 1 / total_mass[index] : 0; };
-  constraint.target_velocity[0] = std::min(most_penetration / time_step, constraint.target_velocity[0]);
-  if (constraint.gap > 0 && constraint.impulse[0] == 0) return;  // an impact is stopped at the surface
+  constraint.target_velocity[0] =
+      std::min(most_penetration / time_step, constraint.target_velocity[0]);
+  if (constraint.gap > 0 && constraint.impulse[0] == 0)
+    return;  // an impact is stopped at the surface
   constraint.compliance = compliance_factor * (inverse(constraint.a) + inverse(constraint.b));
-  if (weight > 0) constraint.compliance = std::min(constraint.compliance, most_penetration / (time_step * time_step * weight));
+  if (weight > 0)
+    constraint.compliance =
+        std::min(constraint.compliance, most_penetration / (time_step * time_step * weight));
 }
 
 /// Adds half of the gap's second derivative at constant joint velocities to the target velocity,
 /// where both sides rotate: touching points stay together to second order. The normal turns with
 /// the side whose face it is, or with both.
 void Problem::add_rotation_correction(Constraint& constraint, const ContactPoint& contact) const {
-  if (first_bias_acceleration[constraint.a] < 0 && first_bias_acceleration[constraint.b] < 0) return;
+  if (first_bias_acceleration[constraint.a] < 0 && first_bias_acceleration[constraint.b] < 0)
+    return;
   const LinkIndex sides[] = {contact.a, contact.b};
   const Vector3 points[] = {contact.point, contact.point + contact.offset_to_b};
   const int indices[] = {constraint.a, constraint.b};
-  Vector3 faster = Vector3::Zero(), speed = Vector3::Zero(), turning = Vector3::Zero();  // of a less b; of both
+  Vector3 faster = Vector3::Zero(), speed = Vector3::Zero(),
+          turning = Vector3::Zero();  // of a less b; of both
   for (int i = 0; i < 2; ++i) {
     const Tree& tree = *trees[indices[i]];
     const Motion& motion = tree.spatial_velocity[sides[i].link];
@@ -221,16 +237,23 @@ void Problem::add_rotation_correction(Constraint& constraint, const ContactPoint
     speed += sign * (motion.linear + motion.angular.cross(points[i] - tree.origin));
     turning += motion.angular;
   }
-  for (int r = 1; r < std::min(constraint.rows, 3); ++r) constraint.target_velocity[r] = -time_step / 2 * constraint.frame.col(r).dot(faster);
-  const auto far = [&](int i) { return rotates_far(trees[indices[i]]->spatial_velocity[sides[i].link], time_step); };
+  for (int r = 1; r < std::min(constraint.rows, 3); ++r)
+    constraint.target_velocity[r] = -time_step / 2 * constraint.frame.col(r).dot(faster);
+  const auto far = [&](int i) {
+    return rotates_far(trees[indices[i]]->spatial_velocity[sides[i].link], time_step);
+  };
   const bool rebounds = contact.restitution > 0;  // its impact ends the step
   if (rebounds || (!contact.has_point_velocity && (far(0) || far(1)))) return;
   const Vector3 normal = constraint.frame.col(0);
-  const Vector3 normal_turns = contact.has_point_velocity ? contact.face_angular_velocity.cross(normal) : Vector3(turning.cross(normal));
+  const Vector3 normal_turns = contact.has_point_velocity
+                                   ? contact.face_angular_velocity.cross(normal)
+                                   : Vector3(turning.cross(normal));
   constraint.gap_acceleration = normal.dot(faster) + normal_turns.dot(speed);
   const double alone = std::max(0.0, constraint.target_velocity[0]);
   constraint.target_velocity[0] -= time_step / 2 * constraint.gap_acceleration;
-  if (constraint.impulse[0] == 0 && !contact.has_point_velocity) constraint.target_velocity[0] = std::min(constraint.target_velocity[0], alone);  // the face of an impact is unknown
+  if (constraint.impulse[0] == 0 && !contact.has_point_velocity)
+    constraint.target_velocity[0] =
+        std::min(constraint.target_velocity[0], alone);  // the face of an impact is unknown
 }
 
 void Problem::add(const ContactPoint& contact, int a, int b, int source) {
@@ -242,17 +265,21 @@ void Problem::add(const ContactPoint& contact, int a, int b, int source) {
   const bool same = other && other->frame.col(0) == contact.normal;
   constraint.frame = same ? other->frame : frame_about(contact.normal);
   if (a >= 0) {
-    constraint.jacobian_a = add_contact_columns(*trees[a], contact.a.link, contact.point, constraint, 1);
+    constraint.jacobian_a =
+        add_contact_columns(*trees[a], contact.a.link, contact.point, constraint, 1);
     constraint.dofs_a = trees[a]->dofs_of(contact.a.link);
   }
   if (b >= 0) {
-    constraint.jacobian_b = add_contact_columns(*trees[b], contact.b.link, contact.point + contact.offset_to_b, constraint, -1);
+    constraint.jacobian_b = add_contact_columns(
+        *trees[b], contact.b.link, contact.point + contact.offset_to_b, constraint, -1);
     constraint.dofs_b = trees[b]->dofs_of(contact.b.link);
   }
   compute_mobility(constraint);
   constraint.source = source;
   constraint.gap = contact.gap;
-  if (!has_normal_mobility(*this, constraint)) {  // without normal mobility any normal impulse is a solution: it is zero
+  if (!has_normal_mobility(
+          *this,
+          constraint)) {  // without normal mobility any normal impulse is a solution: it is zero
     constraint.law = Constraint::Law::off;
     return;
   }
@@ -284,8 +311,9 @@ void Problem::add(const Servo& servo, int index, int source) {
     constraint.dofs_a = tree.dofs_of(servo.link);
     for (const int k : constraint.dofs_a) {
       const Motion& axis = tree.motion_subspace[k];
-      jacobian[constraint.jacobian_a + k] = servo.direction.angular.dot(axis.angular) +
-                               servo.direction.linear.dot(axis.linear + axis.angular.cross(arm));
+      jacobian[constraint.jacobian_a + k] =
+          servo.direction.angular.dot(axis.angular) +
+          servo.direction.linear.dot(axis.linear + axis.angular.cross(arm));
     }
   }
   compute_mobility(constraint);
@@ -334,8 +362,10 @@ void Problem::constraint_velocity(const Constraint& constraint, double* u, const
   const double* j = jacobian.data();
   dispatch_rows(constraint.rows, [&](auto rows) {
     for (int r = 0; r < rows(); ++r) u[r] = 0;
-    if (constraint.a >= 0) add_speeds<rows()>(j + constraint.jacobian_a, constraint.dofs_a, v + offset[constraint.a], u);
-    if (constraint.b >= 0) add_speeds<rows()>(j + constraint.jacobian_b, constraint.dofs_b, v + offset[constraint.b], u);
+    if (constraint.a >= 0)
+      add_speeds<rows()>(j + constraint.jacobian_a, constraint.dofs_a, v + offset[constraint.a], u);
+    if (constraint.b >= 0)
+      add_speeds<rows()>(j + constraint.jacobian_b, constraint.dofs_b, v + offset[constraint.b], u);
   });
 }
 
@@ -359,7 +389,8 @@ bool Problem::switch_limits() {
 
 void Problem::bound_penetration() {
   double depth = 0;
-  for (const Constraint& constraint : constraints) depth = std::max(depth, constraint.compliance * constraint.impulse[0] * time_step);
+  for (const Constraint& constraint : constraints)
+    depth = std::max(depth, constraint.compliance * constraint.impulse[0] * time_step);
   if (depth <= most_penetration) return;
   for (Constraint& constraint : constraints) constraint.compliance *= most_penetration / depth;
 }
@@ -368,7 +399,9 @@ void Problem::make_rigid() {
   for (Constraint& constraint : constraints) {
     if (constraint.compliance == 0) continue;
     constraint.compliance = 0;
-    constraint.target_velocity[0] = std::min(0.0, constraint.target_velocity[0] + time_step / 2 * constraint.gap_acceleration) - time_step / 2 * constraint.gap_acceleration;
+    constraint.target_velocity[0] =
+        std::min(0.0, constraint.target_velocity[0] + time_step / 2 * constraint.gap_acceleration) -
+        time_step / 2 * constraint.gap_acceleration;
   }
 }
 
@@ -380,12 +413,15 @@ double Problem::gap_after(const Constraint& constraint) const {
 
 bool Problem::leaves_trees_penetrating() const {
   return std::ranges::any_of(constraints, [&](const Constraint& constraint) {
-    return constraint.a >= 0 && constraint.b >= 0 && penetrates(constraint) && gap_after(constraint) < -allowed_overlap;
+    return constraint.a >= 0 && constraint.b >= 0 && penetrates(constraint) &&
+           gap_after(constraint) < -allowed_overlap;
   });
 }
 
 bool Problem::become_displacement() {
-  if (std::ranges::none_of(constraints, [&](const Constraint& constraint) { return penetrates(constraint); })) return false;
+  if (std::ranges::none_of(constraints,
+                           [&](const Constraint& constraint) { return penetrates(constraint); }))
+    return false;
   for (Constraint& constraint : constraints) {
     if (constraint.law == Constraint::Law::off) continue;
     if (constraint.kind == Constraint::Kind::servo) {
@@ -396,7 +432,8 @@ bool Problem::become_displacement() {
     const double after = gap_after(constraint);
     constraint.law = Constraint::Law::bounded;
     // four fifths of a penetration are resolved per substep; the last micrometre stays
-    constraint.target_velocity[0] = constraint.gap < 0 ? -0.8 * std::min(0.0, after + allowed_overlap) : -after;
+    constraint.target_velocity[0] =
+        constraint.gap < 0 ? -0.8 * std::min(0.0, after + allowed_overlap) : -after;
     constraint.compliance = 0;
     constraint.impulse.fill(0);
   }

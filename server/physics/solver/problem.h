@@ -10,29 +10,31 @@
 #include <utility>
 #include <vector>
 
-#include "physics/solver/contact_law.h"
 #include "physics/multibody/equations.h"
+#include "physics/solver/contact_law.h"
 
 namespace ziggurat::dynamics {
 
 struct Problem {
-  double time_step = 0;                         ///< of the substep [s]
-  double compliance_factor = 0;                       ///< of surfaces, see System; 0: they are rigid
-  bool has_several_trees = false;                      ///< whether more than one tree will be added
-  double allowed_overlap = 1e-6;             ///< that become_displacement() leaves [m]
-  std::vector<Tree*> trees;                  ///< by their index in the system
-  std::vector<int> offset;                   ///< of each tree in p and v
-  std::vector<double> mass;                  ///< matrices of all trees, each dofs x dofs
-  std::vector<int> mass_offset;              ///< of each tree in `mass`
+  double time_step = 0;            ///< of the substep [s]
+  double compliance_factor = 0;    ///< of surfaces, see System; 0: they are rigid
+  bool has_several_trees = false;  ///< whether more than one tree will be added
+  double allowed_overlap = 1e-6;   ///< that become_displacement() leaves [m]
+  std::vector<Tree*> trees;        ///< by their index in the system
+  std::vector<int> offset;         ///< of each tree in p and v
+  std::vector<double> mass;        ///< matrices of all trees, each dofs x dofs
+  std::vector<int> mass_offset;    ///< of each tree in `mass`
   std::vector<std::array<double, 6>> root_bias_impulse;  ///< of each tree, see predict_momentum()
-  std::vector<double> bias_velocity_change;               ///< of each tree, see Workspace
+  std::vector<double> bias_velocity_change;              ///< of each tree, see Workspace
   std::vector<Constraint> constraints;
   std::vector<double> jacobian;
   std::vector<double> momentum;  ///< p
   std::vector<double>
       inverse_mass;  ///< of each dof as if it were alone: 1 / M_kk [1/kg] or [1/(kg m^2)]
-  std::vector<Motion> bias_acceleration;                    ///< of each link of rotating trees, see bias_accelerations()
-  std::vector<int> first_bias_acceleration;                 ///< of each tree, in `bias_acceleration`; -1: not needed, or it hardly rotates
+  std::vector<Motion>
+      bias_acceleration;  ///< of each link of rotating trees, see bias_accelerations()
+  std::vector<int> first_bias_acceleration;    ///< of each tree, in `bias_acceleration`; -1: not
+                                               ///< needed, or it hardly rotates
   std::vector<double> total_mass;              ///< of each tree [kg]
   double weight = 0;                           ///< of all trees [N]
   std::vector<double> velocity;                ///< v: start and solution
@@ -51,7 +53,9 @@ struct Problem {
   void add(const Limit& limit, int index, int source);
 
   /// Velocities u of a constraint at the present solution.
-  void constraint_velocity(const Constraint& constraint, double* u) const { constraint_velocity(constraint, u, velocity.data()); }
+  void constraint_velocity(const Constraint& constraint, double* u) const {
+    constraint_velocity(constraint, u, velocity.data());
+  }
   /// Velocities u at other velocities v of the dofs.
   void constraint_velocity(const Constraint& constraint, double* u, const double* v) const;
   /// Switches limits to the bound that the present velocities pass.
@@ -63,7 +67,10 @@ struct Problem {
   /// Makes all surfaces rigid.
   void make_rigid();
   /// Whether a contact or limit is violated by more than allowed_overlap.
-  bool penetrates(const Constraint& constraint) const { return constraint.kind != Constraint::Kind::servo && constraint.law != Constraint::Law::off && constraint.gap < -allowed_overlap; }
+  bool penetrates(const Constraint& constraint) const {
+    return constraint.kind != Constraint::Kind::servo && constraint.law != Constraint::Law::off &&
+           constraint.gap < -allowed_overlap;
+  }
   /// Gap at the substep's end with the present velocities [m], [rad].
   double gap_after(const Constraint& constraint) const;
   /// Whether the present velocities leave a penetration between two trees.
@@ -76,15 +83,19 @@ struct Problem {
 
  private:
   int add_columns(const Tree& tree, int rows);
-  int add_contact_columns(const Tree& tree, int link, const Vector3& point, const Constraint& constraint, double sign);
+  int add_contact_columns(const Tree& tree, int link, const Vector3& point,
+                          const Constraint& constraint, double sign);
   void compute_mobility(Constraint& constraint) const;
-  Vector3 point_bias_acceleration(int tree, int link, const Vector3& point, const ContactPoint& contact) const;
+  Vector3 point_bias_acceleration(int tree, int link, const Vector3& point,
+                                  const ContactPoint& contact) const;
   void set_normal_target(Constraint& constraint) const;
   void add_rotation_correction(Constraint& constraint, const ContactPoint& contact) const;
 };
 
 /// Whether a side's dofs begin with the first six of its tree: those of a floating base, or of the
 /// first joints of a fixed one.
-inline bool begins_with_floating_base(std::span<const int> dofs) { return dofs.size() >= 6 && dofs[5] == 5; }
+inline bool begins_with_floating_base(std::span<const int> dofs) {
+  return dofs.size() >= 6 && dofs[5] == 5;
+}
 
 }  // namespace ziggurat::dynamics

@@ -33,11 +33,13 @@ Vector3 centre_of_mass(const Tree& tree, const double* mass) {
 /// velocity changes with the shape. About another point it would be wrong, because a struck body
 /// did not move along its velocity.
 /// @param mass  its matrix before;  @param drift  see predict_momentum()
-void restore_momentum(Tree& tree, Workspace& work, const double* mass, std::span<const double, 6> drift) {
+void restore_momentum(Tree& tree, Workspace& work, const double* mass,
+                      std::span<const double, 6> drift) {
   Vector6 before = momentum(tree, mass);
   for (int i = 0; i < 6; ++i) before[i] += drift[i];
   compute_mass_matrix(tree, work);
-  const Vector3 moved = centre_of_mass(tree, work.mass.data()) - centre_of_mass(tree, mass);  // from the origin
+  const Vector3 moved =
+      centre_of_mass(tree, work.mass.data()) - centre_of_mass(tree, mass);  // from the origin
   before.head<3>() += moved.cross(Vector3(before.tail<3>()));
   const Vector6 missing = before - momentum(tree, work.mass.data());
   Matrix6 root;
@@ -59,7 +61,8 @@ bool conserves_momentum(const IslandEnd& end, std::size_t index) {
 }
 
 void restore_momentum(const IslandEnd& end, std::size_t index) {
-  restore_momentum(*end.problem.trees[index], end.work, end.problem.mass_of(index), end.problem.root_bias_impulse[index]);
+  restore_momentum(*end.problem.trees[index], end.work, end.problem.mass_of(index),
+                   end.problem.root_bias_impulse[index]);
 }
 
 bool has_energy_error(const IslandEnd& end, std::size_t index) {
@@ -69,7 +72,8 @@ bool has_energy_error(const IslandEnd& end, std::size_t index) {
 void correct_energy(const IslandEnd& end, std::size_t index) {
   Tree& tree = *end.problem.trees[index];
   const auto held = std::span(end.energy_errors.held).subspan(end.problem.offset[index], tree.dofs);
-  dynamics::correct_energy(tree, end.work, end.energy_errors.of_trees[index], held, end.has_world_friction);
+  dynamics::correct_energy(tree, end.work, end.energy_errors.of_trees[index], held,
+                           end.has_world_friction);
 }
 
 }  // namespace

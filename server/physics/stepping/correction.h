@@ -1,12 +1,12 @@
 #pragma once
-// Corrections of an island's velocities at the end of its step, in their order. The mass matrices were those of the
-// step's beginning, and the pose is another one now.
+// Corrections of an island's velocities at the end of its step, in their order. The mass matrices
+// were those of the step's beginning, and the pose is another one now.
 
 #include <array>
 #include <span>
 
-#include "physics/stepping/energy_error.h"
 #include "physics/solver/problem.h"
+#include "physics/stepping/energy_error.h"
 
 namespace ziggurat::dynamics {
 

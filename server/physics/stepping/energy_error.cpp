@@ -60,9 +60,8 @@ bool rotates(const Tree& tree, std::span<const double> after, double time_step, 
   for (int k = 0; k < tree.dofs; ++k) {
     if (tree.motion_subspace[k].angular.squaredNorm() * after[k] * after[k] > most) return true;
   }
-  return std::any_of(tree.spatial_velocity.begin(), tree.spatial_velocity.end(), [&](const Motion& motion) {
-    return motion.angular.squaredNorm() > most;
-  });
+  return std::any_of(tree.spatial_velocity.begin(), tree.spatial_velocity.end(),
+                     [&](const Motion& motion) { return motion.angular.squaredNorm() > most; });
 }
 
 /// Whether contacts and servos change a tree's velocities by much.
@@ -93,8 +92,8 @@ EnergyError::Kind kind_of(const Problem& problem, std::size_t i, std::span<const
 /// Impulse of bias forces on a dof, from the momentum that the problem was solved with;
 /// work.scratch must have the external forces.
 /// @param momentum  of the dof, see predict_momentum();  @param after  its solved velocity
-double bias_impulse(const Tree& tree, const Workspace& work, const double* mass, double momentum, double after,
-             double time_step, int dof) {
+double bias_impulse(const Tree& tree, const Workspace& work, const double* mass, double momentum,
+                    double after, double time_step, int dof) {
   double before = 0;
   for (int k = 0; k < tree.dofs; ++k) before += mass[dof * tree.dofs + k] * tree.v[k];
   return momentum - before - time_step * (work.scratch[dof] + tree.damping[dof] * after);
@@ -106,8 +105,8 @@ double bias_impulse(const Tree& tree, const Workspace& work, const double* mass,
 /// @param after     solved velocities
 /// @return          [J]
 double error_before_kinetic(const Tree& tree, Workspace& work, const double* mass,
-                     std::span<const double> momentum, std::span<const double> after,
-                     double time_step) {
+                            std::span<const double> momentum, std::span<const double> after,
+                            double time_step) {
   // Bias impulse b = M (after - before) - h (forces) - J^T g. Its work b (before + after) / 2 and
   // the change of after^T M after / 2 with the pose should cancel.
   work.scratch.resize(tree.dofs);
@@ -152,7 +151,7 @@ double square_of_free(const Tree& tree, std::span<const unsigned char> held, con
 /// Bias forces of a part of a tree's velocities, which stay.
 /// @param of_free  of its free joints, or of all others
 void bias_of_joints(Tree& tree, Workspace& work, std::span<const unsigned char> held, bool of_free,
-                  std::vector<double>& speeds, std::vector<double>& out) {
+                    std::vector<double>& speeds, std::vector<double>& out) {
   speeds.assign(tree.v.begin(), tree.v.end());
   for (int k = 0; k < tree.dofs; ++k) {
     if (is_free_joint(tree, held, k) != of_free) tree.v[k] = 0;
@@ -167,9 +166,10 @@ void bias_of_joints(Tree& tree, Workspace& work, std::span<const unsigned char> 
 /// Energy error of the free joints of a tree with prescribed joints. Servos give all the power that
 /// prescribed motion takes. Its centrifugal forces on free joints act as a potential, and are no
 /// error. The work of forces that depend on both motions counts by half.
-double error_of_free_joints(Tree& tree, Workspace& work, const double* mass, std::span<const double> momentum,
-                      std::span<const double> after, double time_step, std::span<const unsigned char> held,
-                      IslandEnergyErrors& memory) {
+double error_of_free_joints(Tree& tree, Workspace& work, const double* mass,
+                            std::span<const double> momentum, std::span<const double> after,
+                            double time_step, std::span<const unsigned char> held,
+                            IslandEnergyErrors& memory) {
   bias_of_joints(tree, work, held, false, memory.velocities, memory.bias_of_held);
   bias_of_joints(tree, work, held, true, memory.velocities, memory.bias_of_free);
   work.scratch.resize(tree.dofs);
@@ -177,7 +177,8 @@ double error_of_free_joints(Tree& tree, Workspace& work, const double* mass, std
   double sum = -square_of_free(tree, held, mass, after) / 2;
   for (int i = 0; i < tree.dofs; ++i) {
     if (!is_free_joint(tree, held, i)) continue;
-    const double own = bias_impulse(tree, work, mass, momentum[i], after[i], time_step, i) + time_step * memory.bias_of_held[i];
+    const double own = bias_impulse(tree, work, mass, momentum[i], after[i], time_step, i) +
+                       time_step * memory.bias_of_held[i];
     const double of_both = own + time_step * memory.bias_of_free[i];
     sum += own * (tree.v[i] + after[i]) / 2 - of_both * tree.v[i] / 2;
   }
@@ -199,7 +200,8 @@ double lift_energy(const Tree& tree, Workspace& work, const double* by) {
 void list_held_dofs(const Problem& problem, std::vector<unsigned char>& held) {
   static_assert(IslandEnergyErrors::separate == 1, "spins is 0 or 1");
   held.clear();
-  for (const Tree* tree : problem.trees) held.insert(held.end(), tree->is_symmetric_rotor.begin(), tree->is_symmetric_rotor.end());
+  for (const Tree* tree : problem.trees)
+    held.insert(held.end(), tree->is_symmetric_rotor.begin(), tree->is_symmetric_rotor.end());
   for (const Constraint& constraint : problem.constraints) {
     if (constraint.kind == Constraint::Kind::contact || !constraint.is_unsaturated()) continue;
     const bool drives = constraint.kind == Constraint::Kind::servo;
@@ -214,7 +216,7 @@ void list_held_dofs(const Problem& problem, std::vector<unsigned char>& held) {
 /// momentum and angular momentum zero.
 /// @param of_joints  out: of each dof;  @param momentum  out: that it has, of each dof
 void find_internal_motion(const Tree& tree, Workspace& work, std::span<const unsigned char> held,
-                       std::vector<double>& of_joints, std::vector<double>& momentum) {
+                          std::vector<double>& of_joints, std::vector<double>& momentum) {
   const int n = tree.dofs, root = tree.dof_count[0];
   compute_mass_matrix(tree, work);
   of_joints.assign(n, 0.0);
@@ -242,7 +244,8 @@ void find_internal_motion(const Tree& tree, Workspace& work, std::span<const uns
 /// is free.
 /// @param excess  [J]; < 0: to be added
 /// @return        removed energy [J]
-double correct_joint_energy(Tree& tree, Workspace& work, std::span<const unsigned char> held, double excess) {
+double correct_joint_energy(Tree& tree, Workspace& work, std::span<const unsigned char> held,
+                            double excess) {
   if (std::abs(excess) <= least * kinetic_energy(tree)) return 0;
   find_internal_motion(tree, work, held, work.scratch, work.saved_state);
   double slope = 0, curve = 0;  // of the energy, along the internal motion
@@ -260,7 +263,8 @@ double correct_joint_energy(Tree& tree, Workspace& work, std::span<const unsigne
 
 /// Removes energy from the free joints of a tree with prescribed joints, or adds it.
 /// @param before  see EnergyError
-void correct_free_joint_energy(Tree& tree, Workspace& work, std::span<const unsigned char> held, double before) {
+void correct_free_joint_energy(Tree& tree, Workspace& work, std::span<const unsigned char> held,
+                               double before) {
   find_internal_motion(tree, work, held, work.scratch, work.saved_state);
   const double all = square_of_free(tree, held, work.mass.data(), tree.v) / 2;
   const double excess = std::clamp(before + all, -most_given * all, most_given * all);
@@ -297,7 +301,8 @@ void compute_energy_errors(const Problem& problem, Workspace& work, IslandEnergy
   out.of_trees.assign(problem.trees.size(), {});
   bool any = false;
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    const auto after = std::span(problem.velocity).subspan(problem.offset[i], problem.trees[i]->dofs);
+    const auto after =
+        std::span(problem.velocity).subspan(problem.offset[i], problem.trees[i]->dofs);
     out.of_trees[i].kind = kind_of(problem, i, after);
     any |= out.of_trees[i].kind != EnergyError::Kind::none;
   }
@@ -317,8 +322,10 @@ void compute_energy_errors(const Problem& problem, Workspace& work, IslandEnergy
       continue;
     }
     excess.before_kinetic = excess.of_free_joints
-                        ? error_of_free_joints(tree, work, problem.mass_of(i), momentum, after, problem.time_step, held, out)
-                        : error_before_kinetic(tree, work, problem.mass_of(i), momentum, after, problem.time_step);
+                                ? error_of_free_joints(tree, work, problem.mass_of(i), momentum,
+                                                       after, problem.time_step, held, out)
+                                : error_before_kinetic(tree, work, problem.mass_of(i), momentum,
+                                                       after, problem.time_step);
   }
 }
 
@@ -326,21 +333,24 @@ void add_lift_energy(const Problem& problem, Workspace& work, IslandEnergyErrors
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     EnergyError& excess = out.of_trees[i];
     if (excess.kind == EnergyError::Kind::none || excess.of_free_joints) continue;
-    excess.before_kinetic += lift_energy(*problem.trees[i], work, problem.velocity.data() + problem.offset[i]);
+    excess.before_kinetic +=
+        lift_energy(*problem.trees[i], work, problem.velocity.data() + problem.offset[i]);
   }
 }
 
-void correct_energy(Tree& tree, Workspace& work, const EnergyError& excess, std::span<const unsigned char> held,
-                 bool grounded) {
+void correct_energy(Tree& tree, Workspace& work, const EnergyError& excess,
+                    std::span<const unsigned char> held, bool grounded) {
   if (excess.kind == EnergyError::Kind::none) return;
-  if (excess.of_free_joints) return correct_free_joint_energy(tree, work, held, excess.before_kinetic);
+  if (excess.of_free_joints)
+    return correct_free_joint_energy(tree, work, held, excess.before_kinetic);
   double sum = excess.before_kinetic + kinetic_energy(tree);
   if (is_driven(held) && sum < wild * kinetic_energy(tree)) return;
   if (tree.is_single_body) {
     if (grounded) restore_rotation_energy(tree, sum);
   } else {
     sum -= correct_joint_energy(tree, work, held, sum);
-    if (!grounded && tree.has_floating_base) return;  // its momentum is right, and so is the energy of its rotation
+    if (!grounded && tree.has_floating_base)
+      return;  // its momentum is right, and so is the energy of its rotation
   }
   const double most = kinetic_energy(tree) - sum;
   remove_kinetic_energy(tree, work, sum);

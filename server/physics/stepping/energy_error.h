@@ -13,13 +13,15 @@ namespace ziggurat::dynamics {
 /// Energy error of one tree.
 struct EnergyError {
   enum class Kind : unsigned char {
-    none,       ///< too small to matter
-    coriolis,      ///< Coriolis forces change its velocities: gains and losses are undone
-    large_rotation,  ///< as well, and it rotates so far that the rest of a gain is removed from all velocities
+    none,            ///< too small to matter
+    coriolis,        ///< Coriolis forces change its velocities: gains and losses are undone
+    large_rotation,  ///< as well, and it rotates so far that the rest of a gain is removed from all
+                     ///< velocities
   };
   Kind kind = Kind::none;
   bool of_free_joints = false;  ///< servos prescribe the other joints
-  double before_kinetic = 0;            ///< error, less the kinetic energy at the end of the tree or of its free joints [J]
+  double before_kinetic =
+      0;  ///< error, less the kinetic energy at the end of the tree or of its free joints [J]
 };
 
 /// Energy errors of the trees of an island.
@@ -29,7 +31,8 @@ struct IslandEnergyErrors {
   /// State of each dof: free; separate (held by a limit, or a symmetric rotor, see TreeModel); or
   /// driven by a servo.
   std::vector<unsigned char> held;
-  std::vector<double> velocities, bias_of_held, bias_of_free;  ///< of compute_energy_errors(), which uses their memory again
+  std::vector<double> velocities, bias_of_held,
+      bias_of_free;  ///< of compute_energy_errors(), which uses their memory again
 };
 
 /// Computes the energy error of each tree; to be called when an island's velocities are solved, but
@@ -44,8 +47,8 @@ void add_lift_energy(const Problem& problem, Workspace& work, IslandEnergyErrors
 /// Corrects a tree's energy at the substep's end. Needs velocity_kinematics(), and leaves it valid.
 /// @param held      of its dofs, see IslandEnergyErrors
 /// @param grounded  whether its island touches the world, so that angular momentum is not conserved
-void correct_energy(Tree& tree, Workspace& work, const EnergyError& excess, std::span<const unsigned char> held,
-                 bool grounded);
+void correct_energy(Tree& tree, Workspace& work, const EnergyError& excess,
+                    std::span<const unsigned char> held, bool grounded);
 
 /// Whether an excess is more than rounding; needs velocity_kinematics().
 bool exceeds_rounding(const Tree& tree, double excess);

@@ -1,9 +1,9 @@
 #include "physics/stepping/geometric_stiffness.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <Eigen/Eigenvalues>
 
 namespace ziggurat::dynamics {
 namespace {
@@ -14,7 +14,8 @@ constexpr double swings_too_far = 0.7, swing_of_a_part = 0.5;
 
 /// Whether a servo or a limit holds a coordinate.
 bool holds_joint(const Constraint& constraint) {
-  return constraint.kind != Constraint::Kind::contact && constraint.dofs_a.size() == 1 && constraint.is_unsaturated();
+  return constraint.kind != Constraint::Kind::contact && constraint.dofs_a.size() == 1 &&
+         constraint.is_unsaturated();
 }
 
 /// Counts free joint coordinates of each tree. A tree whose joints are all held is a rigid body,
@@ -30,16 +31,19 @@ bool find_unconstrained(const Problem& problem, GeometricStiffness& memory) {
 }
 
 /// Adds the impulses of contacts on each link, about its centre of mass.
-void add_contacts(const Problem& problem, std::span<const ContactPoint> contacts, GeometricStiffness& memory) {
+void add_contacts(const Problem& problem, std::span<const ContactPoint> contacts,
+                  GeometricStiffness& memory) {
   for (const Constraint& constraint : problem.constraints) {
     if (constraint.kind != Constraint::Kind::contact || constraint.impulse[0] == 0) continue;
     const ContactPoint& contact = contacts[constraint.source];
-    const Vector3 impulse = constraint.frame * Vector3(constraint.impulse[0], constraint.impulse[1], constraint.impulse[2]);
+    const Vector3 impulse = constraint.frame * Vector3(constraint.impulse[0], constraint.impulse[1],
+                                                       constraint.impulse[2]);
     const auto add = [&](int index, int link, const Vector3& point, double sign) {
       if (index < 0) return;
       const int at = memory.first_link[index] + link;
       memory.impulse[at] += sign * impulse;
-      memory.dyad[at] += sign * (point - problem.trees[index]->position[link]) * impulse.transpose();
+      memory.dyad[at] +=
+          sign * (point - problem.trees[index]->position[link]) * impulse.transpose();
     };
     add(constraint.a, contact.a.link, contact.point, 1);
     add(constraint.b, contact.b.link, contact.point + contact.offset_to_b, -1);
@@ -55,11 +59,13 @@ void add_inertia(const Problem& problem, std::size_t i, GeometricStiffness& memo
     Motion& change = memory.change[link];
     change = link > 0 ? memory.change[tree.links[link].parent] : Motion{};
     const int first = tree.first_dof[link];
-    for (int k = first; k < first + tree.dof_count[link]; ++k) change = change + tree.motion_subspace[k] * (after[k] - tree.v[k]);
+    for (int k = first; k < first + tree.dof_count[link]; ++k)
+      change = change + tree.motion_subspace[k] * (after[k] - tree.v[k]);
     if (tree.links[link].joint == JointType::fixed) continue;
     const Vector3 faster = change.linear + change.angular.cross(tree.position[link] - tree.origin);
-    memory.impulse[memory.first_link[i] + link] += problem.time_step * tree.external[link].force +
-                                                   tree.links[link].mass * (problem.time_step * tree.gravity - faster);
+    memory.impulse[memory.first_link[i] + link] +=
+        problem.time_step * tree.external[link].force +
+        tree.links[link].mass * (problem.time_step * tree.gravity - faster);
   }
 }
 
@@ -67,7 +73,8 @@ void add_inertia(const Problem& problem, std::size_t i, GeometricStiffness& memo
 void add_joints(const Tree& tree, Vector3* impulse, Matrix3* dyad) {
   for (std::size_t link = tree.links.size() - 1; link > 0; --link) {
     const int parent = tree.links[link].parent;
-    const Vector3 joint = tree.position[parent] + tree.rotation[parent] * tree.links[link].joint_in_parent.position;
+    const Vector3 joint =
+        tree.position[parent] + tree.rotation[parent] * tree.links[link].joint_in_parent.position;
     dyad[link] -= (joint - tree.position[link]) * impulse[link].transpose();
     dyad[parent] += (joint - tree.position[parent]) * impulse[link].transpose();
     impulse[parent] += impulse[link];
@@ -93,17 +100,20 @@ bool may_swing(const Tree& tree, std::size_t link, const Matrix3& stiff) {
 
 /// Squared swing rate of a link while all others move freely, times its step: of h K [rad^2/s].
 /// @param work  with the tree's factors
-double squared_swing_rate(const Tree& tree, int link, const Matrix3& stiff, const Workspace& work, GeometricStiffness& memory) {
+double squared_swing_rate(const Tree& tree, int link, const Matrix3& stiff, const Workspace& work,
+                          GeometricStiffness& memory) {
   const Eigen::SelfAdjointEigenSolver<Matrix3> parts(stiff);
   double most = 0;
   for (int part = 0; part < 3; ++part) {
     if (parts.eigenvalues()[part] <= 0) continue;  // pressed
     const Vector3 axis = parts.eigenvectors().col(part);
     memory.direction.assign(tree.dofs, 0.0);
-    for (const int k : tree.dofs_of(link)) memory.direction[k] = axis.dot(tree.motion_subspace[k].angular);
+    for (const int k : tree.dofs_of(link))
+      memory.direction[k] = axis.dot(tree.motion_subspace[k].angular);
     memory.response = memory.direction;
     solve_mass_matrix(tree, work, memory.response.data());
-    const double mobility = std::inner_product(memory.direction.begin(), memory.direction.end(), memory.response.begin(), 0.0);
+    const double mobility = std::inner_product(memory.direction.begin(), memory.direction.end(),
+                                               memory.response.begin(), 0.0);
     most = std::max(most, parts.eigenvalues()[part] * mobility);
   }
   return most;
@@ -115,13 +125,15 @@ void factor_with_held_joints(const Problem& problem, std::size_t i, Workspace& w
   const Tree& tree = *problem.trees[i];
   work.mass.assign(problem.mass_of(i), problem.mass_of(i) + tree.dofs * tree.dofs);
   for (const Constraint& constraint : problem.constraints) {
-    if (constraint.a == static_cast<int>(i) && holds_joint(constraint)) work.mass[constraint.dofs_a[0] * (tree.dofs + 1)] *= heavy;
+    if (constraint.a == static_cast<int>(i) && holds_joint(constraint))
+      work.mass[constraint.dofs_a[0] * (tree.dofs + 1)] *= heavy;
   }
   factor_mass_matrix(tree, work, problem.time_step);
 }
 
 /// Largest swing of a tree's links in the step [rad].
-double swing_angle(const Problem& problem, std::size_t i, Workspace& work, GeometricStiffness& memory) {
+double swing_angle(const Problem& problem, std::size_t i, Workspace& work,
+                   GeometricStiffness& memory) {
   const Tree& tree = *problem.trees[i];
   Matrix3* dyad = memory.dyad.data() + memory.first_link[i];
   add_inertia(problem, i, memory);
@@ -133,14 +145,16 @@ double swing_angle(const Problem& problem, std::size_t i, Workspace& work, Geome
     if (!may_swing(tree, link, problem.time_step * stiff)) continue;
     if (!factored) factor_with_held_joints(problem, i, work);
     factored = true;
-    most = std::max(most, problem.time_step * squared_swing_rate(tree, static_cast<int>(link), stiff, work, memory));
+    most = std::max(most, problem.time_step * squared_swing_rate(tree, static_cast<int>(link),
+                                                                 stiff, work, memory));
   }
   return std::sqrt(most);
 }
 
 }  // namespace
 
-int parts_for_geometric_stiffness(const Problem& problem, std::span<const ContactPoint> contacts, Workspace& work, GeometricStiffness& memory) {
+int parts_for_geometric_stiffness(const Problem& problem, std::span<const ContactPoint> contacts,
+                                  Workspace& work, GeometricStiffness& memory) {
   if (!find_unconstrained(problem, memory)) return 1;
   memory.first_link.clear();
   int links = 0;
@@ -155,7 +169,8 @@ int parts_for_geometric_stiffness(const Problem& problem, std::span<const Contac
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     if (memory.free[i] > 0) most = std::max(most, swing_angle(problem, i, work, memory));
   }
-  return most > swings_too_far ? static_cast<int>(std::min(std::ceil(most / swing_of_a_part), 1e6)) : 1;
+  return most > swings_too_far ? static_cast<int>(std::min(std::ceil(most / swing_of_a_part), 1e6))
+                               : 1;
 }
 
 }  // namespace ziggurat::dynamics

@@ -30,11 +30,13 @@ struct GeometricStiffness {
 /// limits hold their joints.
 /// @param contacts  of the problem's constraints
 /// @return          1: undivided
-int parts_for_geometric_stiffness(const Problem& problem, std::span<const ContactPoint> contacts, Workspace& work, GeometricStiffness& memory);
+int parts_for_geometric_stiffness(const Problem& problem, std::span<const ContactPoint> contacts,
+                                  Workspace& work, GeometricStiffness& memory);
 
-/// Into how many parts the step of an island should be divided so that the axes of what is in contact can be followed. A single
-/// body nutates by the speed of its spin, times the spread of its moments of inertia over the middle one; what turns on a revolute
-/// joint by its angular momentum in the joint, times the mobility of turning across it.
+/// Into how many parts the step of an island should be divided so that the axes of what is in
+/// contact can be followed. A single body nutates by the speed of its spin, times the spread of its
+/// moments of inertia over the middle one; what turns on a revolute joint by its angular momentum
+/// in the joint, times the mobility of turning across it.
 /// @return  1: it need not be
 int parts_for_gyroscopic_stiffness(const Problem& problem, Workspace& work);
 

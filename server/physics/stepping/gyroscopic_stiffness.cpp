@@ -1,10 +1,10 @@
-#include "physics/stepping/geometric_stiffness.h"
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
+
+#include "physics/stepping/geometric_stiffness.h"
 
 namespace ziggurat::dynamics {
 namespace {
@@ -51,18 +51,22 @@ double nutation_of_whole(const Problem& problem, std::size_t index, double slow)
 /// Mobility of a link's rotation in a plane: the root of the determinant of its 2 x 2 block [1/(kg
 /// m^2)].
 /// @param normal  of the plane;  @param work  with the tree's factors;  @param memory  of each dof
-double mobility_across(const Tree& tree, std::size_t link, const Vector3& normal, const Workspace& work, std::vector<double>& memory) {
+double mobility_across(const Tree& tree, std::size_t link, const Vector3& normal,
+                       const Workspace& work, std::vector<double>& memory) {
   const Vector3 one = normal.unitOrthogonal(), other = normal.cross(one);
   const auto turn = [&](const Vector3& torque) {
     memory.assign(tree.dofs, 0.0);
-    for (const int k : tree.dofs_of(static_cast<int>(link))) memory[k] = torque.dot(tree.motion_subspace[k].angular);
+    for (const int k : tree.dofs_of(static_cast<int>(link)))
+      memory[k] = torque.dot(tree.motion_subspace[k].angular);
     solve_mass_matrix(tree, work, memory.data());
     Vector3 change = Vector3::Zero();
-    for (const int k : tree.dofs_of(static_cast<int>(link))) change += tree.motion_subspace[k].angular * memory[k];
+    for (const int k : tree.dofs_of(static_cast<int>(link)))
+      change += tree.motion_subspace[k].angular * memory[k];
     return change;
   };
   const Vector3 by_one = turn(one), by_other = turn(other);
-  return std::sqrt(std::max(0.0, one.dot(by_one) * other.dot(by_other) - one.dot(by_other) * other.dot(by_one)));
+  return std::sqrt(
+      std::max(0.0, one.dot(by_one) * other.dot(by_other) - one.dot(by_other) * other.dot(by_one)));
 }
 
 /// Nutation rate of a tree's rotors on revolute joints [rad/s], by their largest angular momentum
@@ -78,14 +82,17 @@ double nutation_of_rotors(const Problem& problem, std::size_t index, double slow
     if (link.joint != JointType::revolute || carrier.joint == JointType::fixed) continue;
     const int dof = tree.first_dof[i];
     const Vector3 axis = tree.rotation[i].transpose() * tree.motion_subspace[dof].angular;
-    const double speed = std::max(std::abs(tree.v[dof]), std::abs(problem.velocity[problem.offset[index] + dof]));
+    const double speed =
+        std::max(std::abs(tree.v[dof]), std::abs(problem.velocity[problem.offset[index] + dof]));
     const double momentum = link.inertia.dot(axis.cwiseAbs2()) * speed;
     if (momentum <= slow * (link.inertia.minCoeff() + carrier.inertia.minCoeff())) continue;
     if (!std::exchange(factored, true)) {
       work.mass.assign(problem.mass_of(index), problem.mass_of(index) + tree.dofs * tree.dofs);
       factor_mass_matrix(tree, work, problem.time_step);
     }
-    fastest = std::max(fastest, momentum * mobility_across(tree, i, tree.motion_subspace[dof].angular, work, work.saved_state));
+    fastest =
+        std::max(fastest, momentum * mobility_across(tree, i, tree.motion_subspace[dof].angular,
+                                                     work, work.saved_state));
   }
   return fastest;
 }
@@ -99,11 +106,16 @@ int parts_for_gyroscopic_stiffness(const Problem& problem, Workspace& work) {
     const Tree& tree = *problem.trees[index];
     const auto touches = [&](const Constraint& constraint) {
       const int it = static_cast<int>(index);
-      return constraint.kind == Constraint::Kind::contact && (constraint.a == it || constraint.b == it) && (constraint.impulse[0] != 0 || constraint.gap < close);
+      return constraint.kind == Constraint::Kind::contact &&
+             (constraint.a == it || constraint.b == it) &&
+             (constraint.impulse[0] != 0 || constraint.gap < close);
     };
     const double slow = too_far / problem.time_step;
-    const double its = tree.is_single_body ? nutation(tree.links[0].inertia, tree.rotation[0].transpose() * tree.spatial_velocity[0].angular)
-                                   : std::max(nutation_of_whole(problem, index, slow), nutation_of_rotors(problem, index, slow, work));
+    const double its = tree.is_single_body
+                           ? nutation(tree.links[0].inertia, tree.rotation[0].transpose() *
+                                                                 tree.spatial_velocity[0].angular)
+                           : std::max(nutation_of_whole(problem, index, slow),
+                                      nutation_of_rotors(problem, index, slow, work));
     if (its > fastest && std::ranges::any_of(problem.constraints, touches)) fastest = its;
   }
   const double most = problem.time_step * fastest;

@@ -10,7 +10,8 @@ constexpr int most_rebounds = 8;  // of an island at an instant; further impacts
 constexpr int most_impacts = 32;  // of an island at an instant
 
 bool is_restitution_contact(const Constraint& constraint) {
-  return constraint.kind == Constraint::Kind::contact && constraint.law == Constraint::Law::contact && constraint.restitution > 0;
+  return constraint.kind == Constraint::Kind::contact &&
+         constraint.law == Constraint::Law::contact && constraint.restitution > 0;
 }
 
 double separation_velocity(const Problem& problem, const Constraint& constraint) {
@@ -21,9 +22,16 @@ double separation_velocity(const Problem& problem, const Constraint& constraint)
 
 /// Whether motors or wrenches change velocities at once.
 bool has_sudden_forces(const Problem& problem) {
-  const auto acts = [](const Wrench& wrench) { return !wrench.moment.isZero(0) || !wrench.force.isZero(0); };
-  return std::ranges::any_of(problem.constraints, [](const Constraint& constraint) { return constraint.kind == Constraint::Kind::servo; }) ||
-         std::ranges::any_of(problem.trees, [&](const Tree* tree) { return std::ranges::any_of(tree->external, acts); });
+  const auto acts = [](const Wrench& wrench) {
+    return !wrench.moment.isZero(0) || !wrench.force.isZero(0);
+  };
+  return std::ranges::any_of(problem.constraints,
+                             [](const Constraint& constraint) {
+                               return constraint.kind == Constraint::Kind::servo;
+                             }) ||
+         std::ranges::any_of(problem.trees, [&](const Tree* tree) {
+           return std::ranges::any_of(tree->external, acts);
+         });
 }
 
 /// Time at which a gap closes, and its closing velocity then.
@@ -43,8 +51,10 @@ Crossing crossing(double gap, double velocity, double acceleration) {
   return {};
 }
 
-/// Mean velocity change of a tree by sudden forces is not known before the step's end: of both estimates the earlier.
-Crossing first_crossing(const Constraint& contact, double before, double after, double time_step, bool has_sudden) {
+/// Mean velocity change of a tree by sudden forces is not known before the step's end: of both
+/// estimates the earlier.
+Crossing first_crossing(const Constraint& contact, double before, double after, double time_step,
+                        bool has_sudden) {
   const Crossing steady = crossing(contact.gap, before, (after - before) / time_step);
   if (!has_sudden) return steady;
   const Crossing at_once = crossing(contact.gap, after, 0);
@@ -64,8 +74,8 @@ void set_momentum(Problem& problem) {
   }
 }
 
-/// Work of all impulses but those of servos, between two velocities and with a share of a change of both impulses and
-/// velocities: constant, linear and quadratic coefficient of the share [J].
+/// Work of all impulses but those of servos, between two velocities and with a share of a change of
+/// both impulses and velocities: constant, linear and quadratic coefficient of the share [J].
 struct Work {
   double constant = 0, linear = 0, quadratic = 0;
 };
@@ -80,7 +90,8 @@ Work work_of(const Problem& problem, const ImpactMemory& memory) {
     problem.constraint_velocity(constraint, least, memory.inelastic.data());
     problem.constraint_velocity(constraint, most, problem.velocity.data());
     for (int r = 0; r < constraint.rows; ++r) {
-      const double impulse = memory.impulses[k][r], more = constraint.impulse[r] - impulse, faster = most[r] - least[r];
+      const double impulse = memory.impulses[k][r], more = constraint.impulse[r] - impulse,
+                   faster = most[r] - least[r];
       work.constant += impulse * (before[r] + least[r]) / 2;
       work.linear += (impulse * faster + more * (before[r] + least[r])) / 2;
       work.quadratic += more * faster / 2;
@@ -89,7 +100,8 @@ Work work_of(const Problem& problem, const ImpactMemory& memory) {
   return work;
 }
 
-/// Largest share of a rebound whose contacts do no work in sum: 1, or less with several contacts or friction.
+/// Largest share of a rebound whose contacts do no work in sum: 1, or less with several contacts or
+/// friction.
 double passive_share(const Work& work) {
   if (work.constant + work.linear + work.quadratic <= 0) return 1;
   if (work.constant >= 0 || work.quadratic <= 0) return 0;
@@ -127,7 +139,8 @@ void solve_impact(Problem& problem, VelocitySolver& solver, ImpactMemory& memory
   solver.solve(problem);
   memory.inelastic = problem.velocity;
   problem.velocity = elastic;
-  for (std::size_t k = 0; k < problem.constraints.size(); ++k) std::swap(problem.constraints[k].impulse, elastic_impulses[k]);
+  for (std::size_t k = 0; k < problem.constraints.size(); ++k)
+    std::swap(problem.constraints[k].impulse, elastic_impulses[k]);
   const double share = passive_share(work_of(problem, memory));
   for (std::size_t k = 0; k < elastic.size(); ++k) {
     problem.velocity[k] = memory.inelastic[k] + share * (elastic[k] - memory.inelastic[k]);
@@ -135,7 +148,8 @@ void solve_impact(Problem& problem, VelocitySolver& solver, ImpactMemory& memory
   for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
     Constraint& constraint = problem.constraints[k];
     for (int r = 0; r < constraint.rows; ++r) {
-      constraint.impulse[r] = memory.impulses[k][r] + share * (constraint.impulse[r] - memory.impulses[k][r]);
+      constraint.impulse[r] =
+          memory.impulses[k][r] + share * (constraint.impulse[r] - memory.impulses[k][r]);
     }
   }
 }
@@ -155,7 +169,8 @@ bool prepare_impact(Problem& problem, const ImpactMemory& memory, int impacts) {
     if (constraint.kind != Constraint::Kind::contact) continue;
     constraint.target_velocity.fill(0);
     const double before = separation_velocity(problem, constraint);
-    const bool strikes = constraint.gap <= touching_gap && constraint.restitution > 0 && before < -least;
+    const bool strikes =
+        constraint.gap <= touching_gap && constraint.restitution > 0 && before < -least;
     constraint.law = strikes || memory.carries[k] ? Constraint::Law::contact : Constraint::Law::off;
     const bool rebounds = strikes && impacts < most_rebounds && before < -restitution_threshold;
     if (rebounds) constraint.target_velocity[0] = -constraint.restitution * before;
@@ -191,7 +206,9 @@ double find_first_impact(Problem& problem, VelocitySolver& solver, ImpactMemory&
   for (std::size_t i = 0; i < memory.closing.size(); ++i) {
     const auto& [index, before] = memory.closing[i];
     Constraint& constraint = problem.constraints[index];
-    const Crossing found = first_crossing(constraint, before, separation_velocity(problem, constraint), problem.time_step, has_sudden);
+    const Crossing found =
+        first_crossing(constraint, before, separation_velocity(problem, constraint),
+                       problem.time_step, has_sudden);
     if (found.velocity >= restitution_threshold) {
       first = std::min(first, found.time);
     } else {
@@ -207,7 +224,8 @@ bool apply_impact_law(Problem& problem, VelocitySolver& solver, ImpactMemory& me
   memory.carries.clear();
   for (Constraint& constraint : problem.constraints) {
     const bool touches = constraint.law != Constraint::Law::off && constraint.gap <= touching_gap;
-    memory.carries.push_back(touches && (constraint.impulse[0] != 0 || constraint.restitution == 0));
+    memory.carries.push_back(touches &&
+                             (constraint.impulse[0] != 0 || constraint.restitution == 0));
     if (constraint.kind == Constraint::Kind::limit && !touches) constraint.upper = 0;
   }
   memory.sum.assign(problem.constraints.size(), {});
@@ -215,10 +233,12 @@ bool apply_impact_law(Problem& problem, VelocitySolver& solver, ImpactMemory& me
   for (; impacts < most_impacts && prepare_impact(problem, memory, impacts); ++impacts) {
     solve_impact(problem, solver, memory);
     for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
-      for (int r = 0; r < problem.constraints[k].rows; ++r) memory.sum[k][r] += problem.constraints[k].impulse[r];
+      for (int r = 0; r < problem.constraints[k].rows; ++r)
+        memory.sum[k][r] += problem.constraints[k].impulse[r];
     }
   }
-  for (std::size_t k = 0; k < problem.constraints.size(); ++k) problem.constraints[k].impulse = memory.sum[k];
+  for (std::size_t k = 0; k < problem.constraints.size(); ++k)
+    problem.constraints[k].impulse = memory.sum[k];
   return impacts > 0;
 }
 

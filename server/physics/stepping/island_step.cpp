@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "physics/stepping/correction.h"
 #include "physics/multibody/equations.h"
 #include "physics/multibody/free_motion.h"
+#include "physics/stepping/correction.h"
 #include "physics/stepping/geometric_stiffness.h"
 
 namespace ziggurat::dynamics {
@@ -18,14 +18,17 @@ void add(const SolverResult& outcome, Report& report) {
   ++report.islands;
   report.not_converged += !outcome.converged;
   report.most_iterations = std::max(report.most_iterations, outcome.iterations);
-  report.most_augmented_lagrangian_steps = std::max(report.most_augmented_lagrangian_steps, outcome.augmented_lagrangian_steps);
-  report.most_interior_point_steps = std::max(report.most_interior_point_steps, outcome.interior_point_steps);
+  report.most_augmented_lagrangian_steps =
+      std::max(report.most_augmented_lagrangian_steps, outcome.augmented_lagrangian_steps);
+  report.most_interior_point_steps =
+      std::max(report.most_interior_point_steps, outcome.interior_point_steps);
   report.most_passes = std::max(report.most_passes, outcome.passes);
   report.residual = std::max(report.residual, outcome.residual);
 }
 
 /// Saves positions and velocities of an island's trees.
-void save_states(const std::vector<Tree>& trees, std::span<const int> island, std::vector<double>& out) {
+void save_states(const std::vector<Tree>& trees, std::span<const int> island,
+                 std::vector<double>& out) {
   out.clear();
   for (const int number : island) {
     out.insert(out.end(), trees[number].q.begin(), trees[number].q.end());
@@ -34,7 +37,8 @@ void save_states(const std::vector<Tree>& trees, std::span<const int> island, st
 }
 
 /// Gives them back.
-void restore_states(std::vector<Tree>& trees, std::span<const int> island, const std::vector<double>& kept) {
+void restore_states(std::vector<Tree>& trees, std::span<const int> island,
+                    const std::vector<double>& kept) {
   const double* next = kept.data();
   for (const int number : island) {
     Tree& tree = trees[number];
@@ -56,7 +60,8 @@ void displace_tree(Tree& tree, std::span<const double> by) {
 /// Displaces a tree in free motion out of a penetration. A single body is not rotated, so that its
 /// momenta and its energy stay.
 void displace_unconstrained(Tree& tree, std::span<const double> by) {
-  const bool rotates = !tree.is_single_body || tree.links[0].joint != JointType::floating || tree.freedoms != all_freedoms;
+  const bool rotates = !tree.is_single_body || tree.links[0].joint != JointType::floating ||
+                       tree.freedoms != all_freedoms;
   displace_tree(tree, rotates ? by : std::array{0.0, 0.0, 0.0, by[3], by[4], by[5]});
 }
 
@@ -75,14 +80,17 @@ void write_impulses(const Problem& problem, const ConstraintLists& constraints) 
         constraints.servos[constraint.source].impulse = g[0];
         break;
       case Constraint::Kind::limit:  // along the joint at the lower bound, against it at the upper
-        constraints.limits[constraint.source].impulse = problem.jacobian[constraint.jacobian_a + constraint.dofs_a[0]] * g[0];
+        constraints.limits[constraint.source].impulse =
+            problem.jacobian[constraint.jacobian_a + constraint.dofs_a[0]] * g[0];
         break;
     }
   }
 }
 
-/// Sets the velocities of a solution, and computes displacements; unconstrained trees have moved already.
-void set_velocities(const Problem& problem, std::span<const unsigned char> is_free, std::vector<double>& displacement) {
+/// Sets the velocities of a solution, and computes displacements; unconstrained trees have moved
+/// already.
+void set_velocities(const Problem& problem, std::span<const unsigned char> is_free,
+                    std::vector<double>& displacement) {
   displacement.resize(problem.velocity.size());
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
     Tree& tree = *problem.trees[i];
@@ -105,7 +113,8 @@ bool is_supported_by_world(const Problem& problem) {
 bool has_moving_motors(const Problem& problem) {
   constexpr double rounding = 1e-7;  // of a servo that holds still [m/s], [rad/s]
   return std::ranges::any_of(problem.constraints, [](const Constraint& b) {
-    return b.kind == Constraint::Kind::servo && b.is_unsaturated() && std::abs(b.target_velocity[0]) > rounding;
+    return b.kind == Constraint::Kind::servo && b.is_unsaturated() &&
+           std::abs(b.target_velocity[0]) > rounding;
   });
 }
 
@@ -120,7 +129,8 @@ int parts_for_rotation(std::span<const RotationUntilImpact> swings, std::span<co
 }
 
 /// Integrates a tree in free motion, and reports how often its equations of motion were evaluated.
-void integrate_and_report(Tree& tree, int index, Workspace& work, double time_step, const PrescribedJoints& drive, Report& report) {
+void integrate_and_report(Tree& tree, int index, Workspace& work, double time_step,
+                          const PrescribedJoints& drive, Report& report) {
   const int steps = integrate_free_motion(tree, work, time_step, drive);
   const int evaluations = tree.is_single_body ? 0 : evaluations_per_step * steps;
   if (evaluations <= report.most_evaluations) return;
@@ -148,7 +158,8 @@ bool integrate_free_island(const IslandStep& step) {
   if (!std::ranges::all_of(step.island.items, is_limit) || violates_limit(step)) return false;
   IslandMemory& memory = step.memory;
   if (!step.island.items.empty()) save_states(step.trees, step.island.trees, memory.saved_state);
-  for (const int tree : step.island.trees) integrate_and_report(step.trees[tree], tree, memory.work, step.time_step, {}, step.report);
+  for (const int tree : step.island.trees)
+    integrate_and_report(step.trees[tree], tree, memory.work, step.time_step, {}, step.report);
   if (violates_limit(step)) {
     restore_states(step.trees, step.island.trees, memory.saved_state);
     return false;
@@ -169,7 +180,8 @@ bool integrate_free_trees(const IslandStep& step) {
     if (memory.is_free[i]) {
       save_states(step.trees, tree, memory.saved_state);
       integrate_and_report(step.trees[tree[0]], tree[0], memory.work, step.time_step,
-                           prescribed_joints_of(memory.problem, i, memory.prescribed_joints), step.report);
+                           prescribed_joints_of(memory.problem, i, memory.prescribed_joints),
+                           step.report);
       memory.is_free[i] = !violates_limit(step, tree[0]);
       if (!memory.is_free[i]) restore_states(step.trees, tree, memory.saved_state);
     }
@@ -182,16 +194,21 @@ bool integrate_free_trees(const IslandStep& step) {
 int count_parts(const IslandStep& step, bool is_touched) {
   if (step.options.most_parts <= 1) return 1;
   IslandMemory& memory = step.memory;
-  return std::max({is_touched ? parts_for_geometric_stiffness(memory.problem, step.constraints.contacts, memory.work, memory.geometric_stiffness) : 1,
+  return std::max({is_touched
+                       ? parts_for_geometric_stiffness(memory.problem, step.constraints.contacts,
+                                                       memory.work, memory.geometric_stiffness)
+                       : 1,
                    parts_for_gyroscopic_stiffness(memory.problem, memory.work),
                    parts_for_rotation(step.rotations_until_impact, step.island.trees)});
 }
 
-/// Integrates the positions of constrained trees, and displaces unconstrained ones out of penetrations.
+/// Integrates the positions of constrained trees, and displaces unconstrained ones out of
+/// penetrations.
 void integrate_island(const IslandStep& step) {
   const Problem& problem = step.memory.problem;
   for (std::size_t i = 0; i < problem.trees.size(); ++i) {
-    const std::span<const double> by(step.memory.displacement.data() + problem.offset[i], problem.trees[i]->dofs);
+    const std::span<const double> by(step.memory.displacement.data() + problem.offset[i],
+                                     problem.trees[i]->dofs);
     if (!step.memory.is_free[i]) {
       displace_tree(*problem.trees[i], by);
     } else if (std::ranges::any_of(by, [](double way) { return way != 0; })) {
@@ -221,7 +238,9 @@ void assemble_problem(const IslandStep& step) {
   for (std::size_t i = 0; i < step.island.trees.size(); ++i) {
     problem.add(step.trees[step.island.trees[i]], memory.work, memory.has_servos[i]);
   }
-  const auto index_of = [&](int tree) { return tree >= 0 && step.trees[tree].dofs > 0 ? index_in_island[tree] : -1; };
+  const auto index_of = [&](int tree) {
+    return tree >= 0 && step.trees[tree].dofs > 0 ? index_in_island[tree] : -1;
+  };
   for (const auto& [island, kind, index] : step.island.items) {
     switch (kind) {
       case IslandItem::Kind::contact: {
@@ -246,10 +265,12 @@ IslandOutcome step_island(const IslandStep& step) {
   assemble_problem(step);
   if (step.options.impact_mode != ImpactMode::inelastic) {
     const double time = find_first_impact(problem, memory.solver, memory.impact);
-    if (step.options.impact_mode == ImpactMode::end_step && time < step.time_step) return {.parts = 0, .impact_time = time};
+    if (step.options.impact_mode == ImpactMode::end_step && time < step.time_step)
+      return {.parts = 0, .impact_time = time};
   }
   const SolverResult solution = solve_velocities(problem, memory.solver);
-  const std::size_t free = find_unconstrained(problem, step.constraints.servos, memory.work, memory.free_velocities, memory.is_free);
+  const std::size_t free = find_unconstrained(problem, step.constraints.servos, memory.work,
+                                              memory.free_velocities, memory.is_free);
   if (const int parts = count_parts(step, free < memory.is_free.size()); parts > 1) {
     step.report.not_converged += parts > step.options.most_parts;
     return {.parts = std::min(parts, step.options.most_parts)};
@@ -265,10 +286,12 @@ IslandOutcome step_island(const IslandStep& step) {
   outcome.is_carried = is_supported_by_world(problem) && !has_moving_motors(problem);
   const bool is_heap = solution.passes > 0 && solution.augmented_lagrangian_steps == 0;
   outcome.heap_residual = is_heap ? solution.residual : 0;
-  const IslandEnd end{problem, memory.work, memory.energy_errors, memory.is_free, has_world_friction(problem)};  // before the displacement problem
+  const IslandEnd end{problem, memory.work, memory.energy_errors, memory.is_free,
+                      has_world_friction(problem)};  // before the displacement problem
   if (problem.become_displacement()) {
     memory.solver.solve_displacement(problem);
-    for (std::size_t i = 0; i < memory.displacement.size(); ++i) memory.displacement[i] += problem.velocity[i];
+    for (std::size_t i = 0; i < memory.displacement.size(); ++i)
+      memory.displacement[i] += problem.velocity[i];
     add_lift_energy(problem, memory.work, memory.energy_errors);
   }
   integrate_island(step);
@@ -298,7 +321,8 @@ void separate(const IslandStep& step) {
   step.memory.solver.solve_displacement(problem);
   for (std::size_t k = 0; k < problem.trees.size(); ++k) {
     Tree& tree = *problem.trees[k];
-    displace_tree(tree, {problem.velocity.data() + problem.offset[k], static_cast<std::size_t>(tree.dofs)});
+    displace_tree(
+        tree, {problem.velocity.data() + problem.offset[k], static_cast<std::size_t>(tree.dofs)});
   }
   remove_kinetic_energy(problem.trees, step.memory.work, energy(problem.trees) - before);
 }

@@ -1,5 +1,6 @@
 #pragma once
-// Islands: sets of awake trees that contacts connect, each with its constraints. An island is solved alone.
+// Islands: sets of awake trees that contacts connect, each with its constraints. An island is
+// solved alone.
 
 #include <span>
 #include <vector>
@@ -21,14 +22,17 @@ struct Island {
   std::span<const int> trees;
   std::span<const IslandItem> items;
   /// Whether it has a contact.
-  bool has_contact() const { return !items.empty() && items.front().kind == IslandItem::Kind::contact; }
+  bool has_contact() const {
+    return !items.empty() && items.front().kind == IslandItem::Kind::contact;
+  }
 };
 
 /// All islands, in the order of their first trees.
 struct Islands {
   std::vector<int> of_tree;          ///< of each awake tree: its island
   std::vector<int> index_in_island;  ///< of each awake tree: its place in the island
-  std::vector<int> trees, first_tree;  ///< of island i: trees[first_tree[i]] up to first_tree[i + 1]
+  std::vector<int> trees,
+      first_tree;  ///< of island i: trees[first_tree[i]] up to first_tree[i + 1]
   std::vector<IslandItem> items;
   std::vector<int> first_item;
 
@@ -45,9 +49,11 @@ struct Islands {
 
 /// Sorts awake trees and their constraints by island. Contacts of sleepers are left out.
 /// @param awake  ascending
-void build_islands(const std::vector<Tree>& trees, const Sleep& sleep, std::span<const int> awake, const ConstraintLists& constraints, Islands& out);
+void build_islands(const std::vector<Tree>& trees, const Sleep& sleep, std::span<const int> awake,
+                   const ConstraintLists& constraints, Islands& out);
 
-/// Prefetches the memory of the islands after one: the trees of the second, and all data of the first.
+/// Prefetches the memory of the islands after one: the trees of the second, and all data of the
+/// first.
 void prefetch_after(const Islands& islands, std::size_t island, const std::vector<Tree>& trees,
                     std::span<const ContactPoint> contacts);
 

@@ -2,7 +2,8 @@
 
 namespace ziggurat::dynamics {
 
-void find_prescribed_joints(const Problem& problem, std::span<const Servo> servos, IslandPrescribedJoints& out) {
+void find_prescribed_joints(const Problem& problem, std::span<const Servo> servos,
+                            IslandPrescribedJoints& out) {
   const std::size_t dofs = problem.velocity.size();
   out.has_servos.assign(problem.trees.size(), 0);
   out.prescribed.assign(dofs, 0);
@@ -20,9 +21,12 @@ void find_prescribed_joints(const Problem& problem, std::span<const Servo> servo
   }
 }
 
-PrescribedJoints prescribed_joints_of(const Problem& problem, std::size_t tree, const IslandPrescribedJoints& drives) {
+PrescribedJoints prescribed_joints_of(const Problem& problem, std::size_t tree,
+                                      const IslandPrescribedJoints& drives) {
   if (!drives.has_servos[tree]) return {};
-  const auto of_tree = [&](const auto& all) { return std::span(all).subspan(problem.offset[tree], problem.trees[tree]->dofs); };
+  const auto of_tree = [&](const auto& all) {
+    return std::span(all).subspan(problem.offset[tree], problem.trees[tree]->dofs);
+  };
   return {of_tree(drives.prescribed), of_tree(drives.velocity), of_tree(drives.force)};
 }
 

@@ -1,11 +1,11 @@
 // Sleep of islands, and events that wake them.
 
+#include "physics/stepping/sleeping.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <utility>
-
-#include "physics/stepping/sleeping.h"
 
 namespace ziggurat::dynamics {
 namespace {
@@ -19,20 +19,22 @@ std::uint64_t hash_combine(std::uint64_t hash, double number) {
 
 /// Whether all coordinates of an island are below the bounds of sleep.
 /// @param island  numbers of its trees
-bool is_slow(const std::vector<Tree>& trees, std::span<const int> island, const SleepOptions& rest) {
+bool is_slow(const std::vector<Tree>& trees, std::span<const int> island,
+             const SleepOptions& rest) {
   for (const int number : island) {
     const Tree& tree = trees[number];
     for (int k = 0; k < tree.dofs; ++k) {
       const bool linear = tree.motion_subspace[k].angular.isZero(0);
-      if (!(std::abs(tree.v[k]) <= (linear ? rest.linear_velocity : rest.angular_velocity))) return false;
+      if (!(std::abs(tree.v[k]) <= (linear ? rest.linear_velocity : rest.angular_velocity)))
+        return false;
     }
   }
   return true;
 }
 
 /// Whether the residual of an island's solution explains its kinetic energy.
-bool is_below_residual(const std::vector<Tree>& trees, std::span<const int> island, const SleepOptions& rest,
-              double miss) {
+bool is_below_residual(const std::vector<Tree>& trees, std::span<const int> island,
+                       const SleepOptions& rest, double miss) {
   double energy = 0, mass = 0;
   for (const int number : island) {
     double own = 0;
@@ -82,7 +84,8 @@ bool has_changed_load(const SleepState& sleeper, const Tree& tree) {
 }
 
 /// Whether the awake side of a contact may touch the sleeping one within the substep.
-bool comes_to_touch(const Sleep& sleep, const std::vector<Tree>& trees, std::span<const Servo> servos, const ContactPoint& contact, double time_step) {
+bool comes_to_touch(const Sleep& sleep, const std::vector<Tree>& trees,
+                    std::span<const Servo> servos, const ContactPoint& contact, double time_step) {
   const auto speed = [&](const LinkIndex& side) -> Vector3 {
     if (side.tree < 0 || sleep.is_asleep(side.tree)) return Vector3::Zero();
     const Tree& tree = trees[side.tree];
@@ -90,7 +93,8 @@ bool comes_to_touch(const Sleep& sleep, const std::vector<Tree>& trees, std::spa
     return motion.linear + motion.angular.cross(contact.point - tree.origin);
   };
   const double apart = contact.normal.dot(speed(contact.a) - speed(contact.b));
-  const int mover = contact.a.tree >= 0 && !sleep.is_asleep(contact.a.tree) ? contact.a.tree : contact.b.tree;
+  const int mover =
+      contact.a.tree >= 0 && !sleep.is_asleep(contact.a.tree) ? contact.a.tree : contact.b.tree;
   if (mover < 0) return contact.gap + time_step * apart < 1e-5;
   const Tree& tree = trees[mover];
   double faster = 2 * tree.gravity.norm() * time_step;
@@ -123,7 +127,8 @@ void hash_servo_commands(Sleep& sleep, std::span<const Servo> servos) {
     SleepState& sleeper = sleep.states[servo.tree];
     sleep.next_servo[i] = std::exchange(sleeper.first_servo, static_cast<int>(i));
     std::uint64_t& command = sleeper.command;
-    for (const double number : {servo.target_velocity, servo.lower, servo.upper}) command = hash_combine(command, number);
+    for (const double number : {servo.target_velocity, servo.lower, servo.upper})
+      command = hash_combine(command, number);
   }
 }
 
@@ -144,7 +149,8 @@ void wake_all(Sleep& sleep, std::size_t trees) {
   sleep.ring.assign(trees, -1);
 }
 
-bool wake_disturbed(Sleep& sleep, const std::vector<Tree>& trees, std::span<const int> active, const ConstraintLists& constraints, double time_step) {
+bool wake_disturbed(Sleep& sleep, const std::vector<Tree>& trees, std::span<const int> active,
+                    const ConstraintLists& constraints, double time_step) {
   if (sleep.states.size() > trees.size()) wake_all(sleep, trees.size());
   sleep.states.resize(trees.size());
   sleep.ring.resize(trees.size(), -1);
@@ -152,7 +158,9 @@ bool wake_disturbed(Sleep& sleep, const std::vector<Tree>& trees, std::span<cons
   hash_servo_commands(sleep, constraints.servos);
   bool woke = false;
   for_each_active(active, trees.size(), [&](int tree) {
-    if (sleep.flags[tree] == 0 || !sleep.is_asleep(tree) || !has_changed_load(sleep.states[tree], trees[tree])) return;
+    if (sleep.flags[tree] == 0 || !sleep.is_asleep(tree) ||
+        !has_changed_load(sleep.states[tree], trees[tree]))
+      return;
     wake(sleep, tree);
     woke = true;
   });
@@ -161,8 +169,11 @@ bool wake_disturbed(Sleep& sleep, const std::vector<Tree>& trees, std::span<cons
     again = false;
     for (std::size_t i = 0; i < constraints.contact_trees.size(); ++i) {
       const auto [a, b] = constraints.contact_trees[i];
-      if (a < 0 || b < 0 || sleep.is_asleep(a) == sleep.is_asleep(b)) continue;  // most, and this reads no tree
-      if (!moves(a) || !moves(b) || !comes_to_touch(sleep, trees, constraints.servos, constraints.contacts[i], time_step)) continue;
+      if (a < 0 || b < 0 || sleep.is_asleep(a) == sleep.is_asleep(b))
+        continue;  // most, and this reads no tree
+      if (!moves(a) || !moves(b) ||
+          !comes_to_touch(sleep, trees, constraints.servos, constraints.contacts[i], time_step))
+        continue;
       wake(sleep, a);
       wake(sleep, b);
       again = woke = true;
@@ -171,11 +182,14 @@ bool wake_disturbed(Sleep& sleep, const std::vector<Tree>& trees, std::span<cons
   return woke;
 }
 
-void update_sleep(Sleep& sleep, const SleepOptions& options, std::vector<Tree>& trees, std::span<const int> island, double time_step, bool is_carried, double heap_residual) {
+void update_sleep(Sleep& sleep, const SleepOptions& options, std::vector<Tree>& trees,
+                  std::span<const int> island, double time_step, bool is_carried,
+                  double heap_residual) {
   if (!options.enabled) return;
   const bool is_heap = heap_residual > 0;
-  const bool quiet = is_carried && ((is_heap && is_below_residual(trees, island, options, heap_residual)) ||
-                                    is_slow(trees, island, options));
+  const bool quiet =
+      is_carried && ((is_heap && is_below_residual(trees, island, options, heap_residual)) ||
+                     is_slow(trees, island, options));
   double least = HUGE_VAL;
   for (const int index : island) {
     SleepState& sleeper = sleep.states[index];
@@ -200,7 +214,8 @@ void update_sleep(Sleep& sleep, const SleepOptions& options, std::vector<Tree>& 
     sleep.ring[index] = island[(i + 1) % island.size()];
     sleeper.command_asleep = sleeper.command;
     unsigned char& flags = sleep.flags[index];
-    flags = static_cast<unsigned char>((flags & ~Sleep::loaded_asleep) | (is_held ? Sleep::loaded_asleep : 0));
+    flags = static_cast<unsigned char>((flags & ~Sleep::loaded_asleep) |
+                                       (is_held ? Sleep::loaded_asleep : 0));
     sleeper.force_bound = options.force_change * (mass * tree.gravity.norm() + force);
   }
 }

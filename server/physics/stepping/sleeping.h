@@ -1,12 +1,13 @@
 #pragma once
-// Sleep of islands at rest, and events that wake them: an approaching contact, changed wrenches or servos.
+// Sleep of islands at rest, and events that wake them: an approaching contact, changed wrenches or
+// servos.
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "physics/solver/constraint.h"
 #include "physics/multibody/tree.h"
+#include "physics/solver/constraint.h"
 
 namespace ziggurat::dynamics {
 
@@ -29,21 +30,26 @@ struct SleepState {
   double time_at_rest = 0;    ///< time below the bounds of sleep [s]
   std::uint64_t command = 0;  ///< hash of its servos' commands
   std::uint64_t command_asleep = 0;
-  double force_bound = 0;  ///< of changes on a link that do not wake it [N], [N m] per radius of 1 m
-  int first_servo = -1;    ///< that it had last, see Sleep::next_servo
+  double force_bound =
+      0;                 ///< of changes on a link that do not wake it [N], [N m] per radius of 1 m
+  int first_servo = -1;  ///< that it had last, see Sleep::next_servo
   void archive(math::Archive& archive);
 };
 
 /// Sleep of all trees.
 struct Sleep {
   std::vector<SleepState> states;
-  std::vector<int> ring;  ///< of each tree: the next in the ring of those that sleep with it; -1: awake
-  /// Flags of each tree: its servos have commands, it had wrenches when it fell asleep, or has them now.
+  std::vector<int>
+      ring;  ///< of each tree: the next in the ring of those that sleep with it; -1: awake
+  /// Flags of each tree: its servos have commands, it had wrenches when it fell asleep, or has them
+  /// now.
   enum Flag : unsigned char { commanded = 1, loaded_asleep = 2, loaded = 4, subdivided = 8 };
   std::vector<unsigned char> flags;
   std::vector<int> next_servo;  ///< of each servo: the next of its tree; -1: none
 
-  bool is_asleep(int tree) const { return static_cast<std::size_t>(tree) < ring.size() && ring[tree] >= 0; }
+  bool is_asleep(int tree) const {
+    return static_cast<std::size_t>(tree) < ring.size() && ring[tree] >= 0;
+  }
 };
 
 /// Wakes a tree and its island.
@@ -56,12 +62,15 @@ void wake_all(Sleep& sleep, std::size_t trees);
 /// @param active     trees that take part, ascending; none: all
 /// @param time_step  within which a contact may touch [s]
 /// @return           whether a tree woke
-bool wake_disturbed(Sleep& sleep, const std::vector<Tree>& trees, std::span<const int> active, const ConstraintLists& constraints, double time_step);
+bool wake_disturbed(Sleep& sleep, const std::vector<Tree>& trees, std::span<const int> active,
+                    const ConstraintLists& constraints, double time_step);
 
 /// Lets an island sleep that has been below the bounds for long enough.
 /// @param is_carried     whether the world supports it
 /// @param heap_residual  residual of its solution if it was solved by passes only [m/s]; else 0
-void update_sleep(Sleep& sleep, const SleepOptions& options, std::vector<Tree>& trees, std::span<const int> island, double time_step, bool is_carried, double heap_residual);
+void update_sleep(Sleep& sleep, const SleepOptions& options, std::vector<Tree>& trees,
+                  std::span<const int> island, double time_step, bool is_carried,
+                  double heap_residual);
 
 /// Calls visit(tree) for the active trees, ascending; none: all.
 template <class Visit>

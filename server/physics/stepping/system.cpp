@@ -20,7 +20,8 @@ void System::find_islands() {
 }
 
 IslandStep System::island_step(std::size_t island) {
-  return {trees, islands_, islands_[island], constraints_, rotations_until_impact, options, time_step_, memory_, report_};
+  return {trees,   islands_,   islands_[island], constraints_, rotations_until_impact,
+          options, time_step_, memory_,          report_};
 }
 
 void System::apply_wrench(int tree, int link, const Wrench& wrench) {
@@ -44,7 +45,8 @@ void System::clear_wrenches() {
   });
 }
 
-bool System::wake_disturbed(double time_step, std::span<ContactPoint> contacts, std::span<Servo> servos, std::span<const int> chosen) {
+bool System::wake_disturbed(double time_step, std::span<ContactPoint> contacts,
+                            std::span<Servo> servos, std::span<const int> chosen) {
   time_step_ = time_step;
   active_ = chosen;
   constraints_.servos = servos;
@@ -78,7 +80,8 @@ Report System::advance(std::span<Limit> limits) {
     if (outcome.is_left()) {
       subdivide(islands_[i].trees, outcome);
     } else {
-      update_sleep(sleep_, sleeping, trees, islands_[i].trees, time_step_, outcome.is_carried, outcome.heap_residual);
+      update_sleep(sleep_, sleeping, trees, islands_[i].trees, time_step_, outcome.is_carried,
+                   outcome.heap_residual);
     }
     if (!std::exchange(memory_.work.ran_out_of_steps, false)) continue;
     ++report_.not_converged;
@@ -89,8 +92,8 @@ Report System::advance(std::span<Limit> limits) {
   return report_;
 }
 
-void System::apply_impacts(std::span<ContactPoint> contacts, std::span<Servo> servos, std::span<Limit> limits,
-                           std::span<const int> chosen) {
+void System::apply_impacts(std::span<ContactPoint> contacts, std::span<Servo> servos,
+                           std::span<Limit> limits, std::span<const int> chosen) {
   constexpr double instant = 1e-14;  // in which neither forces nor damping change a velocity [s]
   constraints_.contacts = contacts;
   list_contact_trees(contacts, constraints_.contact_trees);

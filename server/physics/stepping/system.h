@@ -10,7 +10,8 @@
 
 namespace ziggurat::dynamics {
 
-/// Islands that a step left unchanged, because a link swings or nutates too fast for it, or because it has an impact.
+/// Islands that a step left unchanged, because a link swings or nutates too fast for it, or because
+/// it has an impact.
 struct IslandsToSubdivide {
   struct Island {
     int parts = 0;                    ///< number of parts of the step; 0: it ends at the impact
@@ -37,7 +38,7 @@ class System {
   std::vector<Tree> trees;
   SleepOptions sleeping;
   StepOptions options;
-  IslandsToSubdivide islands_to_subdivide;      ///< by the last step()
+  IslandsToSubdivide islands_to_subdivide;  ///< by the last step()
   /// Trees whose rotation until impact is large: their islands are divided, because a contact acts
   /// along lines of the step's beginning. To be set before step().
   std::vector<RotationUntilImpact> rotations_until_impact;
@@ -58,7 +59,8 @@ class System {
   /// Takes the constraints of the coming substep, see step(), and wakes the sleepers that they
   /// disturb. To be called before advance(), and again when contacts of sleepers were added.
   /// @return  whether a tree woke
-  bool wake_disturbed(double time_step, std::span<ContactPoint> contacts, std::span<Servo> servos, std::span<const int> chosen = {});
+  bool wake_disturbed(double time_step, std::span<ContactPoint> contacts, std::span<Servo> servos,
+                      std::span<const int> chosen = {});
 
   /// Predicts velocities of trees that motors, wrenches or impacts accelerate within the coming
   /// substep: their present velocities do not tell their contacts. To be called after
@@ -66,7 +68,8 @@ class System {
   /// @param far   distance within the substep below which a change is ignored [m]
   /// @param fast  all trees that may come half as far already: impacts and limits may deflect them
   /// @return      whether there are some
-  bool predict_velocities(std::span<Limit> limits, double far, std::span<const int> fast, PredictedVelocities& out);
+  bool predict_velocities(std::span<Limit> limits, double far, std::span<const int> fast,
+                          PredictedVelocities& out);
 
   /// Advances all trees that are awake by one substep. Their external wrenches must be set.
   /// @param time_step [s]
@@ -84,9 +87,10 @@ class System {
   Report advance(std::span<Limit> limits);
 
   /// Applies the impact law to touching contacts that approach: velocities change, positions stay.
-  /// @param contacts, servos, limits  in: as in step(); servos with the bounds of what they may give at once; out: impulses
-  void apply_impacts(std::span<ContactPoint> contacts, std::span<Servo> servos, std::span<Limit> limits,
-                     std::span<const int> chosen);
+  /// @param contacts, servos, limits  in: as in step(); servos with the bounds of what they may
+  /// give at once; out: impulses
+  void apply_impacts(std::span<ContactPoint> contacts, std::span<Servo> servos,
+                     std::span<Limit> limits, std::span<const int> chosen);
 
   /// Resolves penetration without changing velocities: for overlaps that are found after a substep.
   /// @param contacts  of trees that are awake; their impulses do not matter

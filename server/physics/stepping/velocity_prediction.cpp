@@ -17,7 +17,8 @@ constexpr double lever = 0.5;
 double wrench_velocity(const Tree& tree, double time_step) {
   double most = 0;
   for (std::size_t i = 0; i < tree.links.size(); ++i) {
-    if (tree.links[i].mass > 0) most = std::max(most, time_step * tree.external[i].force.norm() / tree.links[i].mass);
+    if (tree.links[i].mass > 0)
+      most = std::max(most, time_step * tree.external[i].force.norm() / tree.links[i].mass);
   }
   return most;
 }
@@ -27,7 +28,8 @@ double wrench_velocity(const Tree& tree, double time_step) {
 double servo_change(const Servo& servo, const Tree& tree, double least) {
   if (servo.dof < 0 || servo.upper <= 0) return 0;
   const double change = std::abs(servo.target_velocity - tree.v[servo.dof]);
-  return change <= least || tree.motion_subspace[servo.dof].angular.isZero(0) ? change : lever * change;
+  return change <= least || tree.motion_subspace[servo.dof].angular.isZero(0) ? change
+                                                                              : lever * change;
 }
 
 /// Separation velocity of two trees, or a tree and the world, at a contact [m/s].
@@ -37,13 +39,15 @@ double separation_velocity(const std::vector<Tree>& trees, const ContactPoint& c
     const Motion& motion = trees[side.tree].spatial_velocity[side.link];
     return motion.linear + motion.angular.cross(point - trees[side.tree].origin);
   };
-  return contact.normal.dot(velocity(contact.a, contact.point) - velocity(contact.b, contact.point + contact.offset_to_b));
+  return contact.normal.dot(velocity(contact.a, contact.point) -
+                            velocity(contact.b, contact.point + contact.offset_to_b));
 }
 
 /// Whether a joint reaches a limit within the substep faster than a threshold.
 bool strikes_limit(const Limit& limit, const Tree& tree, double time_step, double least) {
   const int dof = joint_dof(tree, limit.link);
-  const double q = tree.q[tree.first_position[limit.link]], speed = tree.v[dof], end = q + time_step * speed;
+  const double q = tree.q[tree.first_position[limit.link]], speed = tree.v[dof],
+               end = q + time_step * speed;
   if (end >= limit.lower && end <= limit.upper) return false;
   return std::abs(speed) * (tree.motion_subspace[dof].angular.isZero(0) ? 1 : lever) > least;
 }
@@ -51,24 +55,29 @@ bool strikes_limit(const Limit& limit, const Tree& tree, double time_step, doubl
 /// Finds the fast trees that have an impact with another one or a limit.
 /// @param fast   of each tree
 /// @param least  slower impacts are ignored [m/s]
-void find_impacts(const std::vector<Tree>& trees, const std::vector<unsigned char>& fast, std::span<const ContactPoint> contacts,
-                std::span<const Limit> limits, double time_step, double least, std::vector<int>& out) {
+void find_impacts(const std::vector<Tree>& trees, const std::vector<unsigned char>& fast,
+                  std::span<const ContactPoint> contacts, std::span<const Limit> limits,
+                  double time_step, double least, std::vector<int>& out) {
   const auto is_fast = [&](int tree) { return tree >= 0 && fast[tree]; };
   const auto moves = [&](int tree) { return tree >= 0 && trees[tree].dofs > 0; };
   const auto throws = [&](int tree, const ContactPoint& contact) {
-    return is_fast(tree) && (contact.restitution > 0 || trees[tree].links.size() > 1 || (moves(contact.a.tree) && moves(contact.b.tree)));
+    return is_fast(tree) && (contact.restitution > 0 || trees[tree].links.size() > 1 ||
+                             (moves(contact.a.tree) && moves(contact.b.tree)));
   };
   for (const ContactPoint& contact : contacts) {
     if (!throws(contact.a.tree, contact) && !throws(contact.b.tree, contact)) continue;
     const double apart = separation_velocity(trees, contact);
-    if (-apart > least && contact.gap + time_step * apart < 0) out.push_back(is_fast(contact.a.tree) ? contact.a.tree : contact.b.tree);
+    if (-apart > least && contact.gap + time_step * apart < 0)
+      out.push_back(is_fast(contact.a.tree) ? contact.a.tree : contact.b.tree);
   }
   for (const Limit& limit : limits) {
-    if (is_fast(limit.tree) && strikes_limit(limit, trees[limit.tree], time_step, least)) out.push_back(limit.tree);
+    if (is_fast(limit.tree) && strikes_limit(limit, trees[limit.tree], time_step, least))
+      out.push_back(limit.tree);
   }
 }
 
-/// Sets the rebound of contacts that close within the substep as target velocity: bodies that are struck may strike others.
+/// Sets the rebound of contacts that close within the substep as target velocity: bodies that are
+/// struck may strike others.
 void set_rebound_velocities(Problem& problem) {
   for (Constraint& constraint : problem.constraints) {
     if (constraint.kind != Constraint::Kind::contact || constraint.restitution <= 0) continue;
@@ -82,7 +91,8 @@ void set_rebound_velocities(Problem& problem) {
 
 }  // namespace
 
-bool System::predict_velocities(std::span<Limit> limits, double far, std::span<const int> fast_trees, PredictedVelocities& out) {
+bool System::predict_velocities(std::span<Limit> limits, double far,
+                                std::span<const int> fast_trees, PredictedVelocities& out) {
   constraints_.limits = limits;
   out.trees.clear();
   out.velocities.clear();
@@ -90,15 +100,19 @@ bool System::predict_velocities(std::span<Limit> limits, double far, std::span<c
   const auto moves = [&](int tree) { return trees[tree].dofs > 0 && !is_asleep(tree); };
   disturbed_.clear();
   for_each_active(active_, trees.size(), [&](int tree) {
-    if ((sleep_.flags[tree] & Sleep::loaded) && moves(tree) && wrench_velocity(trees[tree], time_step_) > fast) disturbed_.push_back(tree);
+    if ((sleep_.flags[tree] & Sleep::loaded) && moves(tree) &&
+        wrench_velocity(trees[tree], time_step_) > fast)
+      disturbed_.push_back(tree);
   });
   for (const Servo& servo : constraints_.servos) {
     const Tree& tree = trees[servo.tree];
-    if (servo_change(servo, tree, fast) > fast && moves(servo.tree)) disturbed_.push_back(servo.tree);
+    if (servo_change(servo, tree, fast) > fast && moves(servo.tree))
+      disturbed_.push_back(servo.tree);
   }
   is_fast_.assign(fast_trees.empty() ? 0 : trees.size(), 0);
   for (const int tree : fast_trees) is_fast_[tree] = moves(tree);
-  if (!is_fast_.empty()) find_impacts(trees, is_fast_, constraints_.contacts, limits, time_step_, fast, disturbed_);
+  if (!is_fast_.empty())
+    find_impacts(trees, is_fast_, constraints_.contacts, limits, time_step_, fast, disturbed_);
   if (disturbed_.empty()) return false;
   find_islands();
   for (int& tree : disturbed_) tree = islands_.of_tree[tree];
@@ -111,7 +125,8 @@ bool System::predict_velocities(std::span<Limit> limits, double far, std::span<c
     set_rebound_velocities(memory_.problem);
     solve_velocities(memory_.problem, memory_.solver);
     out.trees.insert(out.trees.end(), step.island.trees.begin(), step.island.trees.end());
-    out.velocities.insert(out.velocities.end(), memory_.problem.velocity.begin(), memory_.problem.velocity.end());
+    out.velocities.insert(out.velocities.end(), memory_.problem.velocity.begin(),
+                          memory_.problem.velocity.end());
   }
   return !out.trees.empty();
 }

@@ -98,8 +98,8 @@ class BothDetectors {
     std::vector<world::TagReading> readings;
     detect_tags(
         View(stage_.layout, stage_.state, index_, 0),
-        [this](const Vector3& eye, const Vector3& target) { return clear(eye, target); }, candidates,
-        readings);
+        [this](const Vector3& eye, const Vector3& target) { return clear(eye, target); },
+        candidates, readings);
     std::map<int, std::array<Vector2, 4>> found;
     for (const auto& reading : readings) {
       found[std::stoi(stage_.state.tag_payloads[reading.tag])] = reading.corners;

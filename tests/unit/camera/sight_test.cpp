@@ -38,7 +38,8 @@ std::string box(const std::string& position, const std::string& size) {
          R"(" movable="false"><body position=")" + position + R"("/></box>)";
 }
 
-/// Devices without a controller on a box of 4 cm; its near face is at x = 0.48 m, its bottom at z = 0.03 m.
+/// Devices without a controller on a box of 4 cm; its near face is at x = 0.48 m, its bottom at z =
+/// 0.03 m.
 std::string carrier(const std::string& devices, const std::string& position = "0.5,0,0.03") {
   return R"(<prototype id="carrier" movable="false"><body position=")" + position +
          R"("/><links ref="b"><link id="b" geometry="box" size=".04,.04,.04" mass="1"/></links>)" +
@@ -61,7 +62,7 @@ std::string led(double x) {
 }
 
 std::unique_ptr<Simulation> after_one_tick(const std::string& arena,
-                                   const std::string& sensors = cameras(camera())) {
+                                           const std::string& sensors = cameras(camera())) {
   const SmallScene scene{"", sensors, robot("r", "0,0,0", "") + arena, ""};
   auto simulation = std::make_unique<Simulation>(scene.read(), simulation::Options{});
   EXPECT_TRUE(simulation->observations().tags.empty());

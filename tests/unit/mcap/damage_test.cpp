@@ -80,7 +80,8 @@ TEST(Damage, AFileThatIsCutOffHasAllWholeChunks) {
 
 /// Without compression only the chunk's CRC tells it.
 class DamagedChunk : public testing::TestWithParam<Compression> {};
-INSTANTIATE_TEST_SUITE_P(Of, DamagedChunk, testing::Values(Compression::none, Compression::lz4, Compression::zstd));
+INSTANTIATE_TEST_SUITE_P(Of, DamagedChunk,
+                         testing::Values(Compression::none, Compression::lz4, Compression::zstd));
 
 TEST_P(DamagedChunk, TakesNoOtherAlong) {
   std::string file = example(GetParam());

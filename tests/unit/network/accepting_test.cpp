@@ -84,9 +84,11 @@ TEST(Accepting, WhoEndsWithinTheHandshakeIsNotListenedTo) {
   Socket socket(config);
   const zmtp::CurveKeys keys(*config.curve);
   const zmtp::CurveClient client(zmtp::CurveClient::make_pair(), keys.public_key());
-  const std::string said = "\xFF\0\0\0\0\0\0\0\x01\x7F\x03\0CURVE"s + std::string(47, '\0') + client.hello();
+  const std::string said =
+      "\xFF\0\0\0\0\0\0\0\x01\x7F\x03\0CURVE"s + std::string(47, '\0') + client.hello();
   EXPECT_NE(answer_to(socket, said, false).find("WELCOME"), std::string::npos);
-  EXPECT_EQ(answer_to(socket, said, true).find("WELCOME"), std::string::npos) << "or keys are multiplied for nothing";
+  EXPECT_EQ(answer_to(socket, said, true).find("WELCOME"), std::string::npos)
+      << "or keys are multiplied for nothing";
 }
 
 }  // namespace

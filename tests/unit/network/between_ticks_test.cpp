@@ -52,7 +52,8 @@ TEST(BetweenTicks, ASessionOfRobotsThatAResetHasTakenAwayIsOverWithoutThem) {
     client.say(answer);
     ASSERT_EQ(server.collect(commands, patience), Outcome::complete);
   }
-  std::this_thread::sleep_for(milliseconds{200});  // longer than between heartbeats; the client is gone
+  std::this_thread::sleep_for(
+      milliseconds{200});  // longer than between heartbeats; the client is gone
   server.take_report();
   small.layout().robots.resize(1);
   server.restart({42});
@@ -111,7 +112,8 @@ TEST(BetweenTicks, WhatDirectorsWantStaysWhileRobotsAreSpawned) {
     wish.mutable_hello()->mutable_deadline_policy()->set_action(v1::DeadlinePolicy::HOLD);
     wish.mutable_hello()->mutable_deadline_policy()->set_wall_deadline_ms(1000);
     client.say(wish);
-    while (!directors.has("judge")) ASSERT_NE(server.gather({milliseconds{20}, {}}), Outcome::woken);
+    while (!directors.has("judge"))
+      ASSERT_NE(server.gather({milliseconds{20}, {}}), Outcome::woken);
     server.publish(seen, no_tags, &truth);
     v1::ClientMessage answer;
     answer.mutable_direction()->add_acts()->mutable_remove()->set_entity("box");

@@ -1,12 +1,13 @@
 // A state as bytes, of anyone: pairs of colliders that no world can have are refused.
 
+#include "math/archive.h"
+
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cstring>
 #include <string>
 
-#include "math/archive.h"
 #include "newton_scene.h"
 
 namespace ziggurat::physics {
@@ -72,7 +73,9 @@ struct Scene {
 TEST(Archive, RefusesPairsThatNoWorldHas) {
   Scene scene;
   const std::size_t place = scene.place_of(left, slab);
-  const auto error = [&](std::uint32_t a, std::uint32_t b) { return scene.error_with(place, a, b); };
+  const auto error = [&](std::uint32_t a, std::uint32_t b) {
+    return scene.error_with(place, a, b);
+  };
   EXPECT_EQ(error(left, slab), "");
   const auto has = [](const std::string& text, const char* part) {
     EXPECT_NE(text.find(part), std::string::npos) << text << ", not: " << part;
@@ -102,7 +105,8 @@ TEST(Archive, RefusesTurnsThatAreNoRotations) {
     if (!is_turn && !is_tree) continue;
     std::array<double, 4> none{1e-300, 1e-300, 1e-300, 1e-300};
     std::vector<std::byte> changed = scene.bytes;
-    const std::size_t place = offset + (is_tree ? 3 * sizeof(double) : 0);  // behind the root's position
+    const std::size_t place =
+        offset + (is_tree ? 3 * sizeof(double) : 0);  // behind the root's position
     ASSERT_LE(place + sizeof none, changed.size());
     std::memcpy(changed.data() + place, none.data(), sizeof none);
     const std::string error = scene.error_of(changed);

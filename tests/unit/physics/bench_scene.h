@@ -30,9 +30,7 @@ inline scene::Physics with_gravity(double g) {
 
 /// Distance of a fall from rest [m].
 /// @param g  [m/s^2]  @param h  length of a substep [s]
-inline double fall(double g, double h, int substeps) {
-  return g * h * h * substeps * substeps / 2;
-}
+inline double fall(double g, double h, int substeps) { return g * h * h * substeps * substeps / 2; }
 
 inline scene::Physics with_floor(double g) {
   scene::Physics physics = with_gravity(g);

@@ -16,8 +16,10 @@ namespace {
 
 using namespace testing;
 
-scene::Entity ball(double radius, double mass, const Vector3& position, const scene::Surface& surface) {
-  scene::Entity entity = loose({position, math::Quaternion::Identity()}, scene::Sphere{radius}, mass, surface.friction);
+scene::Entity ball(double radius, double mass, const Vector3& position,
+                   const scene::Surface& surface) {
+  scene::Entity entity = loose({position, math::Quaternion::Identity()}, scene::Sphere{radius},
+                               mass, surface.friction);
   entity.links[0].surface = surface;
   return entity;
 }
@@ -26,7 +28,8 @@ scene::Entity ball(double radius, double mass, const Vector3& position, const sc
 /// @param momenta  [N s]
 void push_off(World& world, double hz, std::vector<Vector3> momenta) {
   std::vector<world::Push> pushes;
-  for (std::size_t i = 0; i < momenta.size(); ++i) pushes.push_back({i, hz * momenta[i], Vector3::Zero()});
+  for (std::size_t i = 0; i < momenta.size(); ++i)
+    pushes.push_back({i, hz * momenta[i], Vector3::Zero()});
   set_pushes(world, pushes);
   world.step();
   set_pushes(world, {});
@@ -47,11 +50,13 @@ std::vector<Vector3> after_a_blow(double hz, const Vector3& train) {
   return out;
 }
 
-// Angular momentum was kept about where a ball had been: what rebounds does not move along its velocity, so it got spin.
+// Angular momentum was kept about where a ball had been: what rebounds does not move along its
+// velocity, so it got spin.
 TEST(NewtonCollision, IsTheSameOnATrain) {
   for (const double hz : long_runs::substep_rates({.most = 1000})) {
     const auto resting = after_a_blow(hz, Vector3::Zero()), moving = after_a_blow(hz, {0, 3, -1});
-    for (std::size_t i = 0; i < resting.size(); ++i) EXPECT_LT((resting[i] - moving[i]).norm(), 1e-9) << hz << ' ' << i;
+    for (std::size_t i = 0; i < resting.size(); ++i)
+      EXPECT_LT((resting[i] - moving[i]).norm(), 1e-9) << hz << ' ' << i;
   }
 }
 
@@ -79,7 +84,8 @@ double spin_from_a_plate(double hz, bool plate_first) {
   return state_of(world).links[plate_first].angular_velocity.y();
 }
 
-// Levers were about a point half-way between the surfaces of the substep's beginning: 7 cm off at 50 Hz.
+// Levers were about a point half-way between the surfaces of the substep's beginning: 7 cm off at
+// 50 Hz.
 TEST(NewtonCollision, GivesTheSpinOfFrictionInAnyOrder) {
   const double impulse = 1 / (1 / 0.1 + 1 / 1.0), expected = 2.5 * 0.25 * impulse / (0.1 * 0.02);
   for (const double hz : long_runs::substep_rates({.most = 1000})) {
@@ -101,8 +107,10 @@ TEST(NewtonCollision, GoesAlongTheLineOfCentres) {
         world.add(ball(radius, 0.1, {0, 1.2 * radius, 0}, smooth));  // so the normal is (0.8, 0.6)
         push_off(world, hz, {{0.1, 0, 0}, {0, 0, 0}});
         run(world, 0.5, 1 / hz);
-        EXPECT_LT((state_of(world).links[0].velocity - Vector3(0.36, -0.48, 0)).norm(), 1e-5) << hz << ' ' << radius << ' ' << phase;
-        EXPECT_LT((state_of(world).links[1].velocity - Vector3(0.64, 0.48, 0)).norm(), 1e-5) << hz << ' ' << radius << ' ' << phase;
+        EXPECT_LT((state_of(world).links[0].velocity - Vector3(0.36, -0.48, 0)).norm(), 1e-5)
+            << hz << ' ' << radius << ' ' << phase;
+        EXPECT_LT((state_of(world).links[1].velocity - Vector3(0.64, 0.48, 0)).norm(), 1e-5)
+            << hz << ' ' << radius << ' ' << phase;
       }
     }
   }
@@ -115,14 +123,17 @@ TEST(NewtonCollision, GoesThroughARowOfBalls) {
       World world(newton(false, 0), 1 / hz);
       std::vector<Vector3> momenta;
       for (int i = 0; i < 5; ++i) {
-        world.add(ball(0.05, 0.1, {i == 0 ? -0.3 : (0.1 + gap) * i, 0, 0}, {.friction = 0.3, .restitution = 1}));
+        world.add(ball(0.05, 0.1, {i == 0 ? -0.3 : (0.1 + gap) * i, 0, 0},
+                       {.friction = 0.3, .restitution = 1}));
         momenta.push_back({i == 0 ? 0.1 : 0, 0, 0});
       }
       push_off(world, hz, momenta);
       run(world, 0.5, 1 / hz);
-      const double start = -0.3 + 0.5 + 1 / hz - (0.1 + gap) * 4 + 0.4;  // of the last one, if the first were where it stops
+      const double start = -0.3 + 0.5 + 1 / hz - (0.1 + gap) * 4 +
+                           0.4;  // of the last one, if the first were where it stops
       for (int i = 0; i < 5; ++i) {
-        EXPECT_NEAR(state_of(world).links[i].velocity.x(), i == 4 ? 1 : 0, 1e-6) << hz << ' ' << gap << ' ' << i;
+        EXPECT_NEAR(state_of(world).links[i].velocity.x(), i == 4 ? 1 : 0, 1e-6)
+            << hz << ' ' << gap << ' ' << i;
         const double end = i < 4 ? (0.1 + gap) * (i + 1) - 0.1 : (0.1 + gap) * 4 + start;
         EXPECT_NEAR(origin(world, i).position.x(), end, 1e-6) << hz << ' ' << gap << ' ' << i;
       }
@@ -136,10 +147,12 @@ TEST(NewtonCollision, GoesToAndFroBetweenTwoWalls) {
     for (const double room : {0.002, 0.01, 0.05}) {
       World world(newton(false, 0), 1 / hz);
       world.add(ball(0.02, 0.1, {0, 0, 0}, {.friction = 0, .restitution = 1}));
-      for (const double side : {-1, 1}) world.add(standing(at(side * (0.12 + room / 2), 0, -1), scene::Box{{0.2, 2, 2}}, 0));
+      for (const double side : {-1, 1})
+        world.add(standing(at(side * (0.12 + room / 2), 0, -1), scene::Box{{0.2, 2, 2}}, 0));
       push_off(world, hz, {{0.5, 0, 0}});
       for (int i = 1; i < hz / 2; ++i) {
-        const double way = room / 2 + 5 * i / hz, folds = std::floor(way / room), rest = way - folds * room;
+        const double way = room / 2 + 5 * i / hz, folds = std::floor(way / room),
+                     rest = way - folds * room;
         const double expected = std::fmod(folds, 2) == 0 ? rest - room / 2 : room / 2 - rest;
         EXPECT_NEAR(origin(world, 0).position.x(), expected, 1e-6) << hz << ' ' << room << ' ' << i;
         world.step();
@@ -148,7 +161,8 @@ TEST(NewtonCollision, GoesToAndFroBetweenTwoWalls) {
   }
 }
 
-// Smooth elastic balls in a smooth elastic box. Within the substep of a blow some energy may be missing.
+// Smooth elastic balls in a smooth elastic box. Within the substep of a blow some energy may be
+// missing.
 TEST(NewtonCollision, OfAGasKeepsItsEnergy) {
   constexpr double radius = 0.05, mass = 0.1;
   constexpr scene::Surface smooth{.friction = 0, .restitution = 1};
@@ -158,7 +172,9 @@ TEST(NewtonCollision, OfAGasKeepsItsEnergy) {
     std::normal_distribution<double> speed(0, 0.6);
     std::vector<Vector3> momenta;
     for (int i = 0; i < 12; ++i) {
-      world.add(ball(radius, mass, {0.25 * (i % 3 - 1), 0.25 * (i / 3 % 2) - 0.12, 0.25 * (i / 6) - 0.12}, smooth));
+      world.add(ball(radius, mass,
+                     {0.25 * (i % 3 - 1), 0.25 * (i / 3 % 2) - 0.12, 0.25 * (i / 6) - 0.12},
+                     smooth));
       const double x = speed(random), y = speed(random);
       momenta.push_back(mass * Vector3(x, y, speed(random)));
     }
@@ -167,7 +183,8 @@ TEST(NewtonCollision, OfAGasKeepsItsEnergy) {
         Vector3 size(2, 2, 2), place = Vector3::Zero();
         size[axis] = 0.2;
         place[axis] = side * 0.5;
-        world.add(standing({place - Vector3(0, 0, size.z() / 2), math::Quaternion::Identity()}, scene::Box{size}, 0));
+        world.add(standing({place - Vector3(0, 0, size.z() / 2), math::Quaternion::Identity()},
+                           scene::Box{size}, 0));
       }
     }
     push_off(world, hz, momenta);
@@ -178,7 +195,8 @@ TEST(NewtonCollision, OfAGasKeepsItsEnergy) {
       if (i > 9.8 * hz) most = std::max(most, world.energy());
       ASSERT_LT(world.energy(), start * (1 + 1e-6)) << hz;
     }
-    EXPECT_GT(most, start * (1 - 1 / hz)) << hz;  // balls that meet two others in a substep lose some
+    EXPECT_GT(most, start * (1 - 1 / hz))
+        << hz;  // balls that meet two others in a substep lose some
   }
 }
 
@@ -192,7 +210,9 @@ TEST(NewtonCollision, NipsALightBallWithoutThrowingIt) {
     World world(physics, 1 / hz);
     world.add(ball(0.06, 0.01, {0, 0, 0}, {.friction = 0.8}));
     world.add(ball(0.06, 10, {0.05, 0.003, 0.62}, {.friction = 0.8}));
-    const auto centre = [&] { return Vector3(state_of(world).links[0].pose * Vector3(0, 0, 0.06)); };
+    const auto centre = [&] {
+      return Vector3(state_of(world).links[0].pose * Vector3(0, 0, 0.06));
+    };
     Vector3 before = centre();
     for (int i = 0; i < 0.46 * hz; ++i) {
       world.step();
@@ -205,7 +225,8 @@ TEST(NewtonCollision, NipsALightBallWithoutThrowingIt) {
   }
 }
 
-// A body that turns was let fly where its contact seemed to do no more than push out what is pressed in; the other one got the impulse: 0.1 N s.
+// A body that turns was let fly where its contact seemed to do no more than push out what is
+// pressed in; the other one got the impulse: 0.1 N s.
 TEST(NewtonCollision, GivesOneWhatItTakesFromTheOther) {
   constexpr double height = 0.08;
   for (const double hz : long_runs::substep_rates({.least = 500})) {
@@ -222,7 +243,8 @@ TEST(NewtonCollision, GivesOneWhatItTakesFromTheOther) {
         masses.push_back(std::pow(10, -1 + 2 * share(random)));
         momenta.push_back(-10 * masses.back() * (centre + Vector3(0.02 * share(random), 0, 0)));
         const math::Quaternion turned(Eigen::AngleAxisd(turn, Vector3(1, 2, 3).normalized()));
-        const scene::Geometry shape = i % 2 == 0 ? scene::Geometry(scene::Box{{0.1, 0.06, height}}) : scene::Cylinder{0.05, height};
+        const scene::Geometry shape = i % 2 == 0 ? scene::Geometry(scene::Box{{0.1, 0.06, height}})
+                                                 : scene::Cylinder{0.05, height};
         world.add(loose({centre, turned}, shape, masses.back(), 0.6));
       }
       const auto momentum = [&] {
@@ -253,15 +275,19 @@ TEST(NewtonCollision, TellsTheContactOfAllThatIsPushed) {
     World world(newton(true), 1 / hz);
     std::vector<double> masses;
     for (int i = 0; i < 8; ++i) {
-      const double x = 0.24 * share(random) - 0.12, y = 0.24 * share(random) - 0.12, turn = 6 * share(random);
-      const math::Quaternion turned(Eigen::AngleAxisd(turn, Vector3(share(random), 1, 0.5).normalized()));
+      const double x = 0.24 * share(random) - 0.12, y = 0.24 * share(random) - 0.12,
+                   turn = 6 * share(random);
+      const math::Quaternion turned(
+          Eigen::AngleAxisd(turn, Vector3(share(random), 1, 0.5).normalized()));
       masses.push_back(std::pow(10, -2 + 3 * share(random)));
-      const scene::Geometry shape = i % 2 == 0 ? scene::Geometry(scene::Box{{0.1, 0.15, height}}) : scene::Cylinder{0.05, height};
+      const scene::Geometry shape = i % 2 == 0 ? scene::Geometry(scene::Box{{0.1, 0.15, height}})
+                                               : scene::Cylinder{0.05, height};
       world.add(loose({{x, y, 0.12 + 0.16 * i}, turned}, shape, masses.back(), 0.7));
     }
     const auto velocity = [&](std::size_t i) {
       const world::LinkState link = state_of(world).links[i];
-      return Vector3(link.velocity + link.angular_velocity.cross(link.pose.orientation * Vector3(0, 0, height / 2)));
+      return Vector3(link.velocity + link.angular_velocity.cross(link.pose.orientation *
+                                                                 Vector3(0, 0, height / 2)));
     };
     std::vector<Vector3> before(masses.size(), Vector3::Zero());
     std::vector<world::Contact> contacts;
@@ -273,7 +299,9 @@ TEST(NewtonCollision, TellsTheContactOfAllThatIsPushed) {
         before[i] = now;
         if (change.norm() < 0.1 * earth) continue;
         ++pushed;
-        EXPECT_TRUE(std::ranges::any_of(contacts, [&](const world::Contact& contact) { return contact.link == i || contact.other == i; }))
+        EXPECT_TRUE(std::ranges::any_of(
+            contacts,
+            [&](const world::Contact& contact) { return contact.link == i || contact.other == i; }))
             << heap << ' ' << step << ' ' << i << ": " << change.transpose();
       }
     }
@@ -281,7 +309,8 @@ TEST(NewtonCollision, TellsTheContactOfAllThatIsPushed) {
   EXPECT_GT(pushed, 1000);
 }
 
-// Ground friction of a body that slides in a plane: it stops after m v^2 / 2 F, whatever its heading.
+// Ground friction of a body that slides in a plane: it stops after m v^2 / 2 F, whatever its
+// heading.
 TEST(NewtonPlaneFriction, IsTheSameInAllDirections) {
   constexpr double mass = 2, force = 1.49, speed = 1;
   for (const double degrees : {0, 15, 30, 45, 90}) {

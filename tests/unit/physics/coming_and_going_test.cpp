@@ -34,8 +34,9 @@ scene::Entity pendulum(const Vector3& at) {
 }
 
 TEST(AddEntity, TooManyInOnePlaceAreAFault) {
-  EXPECT_EQ(fault_of_crowd(with_gravity(9.8), 1500),
-            "more than 1000000 pairs of bodies are near each other; place fewer bodies in one place");
+  EXPECT_EQ(
+      fault_of_crowd(with_gravity(9.8), 1500),
+      "more than 1000000 pairs of bodies are near each other; place fewer bodies in one place");
 }
 
 TEST(AddEntity, KeepsItsPoseUntilTheNextStep) {

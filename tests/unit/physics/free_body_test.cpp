@@ -28,8 +28,8 @@ TEST(FreeFall, IsExactOrSemiImplicitEuler) {
 }
 
 TEST(FreeFall, OfAPrototypeIsDampedByTheDialectsLaw) {
-  // The solution of dv/dt = g - k v (1 + v), by the midpoint rule in fine steps, to the order of the
-  // step.
+  // The solution of dv/dt = g - k v (1 + v), by the midpoint rule in fine steps, to the order of
+  // the step.
   double v = 0, fallen = 0;
   World world(with_gravity(9.8), 0.01);
   scene::Entity box = prototype("box", {{0, 0, 1}, math::Quaternion::Identity()}, true,

@@ -67,7 +67,8 @@ TEST(NewtonChain, OfTenKeepsItsEnergyAtAnySubstep) {
   }
 }
 
-// A substep with contacts is of first order: what falls at v is about h v / 2 from where it should be.
+// A substep with contacts is of first order: what falls at v is about h v / 2 from where it should
+// be.
 TEST(NewtonChain, KeepsItsEnergyOnABaseThatStands) {
   for (const int links : {1, 2, 4}) {
     for (const double hz : long_runs::substep_rates({.first = 100})) {
@@ -101,8 +102,9 @@ TEST(NewtonLimit, TakesInAJointThatBeginsOutside) {
   World world(newton(false, 0), 0.01);
   scene::Joint rail = joint(scene::JointType::prismatic, Vector3::UnitZ(), {}, {});
   rail.limit = scene::JointLimit{0.1, 0.2};
-  scene::Entity entity = prototype("slide", at(0, 0, 5), false,
-                                   {link("base", scene::Box{{0.1, 0.1, 0.1}}, 1), link("load", scene::Box{{0.1, 0.1, 0.1}}, 1)});
+  scene::Entity entity = prototype(
+      "slide", at(0, 0, 5), false,
+      {link("base", scene::Box{{0.1, 0.1, 0.1}}, 1), link("load", scene::Box{{0.1, 0.1, 0.1}}, 1)});
   entity.joints.push_back(rail);
   world.add(entity);
   run(world, 1, 0.01);
@@ -115,10 +117,9 @@ TEST(NewtonLimit, StopsAHeavyFall) {
     World world(newton(), 0.01);
     scene::Joint rail = joint(scene::JointType::prismatic, Vector3::UnitZ(), {}, {});
     rail.limit = scene::JointLimit{-2, 1};
-    scene::Entity entity =
-        prototype("lift", at(0, 0, 5), false,
-                  {link("base", scene::Box{{0.1, 0.1, 0.1}}, 1),
-                   link("load", scene::Box{{0.1, 0.1, 0.1}}, mass)});
+    scene::Entity entity = prototype("lift", at(0, 0, 5), false,
+                                     {link("base", scene::Box{{0.1, 0.1, 0.1}}, 1),
+                                      link("load", scene::Box{{0.1, 0.1, 0.1}}, mass)});
     entity.joints.push_back(rail);
     world.add(entity);
     const JointIndex index = world.joint(0, 0);
@@ -144,7 +145,8 @@ TEST(NewtonLimit, HoldsLinksThatAreThrownOnIt) {
     double over = 0;
     for (int i = 0; i < 4 * hz; ++i) {
       world.step();
-      for (std::size_t k = 1; k < 5; ++k) over = std::max(over, std::abs(world.position(world.joint(0, k))) - limit);
+      for (std::size_t k = 1; k < 5; ++k)
+        over = std::max(over, std::abs(world.position(world.joint(0, k))) - limit);
     }
     EXPECT_LT(over, 1e-6) << hz;
   }
@@ -192,7 +194,8 @@ struct Wheels {
 };
 
 scene::Entity two_wheeler(const Wheels& size = {}) {
-  std::vector<scene::Link> links{link("base", scene::Box{{2.5 * size.arm, 0.8 * size.track, 4 * size.ball}}, 1)};
+  std::vector<scene::Link> links{
+      link("base", scene::Box{{2.5 * size.arm, 0.8 * size.track, 4 * size.ball}}, 1)};
   links[0].surface.friction = 0;
   for (const char* id : {"left", "right"}) {
     links.push_back(link(id, scene::Cylinder{size.radius, size.width}, 0.05));
@@ -207,10 +210,12 @@ scene::Entity two_wheeler(const Wheels& size = {}) {
   scene::Entity entity = prototype("robot", at(0, 0, 0), true, links);
   for (int i = 0; i < 4; ++i) {
     const bool wheel = i < 2;
-    const math::Pose side{{0, (i == 0 ? 0.5 : -0.5) * size.track, size.radius - above}, about(Vector3::UnitX(), -M_PI / 2)};
+    const math::Pose side{{0, (i == 0 ? 0.5 : -0.5) * size.track, size.radius - above},
+                          about(Vector3::UnitX(), -M_PI / 2)};
     const math::Pose below = at(i == 2 ? size.arm : -size.arm, 0, size.ball - above);
-    scene::Joint next = joint(wheel ? scene::JointType::revolute : scene::JointType::fixed,
-                              Vector3::UnitZ(), wheel ? side : below, at(0, 0, wheel ? size.width / 2 : size.ball));
+    scene::Joint next =
+        joint(wheel ? scene::JointType::revolute : scene::JointType::fixed, Vector3::UnitZ(),
+              wheel ? side : below, at(0, 0, wheel ? size.width / 2 : size.ball));
     next.id = links[i + 1].id;
     next.child = i + 1;
     entity.joints.push_back(next);
@@ -239,13 +244,14 @@ TEST(NewtonWheels, DriveBetweenTwoSmoothBalls) {
     drive(world, torque / hz, speed / wheel, speed / wheel);
     run(world, seconds, 1 / hz);
     EXPECT_NEAR(state_of(world).links[0].velocity.x(), speed, 1e-8) << hz;
-    EXPECT_NEAR(origin(world, 0).position.x(), speed * (seconds - speed / gain / 2), speed / hz) << hz;
+    EXPECT_NEAR(origin(world, 0).position.x(), speed * (seconds - speed / gain / 2), speed / hz)
+        << hz;
   }
 }
 
-// A wheel stands on the two ends of a line. The balls rub, so wheels must push: their outer ends roll, and the inner
-// ones, which are faster, slide. Where loads are shared at random the robot turns about other points, or stands
-// on the balls while its wheels spin.
+// A wheel stands on the two ends of a line. The balls rub, so wheels must push: their outer ends
+// roll, and the inner ones, which are faster, slide. Where loads are shared at random the robot
+// turns about other points, or stands on the balls while its wheels spin.
 TEST(NewtonWheels, ShareTheirLoadsWhateverTheSubstep) {
   const double wheel = 0.02, track = 0.06, width = 0.005, seconds = 4;
   scene::Entity robot = two_wheeler();
@@ -259,7 +265,8 @@ TEST(NewtonWheels, ShareTheirLoadsWhateverTheSubstep) {
       drive(world, 0.02 / hz, left, right);
       run(world, seconds, 1 / hz);
       const world::LinkState base = state_of(world).links[0];
-      EXPECT_NEAR(base.angular_velocity.z(), (right - left) * wheel / (track + width), 1e-6) << left << ' ' << hz;
+      EXPECT_NEAR(base.angular_velocity.z(), (right - left) * wheel / (track + width), 1e-6)
+          << left << ' ' << hz;
       EXPECT_NEAR(base.velocity.norm(), (right + left) * wheel / 2, 1e-6) << left << ' ' << hz;
     }
   }
@@ -291,12 +298,14 @@ TEST(NewtonWheels, CarryTheirShareAlsoWhereTheyHardlySlide) {
           EXPECT_NEAR(of_wheels / all, 4.0 / 6, 0.02);
         }
       }
-      EXPECT_NEAR(state_of(world).links[0].angular_velocity.z(), (right - left) * size.radius / (size.track + size.width), 1e-3 * (right - left));
+      EXPECT_NEAR(state_of(world).links[0].angular_velocity.z(),
+                  (right - left) * size.radius / (size.track + size.width), 1e-3 * (right - left));
     }
   }
 }
 
-// 1 m/s on a circle of 0.5 m: the outer side presses, but neither side lifts. At 50 Hz a substep takes it 2 cm on.
+// 1 m/s on a circle of 0.5 m: the outer side presses, but neither side lifts. At 50 Hz a substep
+// takes it 2 cm on.
 TEST(NewtonWheels, DriveAFastCircleBetweenTwoSmoothBalls) {
   const double wheel = 0.02, track = 0.06, speed = 0.5, radius = 0.5, seconds = 4;
   for (const double hz : long_runs::substep_rates()) {
@@ -314,14 +323,17 @@ TEST(NewtonWheels, DriveAFastCircleBetweenTwoSmoothBalls) {
   }
 }
 
-// Four feet carry a quarter of the weight each, whatever came before and whichever way the table looks.
+// Four feet carry a quarter of the weight each, whatever came before and whichever way the table
+// looks.
 TEST(NewtonTable, RestsOnItsFourFeetAlike) {
-  scene::Entity table = prototype("table", at(0, 0, 0.005), true, {link("top", scene::Box{{0.4, 0.3, 0.02}}, 1)});
+  scene::Entity table =
+      prototype("table", at(0, 0, 0.005), true, {link("top", scene::Box{{0.4, 0.3, 0.02}}, 1)});
   table.links[0].offset = at(0, 0, 0.1);
   for (int i = 0; i < 4; ++i) {
     const double x = i < 2 ? 0.18 : -0.18, y = i % 2 == 0 ? 0.13 : -0.13;
     table.links.push_back(link("foot" + std::to_string(i), scene::Sphere{0.05}, 0.1));
-    scene::Joint fixed = joint(scene::JointType::fixed, Vector3::UnitZ(), at(x, y, 0), at(0, 0, 0.1));
+    scene::Joint fixed =
+        joint(scene::JointType::fixed, Vector3::UnitZ(), at(x, y, 0), at(0, 0, 0.1));
     fixed.id = table.links.back().id;
     fixed.child = i + 1;
     table.joints.push_back(fixed);
@@ -347,8 +359,10 @@ TEST(NewtonArm, ThatStrikesAPlateStaysANumber) {
   for (const double hz : long_runs::substep_rates()) {
     World world(newton(), 1 / hz);
     scene::Entity arm = prototype("arm", at(0, 0, 0), false,
-                                  {link("base", scene::Box{{0.05, 0.05, 0.05}}, 1), link("rod", scene::Box{{0.3, 0.02, 0.02}}, 0.2)});
-    arm.joints.push_back(joint(scene::JointType::revolute, Vector3::UnitY(), at(0, 0.2, 0.1), at(-0.15, 0, 0.01)));
+                                  {link("base", scene::Box{{0.05, 0.05, 0.05}}, 1),
+                                   link("rod", scene::Box{{0.3, 0.02, 0.02}}, 0.2)});
+    arm.joints.push_back(
+        joint(scene::JointType::revolute, Vector3::UnitY(), at(0, 0.2, 0.1), at(-0.15, 0, 0.01)));
     world.add(arm);
     world.add(standing(at(0.3, 0.2, 0.02), scene::Box{{0.2, 0.2, 0.05}}));
     world.add_motor(world.joint(0, 0), scene::JointMode::position, 1.5 / hz);
@@ -362,9 +376,9 @@ TEST(NewtonArm, ThatStrikesAPlateStaysANumber) {
 TEST(NewtonMotor, HoldsItsSpeedWithinItsImpulse) {
   const double h = 0.01, mass = 2;
   World world(newton(false, 0), h);
-  scene::Entity entity = prototype(
-      "slider", at(0, 0, 0), false,
-      {link("base", scene::Box{{0.1, 0.1, 0.1}}, 1), link("load", scene::Box{{0.1, 0.1, 0.1}}, mass)});
+  scene::Entity entity = prototype("slider", at(0, 0, 0), false,
+                                   {link("base", scene::Box{{0.1, 0.1, 0.1}}, 1),
+                                    link("load", scene::Box{{0.1, 0.1, 0.1}}, mass)});
   entity.joints.push_back(joint(scene::JointType::prismatic, Vector3::UnitX(), {}, {}));
   world.add(entity);
   const JointIndex index = world.joint(0, 0);
@@ -376,14 +390,19 @@ TEST(NewtonMotor, HoldsItsSpeedWithinItsImpulse) {
   EXPECT_NEAR(world.velocity(index), 0.5, 1e-9);
 }
 
-// Up to a fifth of it was lost, as the energy that Coriolis forces of the slide that stops seemed to have given.
+// Up to a fifth of it was lost, as the energy that Coriolis forces of the slide that stops seemed
+// to have given.
 TEST(NewtonLimit, KeepsAngularMomentumOfAFloatingSlide) {
-  const double inertia = 2.0 / 3 * (0.3 * 0.3 + 0.1 * 0.1) + 2.0 / 12 * (0.04 + 0.01) + 1.0 / 12 * (0.01 + 0.0025);  // at its limit
+  const double inertia = 2.0 / 3 * (0.3 * 0.3 + 0.1 * 0.1) + 2.0 / 12 * (0.04 + 0.01) +
+                         1.0 / 12 * (0.01 + 0.0025);  // at its limit
   for (const double hz : long_runs::substep_rates()) {
     for (const double speed : {0.53, 3.1, 20.0}) {
       World world(newton(false, 0), 1 / hz);
-      scene::Entity slide = prototype("slide", at(0, 0, 0), true, {link("a", scene::Box{{0.2, 0.1, 0.1}}, 2), link("b", scene::Box{{0.1, 0.05, 0.05}}, 1)});
-      slide.joints.push_back(joint(scene::JointType::prismatic, Vector3::UnitX(), at(0, 0.1, 0.05), at(0, 0, 0.025)));
+      scene::Entity slide = prototype(
+          "slide", at(0, 0, 0), true,
+          {link("a", scene::Box{{0.2, 0.1, 0.1}}, 2), link("b", scene::Box{{0.1, 0.05, 0.05}}, 1)});
+      slide.joints.push_back(
+          joint(scene::JointType::prismatic, Vector3::UnitX(), at(0, 0.1, 0.05), at(0, 0, 0.025)));
       slide.joints.back().limit = scene::JointLimit{-0.1, 0.3};
       world.add(slide);
       const world::Push push{1, Vector3(hz * speed, 0, 0), Vector3::Zero()};
@@ -391,7 +410,9 @@ TEST(NewtonLimit, KeepsAngularMomentumOfAFloatingSlide) {
       world.step();
       set_pushes(world, {});
       run(world, 1, 1 / hz);
-      EXPECT_NEAR(state_of(world).links[0].angular_velocity.z(), -speed * 0.2 / 3 / inertia, 1e-5 * speed) << hz << ' ' << speed;
+      EXPECT_NEAR(state_of(world).links[0].angular_velocity.z(), -speed * 0.2 / 3 / inertia,
+                  1e-5 * speed)
+          << hz << ' ' << speed;
     }
   }
 }

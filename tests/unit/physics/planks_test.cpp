@@ -22,7 +22,8 @@ double depth(const Pose& pose, const Vector3& size) {
 }
 
 math::Quaternion any_turn(math::RandomStream& random) {
-  math::Quaternion out{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+  math::Quaternion out{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1),
+                       random.uniform(-1, 1)};
   return out.normalized();
 }
 
@@ -33,7 +34,8 @@ double worst_depth(World& world, const std::vector<Vector3>& sizes, int substeps
   for (int n = 0; n < substeps; ++n) {
     world.step();
     const world::State state = state_of(world);
-    for (std::size_t i = 0; i < sizes.size(); ++i) worst = std::max(worst, depth(state.origins[i], sizes[i]));
+    for (std::size_t i = 0; i < sizes.size(); ++i)
+      worst = std::max(worst, depth(state.origins[i], sizes[i]));
   }
   return worst;
 }
@@ -43,7 +45,8 @@ TEST(NewtonPlanks, LieOnTheFloorWhereTheyFell) {
   World world(newton(true), 0.01);
   std::vector<Vector3> sizes;
   for (int i = 0; i < 200; ++i) {
-    sizes.push_back({random.uniform(0.02, 0.22), random.uniform(0.01, 0.06), random.uniform(0.004, 0.024)});
+    sizes.push_back(
+        {random.uniform(0.02, 0.22), random.uniform(0.01, 0.06), random.uniform(0.004, 0.024)});
     const Pose pose{{0.5 * (i % 15), 0.5 * (i / 15), random.uniform(0.2, 0.4)}, any_turn(random)};
     world.add(loose(pose, scene::Box{sizes.back()}, 1000 * sizes.back().prod()));
   }
@@ -64,9 +67,12 @@ TEST(NewtonPlanks, ThatAreSpunDoNotGoIntoTheFloor) {
     scene::Entity plank = loose(pose, scene::Box{size}, mass);
     plank.id += std::to_string(i);
     world.add(plank);
-    const Vector3 squares = size.cwiseAbs2(), inertia = mass / 12 * (Vector3::Constant(squares.sum()) - squares);
-    const Vector3 spin{random.uniform(-30, 30), random.uniform(-30, 30), random.uniform(-30, 30)};  // in the plank's axes [rad/s]
-    pushes.push_back({i, Vector3(0, 0, -mass * 3 / h), pose.orientation * inertia.cwiseProduct(spin) / h});
+    const Vector3 squares = size.cwiseAbs2(),
+                  inertia = mass / 12 * (Vector3::Constant(squares.sum()) - squares);
+    const Vector3 spin{random.uniform(-30, 30), random.uniform(-30, 30),
+                       random.uniform(-30, 30)};  // in the plank's axes [rad/s]
+    pushes.push_back(
+        {i, Vector3(0, 0, -mass * 3 / h), pose.orientation * inertia.cwiseProduct(spin) / h});
   }
   set_pushes(world, pushes);
   world.step();
@@ -80,16 +86,18 @@ TEST(NewtonPlanks, ThatAreSpunDoNotGoIntoTheFloor) {
   EXPECT_LT(worst, 5e-4);
 }
 
-// One end strikes a row of boxes, and the other one is thrown down within the same substep. Rows of more than seven were not looked at, so that
-// the floor was beyond its reach.
+// One end strikes a row of boxes, and the other one is thrown down within the same substep. Rows of
+// more than seven were not looked at, so that the floor was beyond its reach.
 TEST(NewtonPlanks, OneIsThrownDownByARowOfBoxes) {
   const Vector3 size(0.3, 0.08, 0.02);
   const double top = 0.06;
   for (const int boxes : {1, 7, 12}) {
     for (const double gap : {0.001, 0.002, 0.004}) {
       World world(newton(true), 0.01);
-      for (int i = 0; i < boxes; ++i) world.add(loose(at(-0.15 - 0.1 * i, 0, 0), scene::Box{{0.1, 0.1, top}}, 5));
-      world.add(loose(at(0, 0, top + gap + earth / 8), scene::Box{size}, 0.3));  // half a second above
+      for (int i = 0; i < boxes; ++i)
+        world.add(loose(at(-0.15 - 0.1 * i, 0, 0), scene::Box{{0.1, 0.1, top}}, 5));
+      world.add(
+          loose(at(0, 0, top + gap + earth / 8), scene::Box{size}, 0.3));  // half a second above
       double worst = 0;
       for (int n = 0; n < 100; ++n) {
         world.step();
@@ -118,7 +126,8 @@ TEST(NewtonPlanks, InAHeapDoNotGoIntoTheFloor) {
   EXPECT_LT(worst, 5e-4);
 }
 
-// Planks of many sizes: light ones that lie still are struck so that they turn far, and overlaps of others push them.
+// Planks of many sizes: light ones that lie still are struck so that they turn far, and overlaps of
+// others push them.
 TEST(NewtonPlanks, OfManySizesInAHeapDoNotGoIntoTheFloor) {
   if (long_runs::is_slow) return;
   for (const int seed : {2, 18}) {
@@ -126,8 +135,10 @@ TEST(NewtonPlanks, OfManySizesInAHeapDoNotGoIntoTheFloor) {
     World world(newton(true), 0.01);
     std::vector<Vector3> sizes;
     for (int i = 0; i < 200; ++i) {
-      sizes.push_back({random.uniform(0.1, 0.4), random.uniform(0.03, 0.1), random.uniform(0.008, 0.03)});
-      const Pose pose{{0.45 * (i % 7), 0.45 * (i / 7 % 7), 0.35 + 0.45 * (i / 49)}, any_turn(random)};
+      sizes.push_back(
+          {random.uniform(0.1, 0.4), random.uniform(0.03, 0.1), random.uniform(0.008, 0.03)});
+      const Pose pose{{0.45 * (i % 7), 0.45 * (i / 7 % 7), 0.35 + 0.45 * (i / 49)},
+                      any_turn(random)};
       world.add(loose(pose, scene::Box{sizes.back()}, 600 * sizes.back().prod()));
     }
     EXPECT_LT(worst_depth(world, sizes, 120), 5e-4) << seed;

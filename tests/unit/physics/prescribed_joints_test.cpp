@@ -17,7 +17,8 @@ using namespace testing;
 
 const scene::Box rod{{0.02, 0.02, 0.4}};
 
-void add_joint(scene::Entity& entity, const char* id, const Vector3& axis, const Pose& parent, const Pose& child) {
+void add_joint(scene::Entity& entity, const char* id, const Vector3& axis, const Pose& parent,
+               const Pose& child) {
   scene::Joint next = joint(scene::JointType::revolute, axis, parent, child);
   next.id = id;
   next.parent = entity.joints.size();
@@ -28,11 +29,13 @@ void add_joint(scene::Entity& entity, const char* id, const Vector3& axis, const
 /// A hub that a motor turns about the vertical, with a rod on a hinge that hangs down from it.
 /// @param lean  of the rod [rad]
 scene::Entity rod_on_hub(double lean) {
-  scene::Entity entity = prototype("governor", at(0, 0, 2), false,
-                                   {link("base", scene::Box{{0.1, 0.1, 0.1}}, 1),
-                                    link("hub", scene::Box{{0.1, 0.1, 0.04}}, 1), link("rod", rod, 1)});
+  scene::Entity entity =
+      prototype("governor", at(0, 0, 2), false,
+                {link("base", scene::Box{{0.1, 0.1, 0.1}}, 1),
+                 link("hub", scene::Box{{0.1, 0.1, 0.04}}, 1), link("rod", rod, 1)});
   add_joint(entity, "motor", Vector3::UnitZ(), at(0, 0, -0.2), at(0, 0, 0.02));
-  add_joint(entity, "hinge", Vector3::UnitY(), {{0, 0, 0.02}, about(Vector3::UnitY(), M_PI - lean)}, at(0, 0, 0));
+  add_joint(entity, "hinge", Vector3::UnitY(), {{0, 0, 0.02}, about(Vector3::UnitY(), M_PI - lean)},
+            at(0, 0, 0));
   return entity;
 }
 
@@ -44,16 +47,19 @@ void turn_hub(World& world, double speed, double h) {
 /// The rod's lean while the hub turns at `omega`, by the method of Runge and Kutta.
 double expected_lean(double lean, double omega, double seconds) {
   const double length = rod.size.z(), width = rod.size.x();  // of 1 kg
-  const double across = (width * width + length * length) / 12 + length * length / 4, along = width * width / 6;
+  const double across = (width * width + length * length) / 12 + length * length / 4,
+               along = width * width / 6;
   const auto acceleration = [&](double a) {
-    return (omega * omega * (across - along) * std::cos(a) - earth * length / 2) * std::sin(a) / across;
+    return (omega * omega * (across - along) * std::cos(a) - earth * length / 2) * std::sin(a) /
+           across;
   };
   double speed = 0;
   const int steps = 10000;
   const double h = seconds / steps;
   for (int i = 0; i < steps; ++i) {
     const double k1 = acceleration(lean), k2 = acceleration(lean + h / 2 * speed);
-    const double k3 = acceleration(lean + h / 2 * (speed + h / 2 * k1)), k4 = acceleration(lean + h * (speed + h / 2 * k2));
+    const double k3 = acceleration(lean + h / 2 * (speed + h / 2 * k1)),
+                 k4 = acceleration(lean + h * (speed + h / 2 * k2));
     lean += h * speed + h * h / 6 * (k1 + k2 + k3);
     speed += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
   }
@@ -73,7 +79,8 @@ TEST(NewtonDriven, ARodOnATurningHubSwingsOut) {
       run(world, until - seconds, 1 / hz);
       seconds = until;
       const Vector3 along = state_of(world).links[2].pose.orientation * Vector3::UnitZ();
-      EXPECT_NEAR(std::acos(-along.z()), expected_lean(lean, omega, until), 1e-5) << hz << ' ' << until;
+      EXPECT_NEAR(std::acos(-along.z()), expected_lean(lean, omega, until), 1e-5)
+          << hz << ' ' << until;
     }
   }
 }
@@ -85,7 +92,8 @@ TEST(NewtonDriven, RodsOnAHubThatIsHeldKeepTheirEnergy) {
     World world(newton(), 1 / hz);
     scene::Entity entity = rod_on_hub(1.4);
     entity.links.push_back(link("rod2", rod, 1));
-    add_joint(entity, "hinge2", Vector3(1, 0.3, 0).normalized(), {{0, 0, 0.4}, about(Vector3::UnitY(), 0.7)}, at(0, 0, 0));
+    add_joint(entity, "hinge2", Vector3(1, 0.3, 0).normalized(),
+              {{0, 0, 0.4}, about(Vector3::UnitY(), 0.7)}, at(0, 0, 0));
     world.add(entity);
     turn_hub(world, 0, 1 / hz);
     const double start = world.energy(), swing = 2 * earth * rod.size.z();
@@ -105,37 +113,43 @@ struct Gimbal {
 
   scene::Entity entity() const {
     scene::Entity made = prototype("gyroscope", at(0, 0, 2), false,
-                                   {link("base", scene::Box{{0.1, 0.1, 0.1}}, 1), link("fork", scene::Box{{fork, fork, fork}}, fork_mass),
+                                   {link("base", scene::Box{{0.1, 0.1, 0.1}}, 1),
+                                    link("fork", scene::Box{{fork, fork, fork}}, fork_mass),
                                     link("arm", scene::Box{{width, width, arm}}, arm_mass),
                                     link("disc", scene::Cylinder{radius, height}, mass)});
     add_joint(made, "yaw", Vector3::UnitZ(), at(0, 0, 0.3), at(0, 0, fork / 2));
-    add_joint(made, "pitch", Vector3::UnitY(), {{0, 0, fork / 2}, about(Vector3::UnitY(), M_PI / 2)}, at(0, 0, 0));
+    add_joint(made, "pitch", Vector3::UnitY(),
+              {{0, 0, fork / 2}, about(Vector3::UnitY(), M_PI / 2)}, at(0, 0, 0));
     add_joint(made, "spin", Vector3::UnitZ(), at(0, 0, arm), at(0, 0, height / 2));
     return made;
   }
 
   /// Yaw and elevation of the arm, which begins level and at rest, with its disc at `spin` [rad].
-  /// With T = (across e'^2 + around(e) y'^2 + axial (spin + y' sin e)^2) / 2, Lagrange's equations: the yaw's momentum stays 0.
+  /// With T = (across e'^2 + around(e) y'^2 + axial (spin + y' sin e)^2) / 2, Lagrange's equations:
+  /// the yaw's momentum stays 0.
   std::pair<double, double> expected(double spin, double seconds) const {
     const auto box_across = [](double m, double a, double b) { return m * (a * a + b * b) / 12; };
     const double axial = mass * radius * radius / 2, arm_axial = box_across(arm_mass, width, width);
-    const double across = box_across(arm_mass, width, arm) + arm_mass * arm * arm / 4 + mass * arm * arm +
-                          mass * (3 * radius * radius + height * height) / 12;
-    const double torque = earth * (mass * arm + arm_mass * arm / 2), fork_own = box_across(fork_mass, fork, fork);
+    const double across = box_across(arm_mass, width, arm) + arm_mass * arm * arm / 4 +
+                          mass * arm * arm + mass * (3 * radius * radius + height * height) / 12;
+    const double torque = earth * (mass * arm + arm_mass * arm / 2),
+                 fork_own = box_across(fork_mass, fork, fork);
     const auto yaw_speed = [&](double e) {
       const double s = std::sin(e), c = std::cos(e);
       return -axial * spin * s / (fork_own + across * c * c + (arm_axial + axial) * s * s);
     };
     const auto acceleration = [&](double e) {
       const double s = std::sin(e), c = std::cos(e), y = yaw_speed(e);
-      return ((arm_axial - across) * s * c * y * y + axial * (spin + y * s) * y * c - torque * c) / across;
+      return ((arm_axial - across) * s * c * y * y + axial * (spin + y * s) * y * c - torque * c) /
+             across;
     };
     const int steps = 20000;
     const double h = seconds / steps;
     double e = 0, speed = 0, yaw = 0;
     for (int i = 0; i < steps; ++i) {
       const double k1 = acceleration(e), k2 = acceleration(e + h / 2 * speed);
-      const double k3 = acceleration(e + h / 2 * (speed + h / 2 * k1)), k4 = acceleration(e + h * (speed + h / 2 * k2));
+      const double k3 = acceleration(e + h / 2 * (speed + h / 2 * k1)),
+                   k4 = acceleration(e + h * (speed + h / 2 * k2));
       const double next = e + h * speed + h * h / 6 * (k1 + k2 + k3);
       yaw += h / 6 * (yaw_speed(e) + 4 * yaw_speed((e + next) / 2) + yaw_speed(next));
       e = next;

@@ -139,12 +139,14 @@ TEST(NewtonRebound, OfACornerThatTurnsHasTheLeverOfTheTouch) {
   }
 }
 
-// Two corners with impacts at different times in a substep asked for rotations of up to 34 times the bound. No rotation is
-// faster than all its energy about the axis of the least inertia. With one impact in a substep it moves by v h, and to
-// its target gaps by up to |v1 - v0| h, at most twice the greater of the speeds.
+// Two corners with impacts at different times in a substep asked for rotations of up to 34 times
+// the bound. No rotation is faster than all its energy about the axis of the least inertia. With
+// one impact in a substep it moves by v h, and to its target gaps by up to |v1 - v0| h, at most
+// twice the greater of the speeds.
 TEST(NewtonRebound, TurnsABoxAsItsSpeedsSay) {
   const Vector3 size(0.033, 0.131, 0.086);
-  const double height = 0.3, least_inertia = (size.x() * size.x() + size.z() * size.z()) / 12;  // of 1 kg
+  const double height = 0.3,
+               least_inertia = (size.x() * size.x() + size.z() * size.z()) / 12;  // of 1 kg
   const double fastest = std::sqrt(2 * earth * height / least_inertia);
   std::mt19937 random(3);
   for (const double hz : long_runs::substep_rates()) {
@@ -197,7 +199,8 @@ TEST(NewtonRebound, IsSeenAtEachMomentOfASubstep) {
       const auto height = [](std::size_t i) { return 0.05 + 0.0065 * static_cast<double>(i); };
       constexpr std::size_t count = 200;
       for (std::size_t i = 0; i < count; ++i) {
-        scene::Entity ball = loose(at(3.0 * static_cast<double>(i), 0, height(i)), scene::Sphere{0.1}, 1, 0);
+        scene::Entity ball =
+            loose(at(3.0 * static_cast<double>(i), 0, height(i)), scene::Sphere{0.1}, 1, 0);
         ball.id += std::to_string(i);
         ball.links[0].surface.restitution = 1;
         world.add(ball);

@@ -17,7 +17,8 @@ class NewtonAt : public ::testing::TestWithParam<double> {
  protected:
   double h = 1.0 / GetParam();
 };
-INSTANTIATE_TEST_SUITE_P(Hertz, NewtonAt, ::testing::ValuesIn(long_runs::substep_rates()), long_runs::name_of_rate<::testing::TestParamInfo<double>>);
+INSTANTIATE_TEST_SUITE_P(Hertz, NewtonAt, ::testing::ValuesIn(long_runs::substep_rates()),
+                         long_runs::name_of_rate<::testing::TestParamInfo<double>>);
 
 TEST_P(NewtonAt, ABoxSlidesDownASlopeByTheFormula) {
   const double angle = 0.35, mu = 0.3, seconds = 3;
@@ -40,7 +41,9 @@ TEST_P(NewtonAt, ABoxInATroughRubsOnBothSides) {
   // A trough of two faces at right angles, rolled by a third and inclined.
   const double slope = 0.6, roll = EIGEN_PI / 6, mu = 0.2, seconds = 1;
   const math::Quaternion tilt = about({0, 1, 0}, slope) * about({1, 0, 0}, roll);
-  const auto placed = [&](double x, double y, double z) { return Pose{tilt * Vector3(x, y, z), tilt}; };
+  const auto placed = [&](double x, double y, double z) {
+    return Pose{tilt * Vector3(x, y, z), tilt};
+  };
   World world(newton(), h);
   world.add(standing(placed(0, 0, -0.5), scene::Box{{20, 4, 0.5}}, 1));
   world.add(standing(placed(0, -1.05, 0), scene::Box{{20, 2, 1}}, 1));
@@ -101,7 +104,8 @@ TEST_P(NewtonAt, ATileFloorIsAsSmoothAsOne) {
 
 /// Bodies on a flat face: a rotated box, a cylinder, a pyramid. All are 10 cm wide and high.
 std::vector<scene::Geometry> flat_shapes() {
-  const std::vector<Vector3> corners{{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0.1, 0.1, 0}, {0.05, 0.05, 0.1}};
+  const std::vector<Vector3> corners{
+      {0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0.1, 0.1, 0}, {0.05, 0.05, 0.1}};
   return {cube, scene::Cylinder{0.05, 0.1}, std::get<scene::Hull>(scene::make_hull(corners))};
 }
 
@@ -123,7 +127,8 @@ TEST_P(NewtonAt, TilesAreAsSmoothAsOneInEveryDirection) {
       }
       run(world, seconds, h);
       const Vector3 moved = origin(world, 0).position - start.position;
-      EXPECT_NEAR(moved.dot(downhill), expected, 0.002 * expected + 1.02 * a * seconds * h / 2) << yaw;
+      EXPECT_NEAR(moved.dot(downhill), expected, 0.002 * expected + 1.02 * a * seconds * h / 2)
+          << yaw;
       EXPECT_LT((moved - moved.dot(downhill) * downhill).norm(), 1e-5) << yaw;
       EXPECT_LT(origin(world, 0).orientation.angularDistance(start.orientation), 1e-3) << yaw;
     }
@@ -133,9 +138,11 @@ TEST_P(NewtonAt, TilesAreAsSmoothAsOneInEveryDirection) {
 /// Position of a fast plank after a while on a floor of tiles, or on a slab.
 Pose slid_plank(bool on_tiles, double h) {
   World world(newton(), h);
-  world.add(loose({{-2, -1.7, 0}, about({0, 0, 1}, 70 * std::numbers::pi / 180)}, scene::Box{{0.9, 0.1, 0.02}}, 1, 0.2));
+  world.add(loose({{-2, -1.7, 0}, about({0, 0, 1}, 70 * std::numbers::pi / 180)},
+                  scene::Box{{0.9, 0.1, 0.02}}, 1, 0.2));
   for (int i = 0; i < 121 && on_tiles; ++i) {
-    world.add(standing(at(0.5 * (i / 11 - 7), 0.5 * (i % 11 - 6), -0.1), scene::Box{{0.5, 0.5, 0.1}}));
+    world.add(
+        standing(at(0.5 * (i / 11 - 7), 0.5 * (i % 11 - 6), -0.1), scene::Box{{0.5, 0.5, 0.1}}));
   }
   if (!on_tiles) world.add(standing(at(0, 0, -0.1), scene::Box{{20, 20, 0.1}}));
   const world::Push push{0, Vector3(3.2, 2.5, 0) / h, Vector3::Zero()};
@@ -146,7 +153,8 @@ Pose slid_plank(bool on_tiles, double h) {
   return origin(world, 0);
 }
 
-// Its corner goes from a tile over the tip of a second one into a third within a substep: that one's side was hit.
+// Its corner goes from a tile over the tip of a second one into a third within a substep: that
+// one's side was hit.
 TEST_P(NewtonAt, WhereFourTilesMeetIsNoEdge) {
   const Pose tiles = slid_plank(true, h), slab = slid_plank(false, h);
   EXPECT_LT((tiles.position - slab.position).norm(), 1e-6);
@@ -156,7 +164,8 @@ TEST_P(NewtonAt, WhereFourTilesMeetIsNoEdge) {
 /// Tiles of 0.2 m whose corners meet at (0.2 i, y).
 void lay_tiles(World& world, double y, double friction) {
   for (int i = -2; i < 2; ++i) {
-    for (const double side : {-0.1, 0.1}) world.add(standing(at(0.2 * i + 0.1, y + side, -0.1), scene::Box{{0.2, 0.2, 0.1}}, friction));
+    for (const double side : {-0.1, 0.1})
+      world.add(standing(at(0.2 * i + 0.1, y + side, -0.1), scene::Box{{0.2, 0.2, 0.1}}, friction));
   }
 }
 
@@ -181,8 +190,8 @@ double lost_on_tiles(double y, bool lies, double speed, double seconds, double h
   return 1 - least / speed;
 }
 
-// The contacts of two tiles were dropped, each because the other one goes on where it touches; and where a rim touched an edge
-// exactly, its point was 1.5 mm beside it.
+// The contacts of two tiles were dropped, each because the other one goes on where it touches; and
+// where a rim touched an edge exactly, its point was 1.5 mm beside it.
 TEST_P(NewtonAt, WhatRollsOrSlidesOverFourTilesKeepsItsSpeed) {
   for (const double y : {-0.03, 0.02, 0.0, 0.05}) {
     EXPECT_LT(lost_on_tiles(y, true, 0.05, 2, h), 1e-3) << y;
@@ -191,10 +200,13 @@ TEST_P(NewtonAt, WhatRollsOrSlidesOverFourTilesKeepsItsSpeed) {
   }
 }
 
-// Which tile goes on where another one ends was followed along all ways through the tiles: without end.
+// Which tile goes on where another one ends was followed along all ways through the tiles: without
+// end.
 TEST(NewtonTiles, CarryAPlateThatCoversFourHundred) {
   World world(newton(), 0.01);
-  for (int i = 0; i < 400; ++i) world.add(standing(at(0.05 * (i / 20) - 0.475, 0.05 * (i % 20) - 0.475, -0.05), scene::Box{{0.05, 0.05, 0.05}}));
+  for (int i = 0; i < 400; ++i)
+    world.add(standing(at(0.05 * (i / 20) - 0.475, 0.05 * (i % 20) - 0.475, -0.05),
+                       scene::Box{{0.05, 0.05, 0.05}}));
   world.add(loose({{0.003, 0.002, 0}, about({0, 0, 1}, 0.12)}, scene::Box{{1, 1, 0.02}}, 1));
   run(world, 0.1, 0.01);
   EXPECT_LT((origin(world, 400).position - Vector3(0.003, 0.002, 0)).norm(), 1e-6);
@@ -281,7 +293,8 @@ TEST_P(NewtonAt, WhatComesAtThreeHundredMetresPerSecondIsStopped) {
   EXPECT_NEAR(origin(world, 2).position.z(), 0, 1e-3);
 }
 
-// A push was less than what counted as none beside the impulses on the light balls over their mass: the plate stood still for good.
+// A push was less than what counted as none beside the impulses on the light balls over their mass:
+// the plate stood still for good.
 TEST(NewtonPush, MovesAHeavyPlateOnLightBalls) {
   const double mass = 1e4, ball = 1e-3, push = 2000, seconds = 0.8;
   for (const double hz : long_runs::substep_rates({.most = 1000})) {
@@ -294,7 +307,9 @@ TEST(NewtonPush, MovesAHeavyPlateOnLightBalls) {
     const world::Push along{4, Vector3(push, 0, 0), Vector3::Zero()};
     set_pushes(world, std::span(&along, 1));
     run(world, seconds, 1 / hz);
-    EXPECT_NEAR(state_of(world).links[4].velocity.x(), push * seconds / (mass + 4 * ball * 1.4 / 4), 1e-4) << hz;
+    EXPECT_NEAR(state_of(world).links[4].velocity.x(), push * seconds / (mass + 4 * ball * 1.4 / 4),
+                1e-4)
+        << hz;
   }
 }
 

@@ -69,7 +69,8 @@ class NewtonSpin : public ::testing::TestWithParam<double> {
  protected:
   double h = 1.0 / GetParam();
 };
-INSTANTIATE_TEST_SUITE_P(Hertz, NewtonSpin, ::testing::ValuesIn(long_runs::substep_rates()), long_runs::name_of_rate<::testing::TestParamInfo<double>>);
+INSTANTIATE_TEST_SUITE_P(Hertz, NewtonSpin, ::testing::ValuesIn(long_runs::substep_rates()),
+                         long_runs::name_of_rate<::testing::TestParamInfo<double>>);
 
 // L. D. Landau, E. M. Lifshitz, Mechanics, section 37: the components of the angular velocity in
 // the body are Jacobi's elliptic functions, of period 4 K(k) / rate.
@@ -171,8 +172,8 @@ TEST(NewtonSpin, OfAGyroscopeGetsBetterWithShorterSubsteps) {
 
 /// A body that spins about its axis of symmetry lands on a smooth floor in the second substep: it
 /// stops at its radius, and goes on spinning.
-void expect_to_land_turning(const scene::Geometry& round, const math::Quaternion& lying, double speed,
-                            double rate) {
+void expect_to_land_turning(const scene::Geometry& round, const math::Quaternion& lying,
+                            double speed, double rate) {
   const double h = 0.01, radius = 0.1;
   SCOPED_TRACE(::testing::Message() << speed << " m/s " << rate << " rad/s");
   scene::Entity entity = loose({{0, 0, 0}, lying}, round, 1, 0);
@@ -221,7 +222,8 @@ TEST_P(NewtonSpin, ABallOnATwentiethOfADegreeRolls) {
 /// Largest gain of a spinning body, over its energy at the beginning, while it falls on the floor
 /// and goes on there.
 /// @param momentum  [N m s]
-double gain_on_floor(const scene::Geometry& geometry, double mass, const Vector3& momentum, double h) {
+double gain_on_floor(const scene::Geometry& geometry, double mass, const Vector3& momentum,
+                     double h) {
   World world(newton(true), h);
   const math::Quaternion turned = about(Vector3(1, 2, 3), 2);
   scene::Entity entity = loose({{0, 0, 0.3}, turned}, geometry, mass, 0.1);
@@ -246,18 +248,22 @@ TEST(NewtonSpin, GivesNothingWhatTumblesOnTheFloor) {
   for (const double hz : long_runs::substep_rates()) {
     EXPECT_LT(gain_on_floor(scene::Capsule{0.067, 0.37}, 0.315, momentum, 1 / hz), 1e-2 / hz) << hz;
     EXPECT_LT(gain_on_floor(scene::Capsule{0.02, 0.3}, 0.3, momentum, 1 / hz), 1e-2 / hz) << hz;
-    EXPECT_LT(gain_on_floor(scene::Cylinder{0.027, 0.27}, 2.3, 5 * momentum, 1 / hz), 1e-2 / hz) << hz;
+    EXPECT_LT(gain_on_floor(scene::Cylinder{0.027, 0.27}, 2.3, 5 * momentum, 1 / hz), 1e-2 / hz)
+        << hz;
   }
 }
 
-/// A coin of 1 m that rolls in a circle and leans by 15 degrees, in steady precession about the vertical.
+/// A coin of 1 m that rolls in a circle and leans by 15 degrees, in steady precession about the
+/// vertical.
 /// @return  how far its lean is off after 4 s [rad]
 double lost_lean(double h) {
   const double radius = 1, thick = 0.01, mass = 0.1, lean = 15 * EIGEN_PI / 180;
   const Vector3 up = Vector3::UnitZ(), turning = 0.7 * up;  // [rad/s]
   const Vector3 axis(std::cos(lean), 0, std::sin(lean));
-  const Vector3 arm = axis * thick / 2 + radius * (up - axis * std::sin(lean)) / std::cos(lean);  // from the floor
-  const double across = mass * (3 * radius * radius + thick * thick) / 12, along = mass * radius * radius / 2;
+  const Vector3 arm =
+      axis * thick / 2 + radius * (up - axis * std::sin(lean)) / std::cos(lean);  // from the floor
+  const double across = mass * (3 * radius * radius + thick * thick) / 12,
+               along = mass * radius * radius / 2;
   struct Motion {
     Vector3 momentum, angular;
   };
@@ -294,12 +300,14 @@ TEST(NewtonSpin, OfACoinThatRollsInACircleKeepsItsLean) {
 /// it nutates between its initial lean and that where its precession has the lost height's energy.
 /// @param spin  about its axis [rad/s];  @param axial, across  moments of inertia about its centre
 ///              of mass [kg m^2]
-double farthest_lean(double lean, double spin, double mass, double arm, double axial, double across) {
+double farthest_lean(double lean, double spin, double mass, double arm, double axial,
+                     double across) {
   const double momentum = axial * spin, start = std::cos(lean);
   double low = lean, high = EIGEN_PI / 2;  // p^2 (cos start - cos x) = 2 I m g l sin^2 x
   for (int i = 0; i < 60; ++i) {
     const double x = (low + high) / 2;
-    const double missing = 2 * across * mass * earth * arm * std::sin(x) * std::sin(x) - momentum * momentum * (start - std::cos(x));
+    const double missing = 2 * across * mass * earth * arm * std::sin(x) * std::sin(x) -
+                           momentum * momentum * (start - std::cos(x));
     (missing > 0 ? low : high) = x;
   }
   return low;
@@ -311,13 +319,17 @@ struct Top {
   double axial = mass * radius * radius / 2, across = axial / 2 + mass * height * height / 12;
   scene::JointType type = scene::JointType::fixed;  // of the disc on the ball
 
-  double expected(double spin) const { return farthest_lean(lean, spin, mass, arm, axial, across) / EIGEN_PI * 180; }
+  double expected(double spin) const {
+    return farthest_lean(lean, spin, mass, arm, axial, across) / EIGEN_PI * 180;
+  }
   /// The most that it leans within two seconds [degrees].
   double measured(double spin, double hz) const {
     World world(newton(true), 1 / hz);
     const math::Quaternion tilt = about(Vector3::UnitY(), lean);
-    scene::Entity top = prototype("top", {Vector3(0, 0, tip) - tilt * Vector3(0, 0, tip), tilt}, true,
-                                  {link("tip", scene::Sphere{tip}, 1e-6), link("disc", scene::Cylinder{radius, height}, mass)});
+    scene::Entity top =
+        prototype("top", {Vector3(0, 0, tip) - tilt * Vector3(0, 0, tip), tilt}, true,
+                  {link("tip", scene::Sphere{tip}, 1e-6),
+                   link("disc", scene::Cylinder{radius, height}, mass)});
     top = with_friction(top, 0);
     top.joints.push_back(joint(type, Vector3::UnitZ(), at(0, 0, tip + arm - height / 2), {}));
     world.add(top);
@@ -335,7 +347,8 @@ struct Top {
   }
 };
 
-// At coarse substeps its axis turns by more than a radian in each: it leaned over by up to 73 degrees.
+// At coarse substeps its axis turns by more than a radian in each: it leaned over by up to 73
+// degrees.
 TEST(NewtonSpin, OfATopOnItsTip) {
   const Top top;
   for (const double spin : long_runs::some_of({100, 50, 400})) {

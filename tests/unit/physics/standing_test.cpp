@@ -37,7 +37,8 @@ TEST(NewtonTower, OfTwentyCylindersStands) {
   EXPECT_LT(tower_drift(20, scene::Cylinder{0.005, 0.01}, 0.01, 0.001), 1e-4);
 }
 
-// Two squares that are turned against each other share an octagon: which four of its corners carry must not change by rounding.
+// Two squares that are turned against each other share an octagon: which four of its corners carry
+// must not change by rounding.
 TEST(NewtonTower, OfTurnedBoxesComesToRest) {
   math::RandomStream random(6, "turned");
   for (const double hz : {100.0, 200.0, 500.0, 200.0, 500.0}) {
@@ -72,13 +73,17 @@ Pose tilted(double x, double y, double z, double angle) {
 }
 
 scene::Entity rail(double x) {
-  return with_friction(prototype("rail", tilted(x, 0.15, 0.05, std::numbers::pi / 2), false, {link("a", scene::Cylinder{0.05, 0.3}, 1)}), 1);
+  return with_friction(prototype("rail", tilted(x, 0.15, 0.05, std::numbers::pi / 2), false,
+                                 {link("a", scene::Cylinder{0.05, 0.3}, 1)}),
+                       1);
 }
 
-// The two ends of what a log shares with a rail have their own distances: with the same it stayed tilted in the air.
+// The two ends of what a log shares with a rail have their own distances: with the same it stayed
+// tilted in the air.
 TEST(NewtonLog, FallsIntoItsGrooveThoughItBeginsTilted) {
   for (const double hz : long_runs::some_of({50.0, 200.0, 1000.0})) {
-    for (const scene::Geometry& log : {scene::Geometry(scene::Cylinder{0.05, 0.2}), scene::Geometry(scene::Capsule{0.05, 0.2})}) {
+    for (const scene::Geometry& log : {scene::Geometry(scene::Cylinder{0.05, 0.2}),
+                                       scene::Geometry(scene::Capsule{0.05, 0.2})}) {
       World world(newton(), 1 / hz);
       world.add(rail(-0.06));
       world.add(rail(0.06));
@@ -110,7 +115,8 @@ TEST(NewtonPlank, FallsOntoItsRollersThoughItBeginsTilted) {
 scene::Geometry pebble() {
   std::vector<Vector3> corners;
   for (int i = 0; i < 60; ++i) {
-    const double z = 1 - (2 * i + 1) / 60.0, angle = i * std::numbers::pi * (3 - std::sqrt(5.0)), around = std::sqrt(1 - z * z);
+    const double z = 1 - (2 * i + 1) / 60.0, angle = i * std::numbers::pi * (3 - std::sqrt(5.0)),
+                 around = std::sqrt(1 - z * z);
     corners.push_back({0.1 * around * std::cos(angle), 0.05 * around * std::sin(angle), 0.03 * z});
   }
   return std::get<scene::Hull>(scene::make_hull(corners));
@@ -166,7 +172,8 @@ TEST(NewtonStack, ThatSleepsMovesWithNothingAndWakesWhenItsFloorIsTaken) {
   EXPECT_NEAR(origin(world, 2).position.z(), rest.position.z() - earth * 0.125, 1e-6);
 }
 
-// A plate on 25 cubes, whose middle is not below its own: a rigid plate on springs, so loads are linear in the place.
+// A plate on 25 cubes, whose middle is not below its own: a rigid plate on springs, so loads are
+// linear in the place.
 TEST(NewtonPlate, LoadsTwentyFiveCubesLinearly) {
   constexpr double pitch = 0.05, mass = 10, cube_mass = 0.1;
   const double away_x = 0.02, away_y = 0.01;  // of the cubes' middle
@@ -176,7 +183,8 @@ TEST(NewtonPlate, LoadsTwentyFiveCubesLinearly) {
     std::vector<Eigen::Vector2d> places;
     for (int i = 0; i < 25; ++i) places.emplace_back(pitch * (i % 5 - 2), pitch * (i / 5 - 2));
     for (const auto& place : places) {
-      world.add(loose(at(place.x() + away_x, place.y() + away_y, 0), scene::Box{{0.02, 0.02, 0.02}}, cube_mass, 0.5));
+      world.add(loose(at(place.x() + away_x, place.y() + away_y, 0), scene::Box{{0.02, 0.02, 0.02}},
+                      cube_mass, 0.5));
     }
     run(world, 1, 1 / hz);
     std::vector<world::Contact> contacts;
@@ -185,10 +193,12 @@ TEST(NewtonPlate, LoadsTwentyFiveCubesLinearly) {
     for (const world::Contact& contact : contacts) {
       if (!contact.other) loads[contact.link - 1] += contact.force.z();
     }
-    const double square = 50 * pitch * pitch + 25 * 0.01 * 0.01;  // sum of x^2 over the cubes' corners, a quarter [m^2]
+    const double square = 50 * pitch * pitch +
+                          25 * 0.01 * 0.01;  // sum of x^2 over the cubes' corners, a quarter [m^2]
     for (std::size_t i = 0; i < places.size(); ++i) {
       const double share = 1.0 / 25 - (away_x * places[i].x() + away_y * places[i].y()) / square;
-      EXPECT_NEAR(loads[i], earth * (mass * share + cube_mass), 1e-3 * earth * mass / 25) << hz << ' ' << i;
+      EXPECT_NEAR(loads[i], earth * (mass * share + cube_mass), 1e-3 * earth * mass / 25)
+          << hz << ' ' << i;
     }
   }
 }
@@ -217,7 +227,8 @@ TEST(NewtonCards, AHouseOfThreeStoreysStands) {
       lean_to(y + half, z, lean);
     }
     if (level == 2) break;
-    world.add(loose(at(0, 0, z + storey - thick), scene::Box{{width, (tents - 1) * (2 * foot + 0.004) + foot, thick}},
+    world.add(loose(at(0, 0, z + storey - thick),
+                    scene::Box{{width, (tents - 1) * (2 * foot + 0.004) + foot, thick}},
                     0.002 * tents, 0.9));
     ++cards;
   }
@@ -241,8 +252,8 @@ TEST(NewtonStack, ALoadOfTonsStandsOnALightCylinder) {
   }
 }
 
-// It tips where the push at its middle has a larger moment about the rim than its weight, whichever part of the rim
-// that is.
+// It tips where the push at its middle has a larger moment about the rim than its weight, whichever
+// part of the rim that is.
 TEST(NewtonCylinder, TipsOverEachPointOfItsRimAlike) {
   const double radius = 0.05, height = 0.2, mass = 1;
   const double threshold = mass * earth * radius / (height / 2);
@@ -252,7 +263,8 @@ TEST(NewtonCylinder, TipsOverEachPointOfItsRimAlike) {
         scene::Physics physics = newton(true);
         physics.floor->surface.friction = 1;
         World world(physics, 1 / hz);
-        world.add(loose({{0, 0, 0}, about(Vector3::UnitZ(), heading)}, scene::Cylinder{radius, height}, mass, 1));
+        world.add(loose({{0, 0, 0}, about(Vector3::UnitZ(), heading)},
+                        scene::Cylinder{radius, height}, mass, 1));
         for (int i = 1; i <= 10; ++i) {  // it grows within a second
           const world::Push push{0, {share * threshold * i / 10, 0, 0}, {0, 0, 0}};
           set_pushes(world, std::span(&push, 1));
@@ -288,8 +300,8 @@ double slip_of_cards(double lean, double friction, double hz) {
   return (origin(world, 0).position - start).norm();
 }
 
-// Each card presses the other by H horizontally and the floor by its weight w. About its lower edge:
-// H length cos(lean) = w (length sin(lean) - thick cos(lean)) / 2.
+// Each card presses the other by H horizontally and the floor by its weight w. About its lower
+// edge: H length cos(lean) = w (length sin(lean) - thick cos(lean)) / 2.
 TEST(NewtonCards, LeanOnEachOtherWithTheFrictionThatTheyNeed) {
   for (const double lean : {0.2, 0.4, 0.6}) {
     const double needed = std::tan(lean) / 2 - 0.001 / 0.16;
@@ -300,8 +312,8 @@ TEST(NewtonCards, LeanOnEachOtherWithTheFrictionThatTheyNeed) {
   }
 }
 
-// On the seam of two flush tiles of different friction one contact is dropped; which one does not depend on
-// pairs that others have left behind.
+// On the seam of two flush tiles of different friction one contact is dropped; which one does not
+// depend on pairs that others have left behind.
 TEST(NewtonSeam, DoesNotDependOnWhatIsFarAway) {
   const auto slide = [](bool other) {
     World world(newton(true), 0.01);
@@ -352,10 +364,14 @@ TEST(NewtonPress, FitsItsBoxExactlyAndMoves) {
     world.add(standing(at(0, side * (width / 2 + 0.01), 0), scene::Box{{width, 0.02, 0.1}}));
   }
   for (int i = 0; i < 18; ++i) {
-    world.add(loose(at((i % 3 - 1) * size, (i / 3 % 3 - 1) * size, i / 9 * size), scene::Box{{size, size, size}}, 0.01));
+    world.add(loose(at((i % 3 - 1) * size, (i / 3 % 3 - 1) * size, i / 9 * size),
+                    scene::Box{{size, size, size}}, 0.01));
   }
-  scene::Entity press = prototype("press", at(0, 0.5, 0), false, {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1), link("plate", scene::Box{{width, width, 0.02}}, 0.1)});
-  press.joints.push_back(joint(scene::JointType::prismatic, Vector3::UnitZ(), at(0, -0.5, 2 * size + gap), {}));
+  scene::Entity press = prototype("press", at(0, 0.5, 0), false,
+                                  {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1),
+                                   link("plate", scene::Box{{width, width, 0.02}}, 0.1)});
+  press.joints.push_back(
+      joint(scene::JointType::prismatic, Vector3::UnitZ(), at(0, -0.5, 2 * size + gap), {}));
   world.add(with_friction(press, 0.5));
   const JointIndex index = world.joint(22, 0);
   world.add_motor(index, scene::JointMode::velocity, 20 * 0.01);
@@ -370,13 +386,17 @@ TEST(NewtonPress, StopsAtAWallThatIsNearlyAlongItsWay) {
   for (const double mass : {1.0, 1e6, 1e8}) {
     for (const double tilt : {0.001, 0.01, 0.1}) {
       World world(newton(), 0.01);
-      scene::Entity slide = prototype("slide", at(0, 0, 0), false, {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1), link("ball", scene::Sphere{0.1}, mass)});
+      scene::Entity slide = prototype("slide", at(0, 0, 0), false,
+                                      {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1),
+                                       link("ball", scene::Sphere{0.1}, mass)});
       slide.joints.push_back(joint(scene::JointType::prismatic, Vector3::UnitZ(), at(1, 0, 0), {}));
       world.add(with_friction(slide, 0));
       // The wall's face leans by the tilt; the ball's lower side comes to it after the gap.
       const math::Quaternion leaning(Eigen::AngleAxisd(-tilt, Vector3::UnitY()));
-      const Vector3 normal = leaning * Vector3::UnitX(), touch = Vector3(1, 0, 0.1 - gap) - 0.1 * normal;
-      world.add(standing({touch - 0.5 * normal - leaning * Vector3(0, 0, 2), leaning}, scene::Box{{1, 1, 4}}, 0));
+      const Vector3 normal = leaning * Vector3::UnitX(),
+                    touch = Vector3(1, 0, 0.1 - gap) - 0.1 * normal;
+      world.add(standing({touch - 0.5 * normal - leaning * Vector3(0, 0, 2), leaning},
+                         scene::Box{{1, 1, 4}}, 0));
       run(world, 0.4, 0.01);
       EXPECT_NEAR(world.position(world.joint(0, 0)), -gap, 0.01 * gap) << mass << ' ' << tilt;
     }
@@ -387,8 +407,11 @@ TEST(NewtonPress, StopsAtAWallThatIsNearlyAlongItsWay) {
 TEST(NewtonPress, TwoSlidesThatOverlapAcrossTheirWaysMove) {
   World world(newton(), 0.01);
   for (const double side : {-1.0, 1.0}) {
-    scene::Entity slide = prototype("slide", at(0, side * 1.0, 0), false, {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1), link("head", scene::Box{{0.1, 0.1, 0.1}}, 1)});
-    slide.joints.push_back(joint(scene::JointType::prismatic, Vector3::UnitZ(), at(0, -side * 0.951, 0), {}));
+    scene::Entity slide = prototype("slide", at(0, side * 1.0, 0), false,
+                                    {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1),
+                                     link("head", scene::Box{{0.1, 0.1, 0.1}}, 1)});
+    slide.joints.push_back(
+        joint(scene::JointType::prismatic, Vector3::UnitZ(), at(0, -side * 0.951, 0), {}));
     world.add(with_friction(slide, 1));
   }
   world.add_motor(world.joint(1, 0), scene::JointMode::velocity, 1);

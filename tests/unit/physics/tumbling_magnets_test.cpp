@@ -101,7 +101,8 @@ class TumblingMagnets : public ::testing::TestWithParam<double> {
  protected:
   double h = 1.0 / GetParam();
 };
-INSTANTIATE_TEST_SUITE_P(Hertz, TumblingMagnets, ::testing::ValuesIn(long_runs::substep_rates()), long_runs::name_of_rate<::testing::TestParamInfo<double>>);
+INSTANTIATE_TEST_SUITE_P(Hertz, TumblingMagnets, ::testing::ValuesIn(long_runs::substep_rates()),
+                         long_runs::name_of_rate<::testing::TestParamInfo<double>>);
 
 TEST_P(TumblingMagnets, NoneGainsEnergy) {
   for (unsigned seed = 1; seed <= long_runs::runs(12, 4); ++seed) {
@@ -119,7 +120,8 @@ scene::Magnet along_x(int link, double moment_x) {
 }
 
 scene::Entity repelling(double x) {
-  scene::Entity entity = prototype("wall", at(x, 0, 0), false, {link("a", scene::Box{{0.01, 0.01, 0.01}}, 1)});
+  scene::Entity entity =
+      prototype("wall", at(x, 0, 0), false, {link("a", scene::Box{{0.01, 0.01, 0.01}}, 1)});
   entity.devices.magnets.push_back(along_x(0, -10));
   return entity;
 }
@@ -131,7 +133,8 @@ TEST(MagnetOnARail, SwingsBetweenTwoOthersWithoutGain) {
   for (const double hz : long_runs::some_of({1000, 2000})) {
     World world(floating(), 1 / hz);
     scene::Entity rail = prototype("rail", at(0, 0, 0), false,
-                                   {link("base", scene::Box{{0.001, 0.001, 0.001}}, 1), link("slider", scene::Box{{0.01, 0.01, 0.01}}, 0.1)});
+                                   {link("base", scene::Box{{0.001, 0.001, 0.001}}, 1),
+                                    link("slider", scene::Box{{0.01, 0.01, 0.01}}, 0.1)});
     rail.joints.push_back(joint(scene::JointType::prismatic, Vector3::UnitX(), at(0.15, 0, 0), {}));
     rail.devices.magnets.push_back(along_x(1, 1));
     world.add(rail);

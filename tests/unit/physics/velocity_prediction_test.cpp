@@ -18,7 +18,9 @@ scene::Entity wall_of(double near, double thickness) {
 
 /// A head of 4 cm on a slide along x, whose front is at x = 0.
 scene::Entity slide(double mass) {
-  scene::Entity entity = prototype("slide", at(-0.02, 0, 0), false, {link("base", scene::Box{{0.01, 0.01, 0.01}}, 1), link("head", scene::Box{{0.04, 0.04, 0.04}}, mass)});
+  scene::Entity entity = prototype("slide", at(-0.02, 0, 0), false,
+                                   {link("base", scene::Box{{0.01, 0.01, 0.01}}, 1),
+                                    link("head", scene::Box{{0.04, 0.04, 0.04}}, mass)});
   entity.joints.push_back(joint(scene::JointType::prismatic, Vector3::UnitX(), at(0, 0, 0), {}));
   return entity;
 }
@@ -47,24 +49,31 @@ TEST(NewtonThrown, AnArmStopsAtAPost) {
     for (const double speed : {10, 60, 150}) {
       for (const double angle : {0.6, 1.7, 2.9}) {
         World world(newton(false, 0), 1 / hz);
-        scene::Entity arm = prototype("arm", at(0, 0, 0), false, {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1), link("arm", scene::Box{{0.2, 0.02, 0.02}}, 0.02)});
-        arm.joints.push_back(joint(scene::JointType::revolute, Vector3::UnitZ(), at(0, 0, 0), at(-0.1, 0, 0)));
+        scene::Entity arm = prototype("arm", at(0, 0, 0), false,
+                                      {link("base", scene::Box{{0.02, 0.02, 0.02}}, 1),
+                                       link("arm", scene::Box{{0.2, 0.02, 0.02}}, 0.02)});
+        arm.joints.push_back(
+            joint(scene::JointType::revolute, Vector3::UnitZ(), at(0, 0, 0), at(-0.1, 0, 0)));
         world.add(arm);
-        world.add(standing(at(0.15 * std::cos(angle), 0.15 * std::sin(angle), -0.5), scene::Cylinder{0.01, 1}));
+        world.add(standing(at(0.15 * std::cos(angle), 0.15 * std::sin(angle), -0.5),
+                           scene::Cylinder{0.01, 1}));
         world.add_motor(world.joint(0, 0), scene::JointMode::velocity, 20 / hz);
         world.set_target(world.joint(0, 0), speed);
         const double touch = angle - std::asin(0.02 / 0.15);
         for (int i = 0; i < hz; ++i) {
           world.step();
-          ASSERT_LT(world.position(world.joint(0, 0)), touch + 1e-3) << hz << ' ' << speed << ' ' << angle;
+          ASSERT_LT(world.position(world.joint(0, 0)), touch + 1e-3)
+              << hz << ' ' << speed << ' ' << angle;
         }
-        EXPECT_NEAR(world.position(world.joint(0, 0)), touch, 1e-4) << hz << ' ' << speed << ' ' << angle;
+        EXPECT_NEAR(world.position(world.joint(0, 0)), touch, 1e-4)
+            << hz << ' ' << speed << ' ' << angle;
       }
     }
   }
 }
 
-// Only the bound that was nearer at the substep's beginning held: the head passed the other by up to metres.
+// Only the bound that was nearer at the substep's beginning held: the head passed the other by up
+// to metres.
 TEST(NewtonThrown, AMotorStopsAtItsLimit) {
   for (const double hz : long_runs::substep_rates()) {
     for (const bool floats : {false, true}) {
@@ -86,7 +95,8 @@ TEST(NewtonThrown, AMotorStopsAtItsLimit) {
   }
 }
 
-// Two with magnets take the substep in parts, in which nothing was foreseen: the head passed the block and the wall.
+// Two with magnets take the substep in parts, in which nothing was foreseen: the head passed the
+// block and the wall.
 TEST(NewtonThrown, AMotorWithAMagnetStopsAtABlockWithAMagnet) {
   for (const double hz : long_runs::substep_rates()) {
     for (const double mass : {0.002, 0.02}) {
@@ -118,10 +128,13 @@ TEST(NewtonThrown, AGripperClosesOnABlock) {
   for (const double hz : long_runs::substep_rates()) {
     for (const double force : {2, 5, 10, 20}) {
       World world(newton(true), 1 / hz);
-      scene::Entity gripper = prototype("gripper", at(0, 0, 0.2), false, {link("palm", scene::Box{{0.01, 0.01, 0.01}}, 1)});
+      scene::Entity gripper = prototype("gripper", at(0, 0, 0.2), false,
+                                        {link("palm", scene::Box{{0.01, 0.01, 0.01}}, 1)});
       for (const double side : {-1.0, 1.0}) {
-        gripper.links.push_back(link(side < 0 ? "left" : "right", scene::Box{{0.02, 0.01, 0.04}}, 0.02));
-        scene::Joint each = joint(scene::JointType::prismatic, -side * Vector3::UnitY(), at(0, side * 0.05, -0.2), {});
+        gripper.links.push_back(
+            link(side < 0 ? "left" : "right", scene::Box{{0.02, 0.01, 0.04}}, 0.02));
+        scene::Joint each = joint(scene::JointType::prismatic, -side * Vector3::UnitY(),
+                                  at(0, side * 0.05, -0.2), {});
         each.child = gripper.links.size() - 1;
         gripper.joints.push_back(each);
       }
@@ -133,7 +146,8 @@ TEST(NewtonThrown, AGripperClosesOnABlock) {
         world.set_target(world.joint(0, i), 0.05);
       }
       run(world, 1, 1 / hz);
-      for (int i = 0; i < 2; ++i) EXPECT_NEAR(world.position(world.joint(0, i)), 0.03, 1e-4) << hz << ' ' << force;
+      for (int i = 0; i < 2; ++i)
+        EXPECT_NEAR(world.position(world.joint(0, i)), 0.03, 1e-4) << hz << ' ' << force;
     }
   }
 }
@@ -164,8 +178,10 @@ TEST(NewtonThrown, WhatALimitJerksDownStopsAtTheFloor) {
     for (const double height : {0.3, 0.4, 0.5}) {
       World world(newton(true), 1 / hz);
       scene::Entity hopper = prototype("hopper", at(0, 0, height), true,
-                                       {link("foot", scene::Box{{0.2, 0.2, 0.05}}, 0.2), link("body", scene::Box{{0.1, 0.1, 0.1}}, 1)});
-      hopper.joints.push_back(joint(scene::JointType::prismatic, Vector3::UnitZ(), at(0, 0, 0.3), {}));
+                                       {link("foot", scene::Box{{0.2, 0.2, 0.05}}, 0.2),
+                                        link("body", scene::Box{{0.1, 0.1, 0.1}}, 1)});
+      hopper.joints.push_back(
+          joint(scene::JointType::prismatic, Vector3::UnitZ(), at(0, 0, 0.3), {}));
       hopper.joints[0].limit = {-0.005, 0.005};
       hopper.links[0].surface.restitution = 0.8;
       world.add(hopper);
@@ -207,7 +223,8 @@ TEST(NewtonThrown, APushStopsAtAWall) {
   }
 }
 
-// It rose by g h^2 / 2 in each substep, and through the ceiling: its speed at the end of each was none.
+// It rose by g h^2 / 2 in each substep, and through the ceiling: its speed at the end of each was
+// none.
 TEST(NewtonThrown, WhatAPushNearlyCarriesStaysBelowACeiling) {
   for (const double hz : long_runs::substep_rates()) {
     for (const double share : {0.9, 0.99, 0.999, 1.0, 1.001, 1.5}) {
@@ -220,7 +237,8 @@ TEST(NewtonThrown, WhatAPushNearlyCarriesStaysBelowACeiling) {
         world.step();
         ASSERT_LT(origin(world, 1).position.z(), -0.01 + 2e-6) << hz << ' ' << share << ' ' << i;
       }
-      EXPECT_LT(std::abs(origin(world, 1).position.z() + 0.01), share < 1 ? 1 : 1e-5) << hz << ' ' << share;
+      EXPECT_LT(std::abs(origin(world, 1).position.z() + 0.01), share < 1 ? 1 : 1e-5)
+          << hz << ' ' << share;
     }
   }
 }

@@ -40,9 +40,12 @@ TEST(Framework, PartsWithoutEffectGiveNotices) {
 TEST(Framework, ALengthBetweenTwoTicksIsTold) {
   SceneText text;
   text.framework = R"(<framework><experiment ticks_per_second="10" length="1.25"/></framework>)";
-  EXPECT_EQ(count_containing(notices(text.read()), "2:54: length=\"1.25\" of <experiment> is 12.5 ticks of 1/10 s: the run "
-                                                   "has 12, and ends after 1.2 s"),
-            1u) << all_problems(text.read());
+  EXPECT_EQ(
+      count_containing(notices(text.read()),
+                       "2:54: length=\"1.25\" of <experiment> is 12.5 ticks of 1/10 s: the run "
+                       "has 12, and ends after 1.2 s"),
+      1u)
+      << all_problems(text.read());
   text.framework = R"(<framework><experiment ticks_per_second="100" length="0.29"/></framework>)";
   EXPECT_TRUE(notices(text.read()).empty());  // 28.999999999999996
 }
@@ -58,25 +61,29 @@ TEST(Framework, TheFirstOfTwoIsUsed) {
 
 TEST(Engines, NegativeGravityIsDoubted) {
   SceneText text;
-  text.engines = R"(<physics_engines><dynamics3d id="d"><gravity g="-9.8"/></dynamics3d></physics_engines>)";
+  text.engines =
+      R"(<physics_engines><dynamics3d id="d"><gravity g="-9.8"/></dynamics3d></physics_engines>)";
   const ReadResult result = text.read();
   ASSERT_TRUE(result.ok()) << all_problems(result);
-  EXPECT_NE(all_problems(result).find("g=\"-9.8\" of <gravity> lets everything fall up"), std::string::npos)
+  EXPECT_NE(all_problems(result).find("g=\"-9.8\" of <gravity> lets everything fall up"),
+            std::string::npos)
       << all_problems(result);
 }
 
 TEST(Engines, StrongGravityAndManyIterationsAreDoubted) {
   SceneText text;
   const auto read = [&](const std::string& iterations, const std::string& g) {
-    text.engines = "<physics_engines><dynamics3d id=\"d\" iterations=\"" + iterations + "\"><gravity g=\"" + g +
-                   "\"/></dynamics3d></physics_engines>";
+    text.engines = "<physics_engines><dynamics3d id=\"d\" iterations=\"" + iterations +
+                   "\"><gravity g=\"" + g + "\"/></dynamics3d></physics_engines>";
     const ReadResult result = text.read();
     EXPECT_TRUE(result.ok());
     return all_problems(result);
   };
-  EXPECT_NE(read("10", "-1e6").find("g=\"-1e6\" of <gravity> is stronger than 1000 m/s^2"), std::string::npos);
+  EXPECT_NE(read("10", "-1e6").find("g=\"-1e6\" of <gravity> is stronger than 1000 m/s^2"),
+            std::string::npos);
   EXPECT_EQ(read("10", "-1e6").find("fall up"), std::string::npos) << "one sentence says it";
-  EXPECT_NE(read("10001", "9.8").find("iterations=\"10001\" of <dynamics3d> are so many substeps"), std::string::npos);
+  EXPECT_NE(read("10001", "9.8").find("iterations=\"10001\" of <dynamics3d> are so many substeps"),
+            std::string::npos);
   EXPECT_EQ(read("10000", "1000"), read("10", "9.8"));
 }
 

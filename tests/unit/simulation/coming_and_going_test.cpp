@@ -96,8 +96,10 @@ TEST(Move, APlaceIsFreeWhereNothingIsOverlapped) {
   EXPECT_EQ(overlapped(0, 0.01, 0), std::nullopt) << "it is where it was itself";
   EXPECT_EQ(overlapped(0, 0.5, -0.05), std::nullopt) << "the floor does not count";
   world.step(10);
-  EXPECT_EQ(overlapped(0, simulation.state().origins[0].position.x(), simulation.state().origins[0].position.z()),
-            std::nullopt) << "what rests may stay";
+  EXPECT_EQ(overlapped(0, simulation.state().origins[0].position.x(),
+                       simulation.state().origins[0].position.z()),
+            std::nullopt)
+      << "what rests may stay";
 }
 
 /// A body that lies on another one overlaps it a little.
@@ -105,7 +107,8 @@ TEST(Move, WhatRestsOnOthersMayStayAndComeBack) {
   World world({"", "", box("a", "0,0,0") + box("b", "0,0,0.1"), gravity + "<floor/>"});
   world.step(20);
   const Simulation& simulation = world.simulation;
-  EXPECT_EQ(overlapped_by(simulation, simulation.entities()[1], simulation.state().origins[1], 1), std::nullopt);
+  EXPECT_EQ(overlapped_by(simulation, simulation.entities()[1], simulation.state().origins[1], 1),
+            std::nullopt);
 }
 
 TEST(Spawn, WhereSomethingStandsIsRefusedAndChangesNothing) {

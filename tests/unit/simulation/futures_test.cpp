@@ -59,7 +59,8 @@ class RandomCommands {
                    world::Commands& commands) {
     for (std::size_t i = 0; i < layout.radios.size(); ++i) {
       if (!layout.radios[i].sends || random.uniform(0, 1) < 0.7) continue;
-      const std::uint8_t bytes[] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(random.uniform(0, 255))};
+      const std::uint8_t bytes[] = {static_cast<std::uint8_t>(i),
+                                    static_cast<std::uint8_t>(random.uniform(0, 255))};
       commands.radio_messages.add(i, bytes);
     }
   }
@@ -99,7 +100,8 @@ void Futures::compare(const scene::Scene& scene, const Extent& extent) const {
   const double latest = extent.latest;
   math::RandomStream random(3, GetParam().filename().string());
   std::map<std::uint64_t, Snapshot> snapshots;
-  while (snapshots.size() < moments) snapshots[static_cast<std::uint64_t>(random.uniform(0, latest))];
+  while (snapshots.size() < moments)
+    snapshots[static_cast<std::uint64_t>(random.uniform(0, latest))];
   const std::uint64_t last = snapshots.rbegin()->first + after;
 
   Simulation simulation(scene, {7});
@@ -152,7 +154,8 @@ TEST_P(Futures, AreThoseOfAWorldThatWasNeverInterrupted) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Futures, ::testing::ValuesIn(scenes()), [](const auto& scene) {
   std::string name = (scene.param.parent_path().filename() / scene.param.stem()).string();
-  std::ranges::replace_if(name, [](char c) { return c == '-' || c == '.' || c == '/'; }, '_');
+  std::ranges::replace_if(
+      name, [](char c) { return c == '-' || c == '.' || c == '/'; }, '_');
   return name;
 });
 

@@ -23,15 +23,16 @@ std::string loose_box(const std::string& id, const std::string& position) {
 
 struct Case {
   Case()
-      : read(SmallScene{"", "",
-                        loose_box("a", "0,0,.3") + loose_box("b", ".02,0,.5") + robot("r", "1,0,.1", ""),
-                        ground}
+      : read(SmallScene{
+            "", "",
+            loose_box("a", "0,0,.3") + loose_box("b", ".02,0,.5") + robot("r", "1,0,.1", ""),
+            ground}
                  .read_all()),
         simulation(read.scene, {1}) {}
 
   scene::Entity entity(const std::string& xml) const {
-    scene::Addition addition = read.additions.read(xml, read.scene, 1 << 20,
-                                                   [](const std::string&) { return false; });
+    scene::Addition addition =
+        read.additions.read(xml, read.scene, 1 << 20, [](const std::string&) { return false; });
     if (!addition.ok()) throw scene::SceneError(std::move(addition.problems));
     return std::move(addition.entity);
   }
@@ -226,12 +227,14 @@ TEST(Snapshot, WithMorePairsThanTheWorldCanHaveIsRefused) {
   constexpr std::uint64_t more = 100;
   pairs += more;
   std::memcpy(&wrong.state[at], &pairs, sizeof pairs);
-  wrong.state.insert(wrong.state.begin() + static_cast<std::ptrdiff_t>(at + sizeof pairs), more, {});
+  wrong.state.insert(wrong.state.begin() + static_cast<std::ptrdiff_t>(at + sizeof pairs), more,
+                     {});
   try {
     world.simulation.restore(world.read.scene, wrong);
     FAIL() << "it was restored";
   } catch (const SnapshotError& error) {
-    EXPECT_NE(std::string(error.what()).find("contacts/pairs' has more elements"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("contacts/pairs' has more elements"),
+              std::string::npos)
         << error.what();
   }
 }
@@ -243,7 +246,8 @@ TEST(Snapshot, TakesNoMemoryForElementsThatAreNotThere) {
     std::memcpy(bytes.data(), &count, sizeof count);
     std::vector<WorldEdit> read;
     auto archive = math::Archive::reader(bytes);
-    EXPECT_THROW(archive.list("acts", read, [&](WorldEdit& each) { archive("xml", each.xml); }), math::ArchiveError);
+    EXPECT_THROW(archive.list("acts", read, [&](WorldEdit& each) { archive("xml", each.xml); }),
+                 math::ArchiveError);
     return read.capacity();
   };
   EXPECT_LE(memory_for(1000), 256u) << "each has eight bytes";

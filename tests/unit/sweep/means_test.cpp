@@ -45,8 +45,8 @@ Result timed(std::size_t run, double time, Outcome outcome = Outcome::finished) 
 }
 
 TEST(Group, AveragesOverAllThatWasNotAskedFor) {
-  const std::vector<Result> results = {timed(1, 1), timed(2, 3), timed(3, 5), timed(4, 7),
-                                       timed(5, 10), timed(6, 99, Outcome::failed)};
+  const std::vector<Result> results = {timed(1, 1), timed(2, 3),  timed(3, 5),
+                                       timed(4, 7), timed(5, 10), timed(6, 99, Outcome::failed)};
   const std::vector<std::size_t> axes = {0};
   const std::vector<std::string> measures = {"time", "ticks"};
   const auto groups = group(two_axes(), results, axes, measures, 0.95);
@@ -68,7 +68,8 @@ TEST(Axes, HaveShortNames) {
     axis_named(two_axes(), "gian");
     FAIL();
   } catch (const text::UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find("did you mean 'gain'"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("did you mean 'gain'"), std::string::npos)
+        << error.what();
   }
 }
 

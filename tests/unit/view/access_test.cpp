@@ -12,7 +12,7 @@ namespace {
 const Rules local{"127.0.0.1", false, false, "0123456789abcdef"};
 
 Permission ask(const Rules& rules, std::string_view host, std::optional<std::string_view> origin,
-           std::string_view target) {
+               std::string_view target) {
   return permission_of(rules, {host, origin, target});
 }
 

@@ -27,7 +27,8 @@ struct Watched {
       entries.push_back({{"id", id}, {"channelId", id}});
     }
     std::ranges::sort(ids);
-    hub.receive(viewer, nlohmann::json{{"op", "subscribe"}, {"subscriptions", entries}}.dump(), true);
+    hub.receive(viewer, nlohmann::json{{"op", "subscribe"}, {"subscriptions", entries}}.dump(),
+                true);
     while (hub.next(viewer)) {
     }
   }
@@ -49,7 +50,8 @@ struct Watched {
     while (auto item = hub.next(viewer)) {
       if (!item->content) continue;
       for (const channels::Channel& channel : world.channels.list()) {
-        if (channel.id == item->channel) all.push_back(channel.topic + " " + tick_in(channel, *item));
+        if (channel.id == item->channel)
+          all.push_back(channel.topic + " " + tick_in(channel, *item));
       }
     }
     return all;
@@ -114,7 +116,8 @@ TEST(Feed, AnswersGoWithTheirTicks) {
     watched.feed.show_commands(watched.moment(), watched.ids);
     watched.world.simulation.step();
   }
-  EXPECT_EQ(watched.sent(), (Sent{"/poses 2", "/robots/arm/command 2", "/poses 3", "/robots/arm/command 3"}));
+  EXPECT_EQ(watched.sent(),
+            (Sent{"/poses 2", "/robots/arm/command 2", "/poses 3", "/robots/arm/command 3"}));
 }
 
 TEST(Feed, TicksOfAnEarlierPopulationAreNotShown) {

@@ -38,7 +38,8 @@ struct Bench {
     return all;
   }
   ViewerRequests requests;
-  Hub hub{{"1", "s", "id", false}, {{"real_time_factor", 1.0}, {"phase", std::string("x")}}, requests};
+  Hub hub{
+      {"1", "s", "id", false}, {{"real_time_factor", 1.0}, {"phase", std::string("x")}}, requests};
 };
 
 using Sent = std::vector<std::string>;
@@ -140,7 +141,8 @@ TEST(Hub, ChannelsComeAndGo) {
 std::vector<channels::Channel> large_channels(std::uint32_t first, std::uint32_t last) {
   static const channels::Schema large{"ziggurat.v1.Poses", std::string(100'000, 'x')};
   std::vector<channels::Channel> list;
-  for (std::uint32_t id = first; id <= last; ++id) list.push_back({id, "/" + std::to_string(id), Kind::poses, &large, 0});
+  for (std::uint32_t id = first; id <= last; ++id)
+    list.push_back({id, "/" + std::to_string(id), Kind::poses, &large, 0});
   return list;
 }
 
@@ -169,14 +171,18 @@ TEST(Hub, ALongListOfChannelsIsMadeInPartsAsTheViewerReads) {
   list.erase(list.begin() + 4);  // 5, which the viewer does not know yet
   list.erase(list.begin() + 1);  // 2, which it knows
   bench.hub.set_channels(list);
-  EXPECT_EQ(nlohmann::json::parse(bench.hub.next(viewer)->head).at("channelIds"), nlohmann::json({2}));
-  EXPECT_EQ(told(bench, viewer, "advertise"), (std::vector<std::vector<std::uint32_t>>{{4, 6, 7}, {8, 9, 10}, {11, 12}}));
+  EXPECT_EQ(nlohmann::json::parse(bench.hub.next(viewer)->head).at("channelIds"),
+            nlohmann::json({2}));
+  EXPECT_EQ(told(bench, viewer, "advertise"),
+            (std::vector<std::vector<std::uint32_t>>{{4, 6, 7}, {8, 9, 10}, {11, 12}}));
   for (int i = 0; i < 100; ++i) {
     bench.hub.set_channels(large_channels(1, 1));
     bench.hub.set_channels(large_channels(1, 4));
   }
-  EXPECT_LT(idle.send_queue.size(), 1000u) << "nothing but serverInfo waits for one that does not read";
-  EXPECT_EQ(told(bench, idle, "advertise"), (std::vector<std::vector<std::uint32_t>>{{1, 2, 3}, {4}}));
+  EXPECT_LT(idle.send_queue.size(), 1000u)
+      << "nothing but serverInfo waits for one that does not read";
+  EXPECT_EQ(told(bench, idle, "advertise"),
+            (std::vector<std::vector<std::uint32_t>>{{1, 2, 3}, {4}}));
   const auto gone = nlohmann::json::parse(bench.hub.next(viewer)->head).at("channelIds");
   EXPECT_LE(gone.size(), 12u) << "each channel is told to be gone once";
 }
@@ -188,8 +194,10 @@ TEST(Hub, AChannelThatGoesAndComesAgainIsToldAnew) {
   bench.sent(viewer);
   bench.hub.show(6, std::vector{message_of(2, "poses")});
   bench.hub.set_channels({{1, "/world", Kind::world, &schema, 0}});
-  bench.hub.set_channels({{1, "/world", Kind::world, &schema, 0}, {2, "/poses", Kind::poses, &schema, 0}});
-  EXPECT_EQ(bench.sent(viewer), (Sent{"unadvertise", "advertise"})) << "and no message of the old one";
+  bench.hub.set_channels(
+      {{1, "/world", Kind::world, &schema, 0}, {2, "/poses", Kind::poses, &schema, 0}});
+  EXPECT_EQ(bench.sent(viewer), (Sent{"unadvertise", "advertise"}))
+      << "and no message of the old one";
   bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})");
   bench.hub.show(7, std::vector{message_of(2, "poses")});
   EXPECT_EQ(bench.sent(viewer), Sent{"poses"});
@@ -204,13 +212,14 @@ TEST(Hub, TheGraphIsSentOnceForManyQuestions) {
   bench.hub.set_channels({{1, "/world", Kind::world, &schema, 0}});
   EXPECT_EQ(bench.sent(viewer), (Sent{"unadvertise", "connectionGraphUpdate"}));
   bench.say(viewer, R"({"op":"unsubscribeConnectionGraph"})");
-  bench.hub.set_channels({{1, "/world", Kind::world, &schema, 0}, {2, "/poses", Kind::poses, &schema, 0}});
+  bench.hub.set_channels(
+      {{1, "/world", Kind::world, &schema, 0}, {2, "/poses", Kind::poses, &schema, 0}});
   EXPECT_EQ(bench.sent(viewer), Sent{"advertise"});
 }
 
 std::string call_of(std::uint32_t service, const std::string& payload) {
-  return std::string("\x02") + static_cast<char>(service) + std::string(3, '\0') + std::string(4, '\7') +
-         std::string("\4\0\0\0json", 8) + payload;
+  return std::string("\x02") + static_cast<char>(service) + std::string(3, '\0') +
+         std::string(4, '\7') + std::string("\4\0\0\0json", 8) + payload;
 }
 
 /// Clocks as their times [ns], other messages as -1.
@@ -218,7 +227,8 @@ std::vector<std::int64_t> clocks(Bench& bench, Viewer& viewer) {
   std::vector<std::int64_t> all;
   while (auto item = bench.hub.next(viewer)) {
     std::int64_t time_ns = -1;
-    if (item->head.starts_with('\x02')) std::memcpy(&time_ns, item->head.data() + 1, sizeof time_ns);
+    if (item->head.starts_with('\x02'))
+      std::memcpy(&time_ns, item->head.data() + 1, sizeof time_ns);
     all.push_back(time_ns);
   }
   return all;
@@ -234,7 +244,9 @@ TEST(Hub, EachViewerIsToldTheClockBeforeItsFirstMessage) {
   bench.hub.show(5, std::vector{message_of(1, "world")});
   EXPECT_EQ(clocks(bench, first), (std::vector<std::int64_t>{5, -1}));
   EXPECT_TRUE(clocks(bench, second).empty()) << "it has asked for nothing";
-  bench.say(second, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":2}]})");
+  bench.say(
+      second,
+      R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":2}]})");
   EXPECT_EQ(clocks(bench, second), (std::vector<std::int64_t>{5, -1})) << "with the newest message";
   bench.hub.show(5, std::vector{message_of(1, "world"), message_of(2, "poses")});
   EXPECT_EQ(clocks(bench, first), std::vector<std::int64_t>{-1});
@@ -249,14 +261,17 @@ TEST(Hub, AViewerThatComesWithinATimeIsToldTheClockWhichStartsAfterZero) {
     bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})");
     bench.sent(viewer);
     bench.hub.show(time_ns, std::vector{message_of(2, "poses")});
-    EXPECT_EQ(clocks(bench, viewer), (std::vector<std::int64_t>{std::max<std::int64_t>(time_ns, 1), -1}));
+    EXPECT_EQ(clocks(bench, viewer),
+              (std::vector<std::int64_t>{std::max<std::int64_t>(time_ns, 1), -1}));
   }
 }
 
 TEST(Hub, TheClockStaysWithWhatIsKeptOfADroppedTick) {
   Bench bench;
   Viewer& viewer = bench.hub.add(false);
-  bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":2}]})");
+  bench.say(
+      viewer,
+      R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":2}]})");
   bench.sent(viewer);
   bench.hub.show(5, std::vector{message_of(1, "world")});
   for (int i = 0; i < 10; ++i) bench.hub.show(5, std::vector{message_of(2, "poses")});

@@ -26,8 +26,7 @@ std::string marks(SendQueue& queue) {
 TEST(SendQueue, DropsOldTicksWholeAndKeepsTheNewest) {
   SendQueue queue;
   for (const char tick : {'a', 'b', 'c', 'd', 'e', 'f'}) {
-    queue.add_frame(
-        {item(1, 200'000, Keep::nothing, tick), item(2, 200'000, Keep::nothing, tick)});
+    queue.add_frame({item(1, 200'000, Keep::nothing, tick), item(2, 200'000, Keep::nothing, tick)});
     EXPECT_LE(queue.size(), SendQueue::most_frames);
   }
   EXPECT_EQ(marks(queue), "eeff");
@@ -54,7 +53,8 @@ TEST(SendQueue, ATickThatWasBegunIsSentToItsEnd) {
 TEST(SendQueue, KeepsTheNewestWorldAndEachLine) {
   SendQueue queue;
   const auto fill = [&](char world, char line) {
-    queue.add_frame({item(7, 10, Keep::newest, world), item(8, 10, Keep::all, line), item(1, 3'000'000)});
+    queue.add_frame(
+        {item(7, 10, Keep::newest, world), item(8, 10, Keep::all, line), item(1, 3'000'000)});
   };
   fill('A', '1');
   fill('B', '2');
@@ -69,7 +69,7 @@ TEST(SendQueue, KeepsTheNewestWorldAndEachLine) {
 TEST(SendQueue, ManyLinesDoNotTakeTheWorldWithThem) {
   SendQueue queue;
   queue.add_frame({item(7, 10, Keep::newest, 'W'), item(8, SendQueue::most_kept, Keep::all, '1'),
-                    item(8, 10, Keep::all, '2')});
+                   item(8, 10, Keep::all, '2')});
   for (std::size_t i = 0; i < SendQueue::most_waiting; ++i) queue.add_frame({item(1, 10)});
   const std::string all = marks(queue);
   EXPECT_EQ(all.substr(0, 2), "W2") << "the oldest line is too much";

@@ -30,9 +30,10 @@ class RawViewer {
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     socket_ = ::socket(AF_INET, SOCK_STREAM, 0);
     EXPECT_EQ(::connect(socket_, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
-    send("GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-         "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n"
-         "Sec-WebSocket-Protocol: foxglove.websocket.v1\r\n\r\n");
+    send(
+        "GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n"
+        "Sec-WebSocket-Protocol: foxglove.websocket.v1\r\n\r\n");
   }
   ~RawViewer() { ::close(socket_); }
 

@@ -99,7 +99,8 @@ TEST(Cost, TextCountsByItsLength) {
   message.mutable_command()->add_log()->set_text(std::string(16 << 10, 'x'));
   message.mutable_command()->add_tag_payloads(std::string(16 << 10, 'x'));
   EXPECT_EQ(count_fields(message.SerializeAsString()), 4U + (16 << 10) / bytes_per_field);
-  message.mutable_command()->mutable_log(0)->set_text(std::string(most_fields * bytes_per_field, 'x'));
+  message.mutable_command()->mutable_log(0)->set_text(
+      std::string(most_fields * bytes_per_field, 'x'));
   Inbox inbox;
   EXPECT_EQ(inbox.parse(message.SerializeAsString()), Inbox::Kind::malformed);
 }

@@ -1,11 +1,12 @@
 // Devices on the wire: what goes where, and what is refused.
 
+#include "wire/devices.h"
+
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "wire/device_wire.h"
-#include "wire/devices.h"
 #include "wire/reset_commands.h"
 #include "world/limits.h"
 
@@ -250,7 +251,8 @@ TEST_F(DeviceWire, ReceiversKeepTheirPlacesAroundRobotsWithoutDevices) {
   EXPECT_EQ(observation.range_and_bearing(1).robot(), 2U);
 }
 
-// The data of the same sender are copied for each packet, and each message takes memory beside its content.
+// The data of the same sender are copied for each packet, and each message takes memory beside its
+// content.
 TEST_F(DeviceWire, WhatItHearsCountsBeforeAMessageIsMade) {
   world::Observations seen = run.observations();
   seen.range_and_bearing_data.resize(65536);
@@ -263,7 +265,8 @@ TEST_F(DeviceWire, WhatItHearsCountsBeforeAMessageIsMade) {
   seen.radio_messages.add(1, {});
   seen.radio_messages.entries.assign(1000, seen.radio_messages.entries[0]);
   EXPECT_TRUE(outbox.observation(roster, seen, {}, 64'000));
-  EXPECT_FALSE(outbox.observation(roster, seen, {}, 31'999)) << "32 bytes each, though they are 4 bytes in the message";
+  EXPECT_FALSE(outbox.observation(roster, seen, {}, 31'999))
+      << "32 bytes each, though they are 4 bytes in the message";
 }
 
 TEST_F(DeviceWire, ASessionThatHearsTooMuchGetsNoMessage) {

@@ -1,4 +1,5 @@
-// States as bytes, of anyone: what is written to files and sent to viewers has the size that its camera says.
+// States as bytes, of anyone: what is written to files and sent to viewers has the size that its
+// camera says.
 
 #include "world/archive.h"
 
@@ -41,7 +42,8 @@ TEST(Archive, TakesPicturesOfTheSizeOfTheirCameraOnly) {
   EXPECT_EQ(camera.fault_of(0), "") << "none was taken yet";
   EXPECT_EQ(camera.fault_of(24), "");
   for (const std::size_t size : {1, 23, 25, 4096}) {
-    EXPECT_NE(camera.fault_of(size).find("another size than its camera"), std::string::npos) << size;
+    EXPECT_NE(camera.fault_of(size).find("another size than its camera"), std::string::npos)
+        << size;
   }
 }
 

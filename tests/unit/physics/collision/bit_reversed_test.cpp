@@ -1,8 +1,8 @@
-#include "physics/collision/sphere_grid.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "physics/collision/sphere_grid.h"
 
 namespace ziggurat::physics {
 namespace {

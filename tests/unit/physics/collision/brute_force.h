@@ -108,8 +108,8 @@ inline std::vector<btVector3> spread(int count) {
   return directions;
 }
 
-/// The widest gap over all directions between convex bodies: a search in all directions, then refined
-/// about the best ones. For separate bodies this is their distance.
+/// The widest gap over all directions between convex bodies: a search in all directions, then
+/// refined about the best ones. For separate bodies this is their distance.
 inline Gap true_gap(const Solid& a, const Solid& b) {
   if (std::holds_alternative<HalfSpace>(b.shape)) {
     const btVector3 up = b.pose.getBasis().getColumn(2);

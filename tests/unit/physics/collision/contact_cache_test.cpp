@@ -10,8 +10,9 @@ namespace {
 using namespace testing;
 
 TEST(Contacts, AtTooManyPointsAreAFault) {
-  EXPECT_EQ(fault_of_crowd(newton(), 1000),
-            "bodies touch at more than 1000000 points; place fewer bodies, or farther from each other");
+  EXPECT_EQ(
+      fault_of_crowd(newton(), 1000),
+      "bodies touch at more than 1000000 points; place fewer bodies, or farther from each other");
 }
 
 }  // namespace

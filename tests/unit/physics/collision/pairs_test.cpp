@@ -127,13 +127,17 @@ btScalar least(const Manifold& contacts) {
 
 // Corners of the clipping planes stand beyond the rim by up to 2 % of the radius.
 TEST(CylinderOn, TouchesNowhereBeyondTheSmallerRim) {
-  const btTransform below = btTransform::getIdentity(), above(btQuaternion::getIdentity(), btVector3(0, 0, 0.1));
+  const btTransform below = btTransform::getIdentity(),
+                    above(btQuaternion::getIdentity(), btVector3(0, 0, 0.1));
   const Cylinder large{0.15, 0.05}, small{0.1, 0.05};
   const Box slab{{0.3, 0.3, 0.05}};
-  for (const auto& [lower, upper] : {std::pair<Shape, Shape>{large, small}, {small, large}, {slab, small}, {small, slab}}) {
+  for (const auto& [lower, upper] :
+       {std::pair<Shape, Shape>{large, small}, {small, large}, {slab, small}, {small, slab}}) {
     const Manifold contacts = find(upper, above, lower, below, 1e-3, Support::face);
     btScalar farthest = 0;
-    for (int i = 0; i < contacts.count; ++i) farthest = std::max(farthest, std::hypot(contacts.points[i].on_b.x(), contacts.points[i].on_b.y()));
+    for (int i = 0; i < contacts.count; ++i)
+      farthest =
+          std::max(farthest, std::hypot(contacts.points[i].on_b.x(), contacts.points[i].on_b.y()));
     EXPECT_GE(contacts.count, 4);
     EXPECT_NEAR(farthest, 0.1, 1e-9);
   }
@@ -192,8 +196,8 @@ TEST_P(AllPairs, AgreeWithBruteForce) {
 TEST(SphereCylinder, HasANormalWhereTheCentreIsOnTheSide) {
   for (int i = 0; i < 20000; ++i) {
     const btVector3 out(std::cos(i * 3e-4), std::sin(i * 3e-4), 0);
-    const Manifold found = find(ball, btTransform(btMatrix3x3::getIdentity(), 0.05 * out), Cylinder{0.05, 0.1},
-                                btTransform::getIdentity(), 0.01);
+    const Manifold found = find(ball, btTransform(btMatrix3x3::getIdentity(), 0.05 * out),
+                                Cylinder{0.05, 0.1}, btTransform::getIdentity(), 0.01);
     ASSERT_EQ(found.count, 1);
     ASSERT_NEAR(found.normal.dot(out), 1, 1e-12) << i;
     ASSERT_NEAR(found.points[0].distance, -0.005, 1e-12) << i;
@@ -238,10 +242,12 @@ TEST(BoxBox, APlankOnAnEdgeTouchesItWithBothOfItsOwn) {
   const btVector3 edge(0, 0.04, 0.01);  // its middle, on the lower plank
   for (const btScalar lean : {0.05, 0.1, 0.15}) {
     for (const btScalar roll : {-0.02, -0.01, 0.01, 0.02}) {
-      const btMatrix3x3 turned = btMatrix3x3(btQuaternion({1, 0, 0}, -lean)) * btMatrix3x3(btQuaternion({0, 1, 0}, roll)) *
+      const btMatrix3x3 turned = btMatrix3x3(btQuaternion({1, 0, 0}, -lean)) *
+                                 btMatrix3x3(btQuaternion({0, 1, 0}, roll)) *
                                  btMatrix3x3(btQuaternion({0, 0, 1}, std::numbers::pi / 2));
       const btTransform upper(turned, edge + turned.getColumn(2) * plank.half.z());
-      const Manifold found = find(plank, upper, plank, btTransform::getIdentity(), 0.005, Support::face, 0.005);
+      const Manifold found =
+          find(plank, upper, plank, btTransform::getIdentity(), 0.005, Support::face, 0.005);
       btScalar left = 1, right = 1;
       for (int i = 0; i < found.count; ++i) {
         btScalar& side = found.points[i].on_b.x() < 0 ? left : right;

@@ -51,7 +51,8 @@ TEST(Reduce, KeepsTheDeepestAndAtMostFour) {
 
 TEST(Reduce, IsStableUnderRounding) {
   math::RandomStream random(1, "perturb");
-  // Twelve points on a regular outline at the same depth, from any of them on: every choice is a tie.
+  // Twelve points on a regular outline at the same depth, from any of them on: every choice is a
+  // tie.
   const auto ring = [&](btScalar noise, int first = 0) {
     constexpr btScalar pressed_in = 1e-7;  // as far as loads press bodies in [m]
     Manifold contacts;
@@ -116,7 +117,8 @@ TEST(Lines, ALyingCylinderTouchesAlongItsSide) {
   EXPECT_EQ(parallel.count, 2);
 }
 
-// GJK finds no direction where they touch, and one between the faces of the edge where their cores are shrunk.
+// GJK finds no direction where they touch, and one between the faces of the edge where their cores
+// are shrunk.
 TEST(Lines, ALyingCylinderTouchesAnEdgeThatIsJustBesideItsLine) {
   const btScalar radius = 0.05, quarter = std::numbers::pi / 2;
   const Cylinder log{radius, 0.05};
@@ -124,7 +126,8 @@ TEST(Lines, ALyingCylinderTouchesAnEdgeThatIsJustBesideItsLine) {
   for (const btScalar above : {-1e-7, -1e-9, 0.0, 1e-9}) {
     for (const btScalar beyond : {0.0, 1e-10, 1e-9, 3e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4}) {
       for (const btScalar turn : {0.0, 1e-8, 1e-4}) {
-        SCOPED_TRACE(::testing::Message() << "above " << above << ", beyond " << beyond << ", turn " << turn);
+        SCOPED_TRACE(::testing::Message()
+                     << "above " << above << ", beyond " << beyond << ", turn " << turn);
         btTransform pose = at(0.15 + beyond, 0.03, 0.05 + radius + above, {0, 0, 1}, turn);
         pose.setRotation(pose.getRotation() * btQuaternion(btVector3(1, 0, 0), quarter));
         const Manifold contacts = find(log, pose, table, at(0, 0, 0), 1e-3, Support::face);
@@ -157,7 +160,8 @@ Manifold of_leaning_cards(btScalar up) {
   const btScalar lean = 0.3;
   const auto pose = [&](btScalar side, btScalar z) {
     const btTransform turn = at(0, 0, 0, {1, 0, 0}, side * lean);
-    return btTransform(turn.getBasis(), btVector3(0, 0, z) - turn * btVector3(0, -side * 0.0005, 0.04));
+    return btTransform(turn.getBasis(),
+                       btVector3(0, 0, z) - turn * btVector3(0, -side * 0.0005, 0.04));
   };
   return find(card, pose(-1, up), card, pose(1, 0), 1e-3, Support::face);
 }

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "../bench_scene.h"
-#include "physics/placement.h"
 #include "physics/collision/shape.h"
+#include "physics/placement.h"
 
 namespace ziggurat::physics {
 namespace {

@@ -26,7 +26,8 @@ Vector3 angular_momentum(const Tree& tree) {
 // its momentum becomes L - h w x L. The torque holds a body that rolls in a circle, at any substep.
 TEST(FreeMotion, GyroscopicTorquesActInSubstepsOfAnyLength) {
   Workspace work;
-  Tree body = testing::box({0.1, 0.2, 0.3}, 2, {Vector3::Zero(), Quaternion(0.5, 0.1, 0.7, 0.2).normalized()});
+  Tree body = testing::box({0.1, 0.2, 0.3}, 2,
+                           {Vector3::Zero(), Quaternion(0.5, 0.1, 0.7, 0.2).normalized()});
   body.v = {0.7, -0.4, 0.9, 0, 0, 0};
   velocity_kinematics(body);
   const Vector3 omega(0.7, -0.4, 0.9), before = angular_momentum(body);

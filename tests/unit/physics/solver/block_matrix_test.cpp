@@ -45,7 +45,8 @@ TEST(BlockMatrix, SolvesUnsymmetricSystemsWithNegativePivots) {
   EXPECT_LT((b - x).norm(), 1e-11);
 }
 
-// A heap of mechanisms whose factors would take 18 GB is solved by passes: it takes no memory to find that out.
+// A heap of mechanisms whose factors would take 18 GB is solved by passes: it takes no memory to
+// find that out.
 TEST(BlockMatrix, TellsItsWorkBeforeItTakesMemory) {
   const std::vector<int> sizes(300, 160);
   std::vector<std::pair<int, int>> couplings;

@@ -9,7 +9,8 @@ namespace {
 
 using Rows = std::array<double, Constraint::most_rows>;
 
-/// A contact with all kinds of friction: bounds of 1 N s, 0.04 and 0.02 N m s at a normal impulse of 2 N s.
+/// A contact with all kinds of friction: bounds of 1 N s, 0.04 and 0.02 N m s at a normal impulse
+/// of 2 N s.
 Constraint contact() {
   ContactPoint point;
   point.friction = 0.5;
@@ -28,7 +29,8 @@ void expect_obeyed(const Constraint& constraint, const Rows& u) {
   linearise(constraint, u.data(), linear);
   for (int r = 0; r < constraint.rows; ++r) {
     double impulse = linear.constant[r];
-    for (int c = 0; c < constraint.rows; ++c) impulse -= linear.hessian[r * constraint.rows + c] * u[c];
+    for (int c = 0; c < constraint.rows; ++c)
+      impulse -= linear.hessian[r * constraint.rows + c] * u[c];
     EXPECT_NEAR(impulse, constraint.impulse[r], 1e-12) << r;
   }
 }
@@ -60,7 +62,9 @@ TEST(ContactLaw, HasTheDerivativesOfItsRegularisedImpulses) {
   constexpr double step = 1e-7, regularisation = 0.1;
   Constraint constraint = contact();
   constraint.multiplier = {2, 0.1, 0.2, 0.01, 0.005, 0.002};
-  for (const Rows& u : {Rows{-0.1, 0.01, 0.02, 0.01, 0.01, 0.01}, Rows{-0.1, 0.3, 0.5, 0.4, -0.2, 0.1}, Rows{0.1, 0.3, 0.01, 0.4, 0.01, -0.02}}) {
+  for (const Rows& u :
+       {Rows{-0.1, 0.01, 0.02, 0.01, 0.01, 0.01}, Rows{-0.1, 0.3, 0.5, 0.4, -0.2, 0.1},
+        Rows{0.1, 0.3, 0.01, 0.4, 0.01, -0.02}}) {
     Rows impulse, more, less;
     LinearisedLaw linear;
     regularise(constraint, u.data(), regularisation, true, impulse.data(), &linear);
@@ -70,7 +74,8 @@ TEST(ContactLaw, HasTheDerivativesOfItsRegularisedImpulses) {
       regularise(constraint, above.data(), regularisation, true, more.data(), nullptr);
       regularise(constraint, below.data(), regularisation, true, less.data(), nullptr);
       for (int r = 0; r < constraint.rows; ++r) {
-        EXPECT_NEAR(linear.hessian[r * constraint.rows + c], (less[r] - more[r]) / (2 * step), 1e-6) << r << ", " << c;
+        EXPECT_NEAR(linear.hessian[r * constraint.rows + c], (less[r] - more[r]) / (2 * step), 1e-6)
+            << r << ", " << c;
       }
     }
   }

@@ -38,7 +38,9 @@ TEST(GaussSeidel, KeepAPileNearTheContactLaw) {
   double late = 0;
   for (int i = 0; i < 100; ++i) {
     const Report report = world.step(0.01);
-    EXPECT_EQ(report.most_interior_point_steps + report.most_iterations + report.most_augmented_lagrangian_steps, 0);
+    EXPECT_EQ(report.most_interior_point_steps + report.most_iterations +
+                  report.most_augmented_lagrangian_steps,
+              0);
     EXPECT_LE(report.most_passes, world.system.solver().options.most_passes);
     if (i >= 70) late = std::max(late, report.residual);
   }

@@ -33,8 +33,8 @@ inline void keep_four(std::vector<BoxPoint>& points) {
                                         [](const auto& a, const auto& b) { return a.gap < b.gap; });
   std::swap(*deepest, points[0]);
   const Vector3 first = points[0].point, normal = points[0].normal;
-  const auto farthest = std::max_element(
-      points.begin() + 1, points.end(), [&](const BoxPoint& a, const BoxPoint& b) {
+  const auto farthest =
+      std::max_element(points.begin() + 1, points.end(), [&](const BoxPoint& a, const BoxPoint& b) {
         return (a.point - first).squaredNorm() < (b.point - first).squaredNorm();
       });
   std::swap(*farthest, points[1]);
@@ -93,7 +93,8 @@ inline void face_points(const OrientedBox& reference, int axis, const Vector3& o
   for (const Vector3& corner : polygon) {
     const double gap = out.dot(corner) - level;
     if (gap < reach) {
-      points.push_back({flip ? corner : Vector3(corner - out * gap), flip ? Vector3(-out) : out, gap});
+      points.push_back(
+          {flip ? corner : Vector3(corner - out * gap), flip ? Vector3(-out) : out, gap});
     }
   }
 }
@@ -136,8 +137,10 @@ inline void touch_boxes(const OrientedBox& a, const OrientedBox& b, double reach
     const int ka = (best_axis - 6) / 3, kb = (best_axis - 6) % 3;
     Vector3 on_a = a.centre, on_b = b.centre;  // middles of the edges
     for (int k = 0; k < 3; ++k) {
-      if (k != ka) on_a -= a.axes.col(k) * (a.axes.col(k).dot(best_normal) > 0 ? 1 : -1) * a.half[k];
-      if (k != kb) on_b += b.axes.col(k) * (b.axes.col(k).dot(best_normal) > 0 ? 1 : -1) * b.half[k];
+      if (k != ka)
+        on_a -= a.axes.col(k) * (a.axes.col(k).dot(best_normal) > 0 ? 1 : -1) * a.half[k];
+      if (k != kb)
+        on_b += b.axes.col(k) * (b.axes.col(k).dot(best_normal) > 0 ? 1 : -1) * b.half[k];
     }
     const Vector3 da = a.axes.col(ka), db = b.axes.col(kb), d = on_a - on_b;
     const double c = da.dot(db), s = 1 - c * c;

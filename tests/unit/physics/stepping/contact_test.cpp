@@ -104,8 +104,8 @@ void tower(int count, double side, double seconds, double hz, double ratio = 1) 
   const Vector3 top = world.tree(count - 1).position[0];
   const double drift = (top - Vector3(0, 0, side * (count - 0.5))).norm();
   EXPECT_LT(drift, 1e-4) << count;
-  std::printf("%d x %g m, ratio %g: drift %.2e m, iterations %d, not converged %d, miss %.1e\n", count,
-              side, ratio, drift, world.worst.most_iterations, world.worst.not_converged,
+  std::printf("%d x %g m, ratio %g: drift %.2e m, iterations %d, not converged %d, miss %.1e\n",
+              count, side, ratio, drift, world.worst.most_iterations, world.worst.not_converged,
               world.worst.residual);
 }
 

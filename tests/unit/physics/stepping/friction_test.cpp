@@ -52,7 +52,8 @@ struct Ball {
   }
   void step(double time_step) {
     tree().gravity = g * Vector3(std::sin(slope), 0, -std::cos(slope));
-    const Report report = step_with_impacts(system, time_step, contacts, servos, limits, [&](double time) { find(time); });
+    const Report report = step_with_impacts(system, time_step, contacts, servos, limits,
+                                            [&](double time) { find(time); });
     EXPECT_EQ(report.not_converged, 0);
   }
   void roll(double speed) {
@@ -109,7 +110,8 @@ TEST(Friction, RollingFrictionStopsABall) {
     ball.roll(speed);
     for (int i = 0; i < hz; ++i) ball.step(1 / hz);
     EXPECT_NEAR(ball.tree().v[3], speed - deceleration, 1e-5 * speed) << hz;
-    const double height = ball.tree().position[0].z();  // less than the radius by what its weight presses in
+    const double height =
+        ball.tree().position[0].z();  // less than the radius by what its weight presses in
     EXPECT_NEAR(height, radius, 1e-7) << hz;
     EXPECT_NEAR(ball.tree().v[1] * height, ball.tree().v[3], 1e-8) << hz;
     for (int i = 0; i < 4 * hz; ++i) ball.step(1 / hz);
@@ -155,8 +157,8 @@ TEST(Friction, SpinningFrictionStopsATurningBall) {
 
 TEST(Freedom, AnUprightBodyTurnsAboutTheVerticalOnly) {
   System system;
-  system.trees.emplace_back(std::vector<Link>{testing::box_link({0.2, 0.1, 0.3}, 2)},
-                            math::Pose{}, upright_freedoms);
+  system.trees.emplace_back(std::vector<Link>{testing::box_link({0.2, 0.1, 0.3}, 2)}, math::Pose{},
+                            upright_freedoms);
   Tree& tree = system.trees[0];
   ASSERT_EQ(tree.dofs, 4);
   tree.external[0] = {Vector3(5, -3, 0.01), Vector3(1, 0, 2)};

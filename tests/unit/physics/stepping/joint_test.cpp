@@ -75,7 +75,7 @@ TEST(Joint, WhatCrossesMostOfItsRangeInASubstepStopsAtItsLimit) {
     world.tree(0).v[0] = 1.4 * speed;
     world.step(0.01);
     EXPECT_NEAR(world.tree(0).q[0], speed < 0 ? -1 : 1, 1e-6);
-    EXPECT_EQ(world.limits[0].impulse < 0, speed > 0);
+    EXPECT_EQ(world.limits[0].impulse<0, speed> 0);
   }
 }
 
@@ -164,7 +164,8 @@ TEST(Joint, ServosKeepTheMomentum) {
   world.add(Tree(links, {}), Vector3::Zero(), 0);
   for (int dof : {6, 7}) {
     Servo servo;
-    servo.tree = 0, servo.dof = dof, servo.target_velocity = dof - 5, servo.lower = -1, servo.upper = 1;
+    servo.tree = 0, servo.dof = dof, servo.target_velocity = dof - 5, servo.lower = -1,
+    servo.upper = 1;
     world.servos.push_back(servo);
   }
   const auto momentum = [&] {

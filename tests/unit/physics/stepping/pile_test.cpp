@@ -39,7 +39,8 @@ TEST(Pile, TwoThatFloatComeApart) {
   testing::Touching world;
   world.gravity.setZero();
   const double side = 0.1;
-  for (const double x : {0.0, 0.09}) world.add_box(Vector3::Constant(side), x > 0 ? 1 : 3, {{x, 0, 0}, Quaternion::Identity()}, 0.5);
+  for (const double x : {0.0, 0.09})
+    world.add_box(Vector3::Constant(side), x > 0 ? 1 : 3, {{x, 0, 0}, Quaternion::Identity()}, 0.5);
   for (Tree& tree : world.system.trees) tree.v[5] = 0.1;
   for (int i = 0; i < 10; ++i) world.step(0.01);
   const Vector3 a = world.tree(0).pose(0).position, b = world.tree(1).pose(0).position;
@@ -63,7 +64,8 @@ TEST(Pile, TwoThatFloatAndTurnGainNothingAsTheyComeApart) {
   }
 }
 
-// Also where Newton's method does not find the displacement: light boxes between heavy ones take very many passes.
+// Also where Newton's method does not find the displacement: light boxes between heavy ones take
+// very many passes.
 TEST(Pile, FourFifthsOfEachOverlapGoInASubstep) {
   constexpr int count = 10;
   constexpr double side = 0.1, overlap = 5e-3;
@@ -72,12 +74,14 @@ TEST(Pile, FourFifthsOfEachOverlapGoInASubstep) {
   world.gravity.setZero();
   world.planes.push_back({Vector3::Zero(), Vector3::UnitZ()});
   for (int i = 0; i < count; ++i) {
-    world.add_box(Vector3::Constant(side), i % 2 == 0 ? 0.1 : 5, {{0, 0, side / 2 + i * (side - overlap)}, Quaternion::Identity()}, 0.5);
+    world.add_box(Vector3::Constant(side), i % 2 == 0 ? 0.1 : 5,
+                  {{0, 0, side / 2 + i * (side - overlap)}, Quaternion::Identity()}, 0.5);
   }
   world.step(0.01);
   const auto height = [&](int i) { return world.tree(i).pose(0).position.z(); };
   EXPECT_GT(height(0), side / 2 - 2e-5);
-  for (int i = 1; i < count; ++i) EXPECT_NEAR(height(i) - height(i - 1), side - overlap / 5, 2e-5) << i;
+  for (int i = 1; i < count; ++i)
+    EXPECT_NEAR(height(i) - height(i - 1), side - overlap / 5, 2e-5) << i;
 }
 
 }  // namespace

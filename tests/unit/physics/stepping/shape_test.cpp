@@ -16,7 +16,7 @@ using testing::Touching;
 
 /// Points on the rim of each cylinder's lower face, against the upper face of the one below.
 std::vector<ContactPoint> rims(const System& system, double radius, double height,
-                          const std::vector<ContactPoint>& before) {
+                               const std::vector<ContactPoint>& before) {
   std::vector<ContactPoint> out;
   for (int i = 0; i < static_cast<int>(system.trees.size()); ++i) {
     const Tree& tree = system.trees[i];

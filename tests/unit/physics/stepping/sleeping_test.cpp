@@ -32,7 +32,8 @@ TEST(Sleeping, ABoxOnTheFloorSleepsAndWakesByAForce) {
   run(world, 1, 100);
   ASSERT_TRUE(world.system.is_asleep(0));
   EXPECT_EQ(world.step(0.01).awake, 0);
-  world.system.apply_wrench(0, 0, {Vector3::Zero(), Vector3(0, 0, 1e-4 * g)});  // less than a thousandth of its weight
+  world.system.apply_wrench(
+      0, 0, {Vector3::Zero(), Vector3(0, 0, 1e-4 * g)});  // less than a thousandth of its weight
   EXPECT_EQ(world.step(0.01).awake, 0);
   world.system.apply_wrench(0, 0, {Vector3::Zero(), Vector3(0, 0, 2 * g)});
   EXPECT_EQ(world.step(0.01).awake, 1);
@@ -114,7 +115,7 @@ TEST(Sleeping, ATowerWakesWhereItIsStruck) {
   velocity_kinematics(world.tree(ball));
   int asleep = 0;
   while (world.system.is_asleep(2) && asleep < 100) ++asleep, world.step(0.01);
-  EXPECT_GE(asleep, 6);   // 0.2 m - half sides at 2 m/s take 8.25 substeps
+  EXPECT_GE(asleep, 6);  // 0.2 m - half sides at 2 m/s take 8.25 substeps
   EXPECT_LE(asleep, 9);
   EXPECT_FALSE(world.system.is_asleep(0));
   run(world, 0.1, 100);
@@ -169,8 +170,8 @@ TEST(Sleeping, ServosWakeByTheirCommandsWhateverTheyAre) {
 TEST(Sleeping, ForcesOnTwoLinksThatCancelWake) {
   System system;
   const Link box = testing::box_link({0.1, 0.1, 0.1}, 1);
-  const Link slider = testing::hung(box, 0, JointType::prismatic, Vector3::UnitX(), {0.3, 0, 0},
-                                    Vector3::Zero());
+  const Link slider =
+      testing::hung(box, 0, JointType::prismatic, Vector3::UnitX(), {0.3, 0, 0}, Vector3::Zero());
   system.trees.emplace_back(std::vector<Link>{box, slider}, at(0, 0, 0.05));
   testing::weigh(system.trees[0]);
   std::vector<ContactPoint> contacts;

@@ -34,8 +34,8 @@ Tree striking_cube(double x, Draw& draw) {
   return tree;
 }
 
-ContactPoint rolling_contact(int a, int b, const Vector3& point, const Vector3& normal, double rolling,
-                        Draw& draw) {
+ContactPoint rolling_contact(int a, int b, const Vector3& point, const Vector3& normal,
+                             double rolling, Draw& draw) {
   ContactPoint out;
   out.a.tree = a;
   out.b.tree = b;

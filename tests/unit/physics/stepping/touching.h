@@ -20,8 +20,8 @@ struct Plane {
 
 struct Touching {
   System system;
-  std::vector<Vector3> half;      // of the box about each tree's last link [m]; 0: a point mass
-  std::vector<double> friction;   // of each box; a contact has the product
+  std::vector<Vector3> half;     // of the box about each tree's last link [m]; 0: a point mass
+  std::vector<double> friction;  // of each box; a contact has the product
   std::vector<Plane> planes;
   std::vector<ContactPoint> contacts;
   std::vector<Servo> servos;
@@ -44,7 +44,8 @@ struct Touching {
 
   Report step(double length) {
     for (Tree& each : system.trees) each.gravity = gravity;
-    const Report report = step_with_impacts(system, length, contacts, servos, limits, [&](double time) { find(time); });
+    const Report report = step_with_impacts(system, length, contacts, servos, limits,
+                                            [&](double time) { find(time); });
     worst.not_converged += report.not_converged;
     worst.most_iterations = std::max(worst.most_iterations, report.most_iterations);
     worst.residual = std::max(worst.residual, report.residual);
@@ -95,7 +96,8 @@ struct Touching {
            1.3 * length * ((linear(i) - linear(j)).norm() + turning(i) + turning(j));
   }
 
-  ContactPoint contact(int a, int b, const Vector3& point, const Vector3& normal, double gap, double mu) {
+  ContactPoint contact(int a, int b, const Vector3& point, const Vector3& normal, double gap,
+                       double mu) {
     ContactPoint out;
     out.a = {a, a < 0 ? 0 : last_link(a)};
     out.b = {b, b < 0 ? 0 : last_link(b)};

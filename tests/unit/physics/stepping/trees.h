@@ -53,8 +53,8 @@ inline Tree chain(int count, double length, double mass, double end_mass = 0) {
     if (end_mass > 0 && i + 1 == count) {
       const double total = mass + end_mass;
       const double centre = (mass * length / 2 + end_mass * length) / total;
-      const double steiner = mass * std::pow(centre - length / 2, 2) +
-                             end_mass * std::pow(length - centre, 2);
+      const double steiner =
+          mass * std::pow(centre - length / 2, 2) + end_mass * std::pow(length - centre, 2);
       rod.mass = total;
       rod.inertia += Vector3(1e-6 * end_mass, steiner, steiner);
       middle.x() = centre;

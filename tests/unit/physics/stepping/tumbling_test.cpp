@@ -1,5 +1,5 @@
-// Mechanisms without motors that tumble on the floor, much faster than substeps can show: their energy never
-// grows, whatever they hit.
+// Mechanisms without motors that tumble on the floor, much faster than substeps can show: their
+// energy never grows, whatever they hit.
 
 #include <gtest/gtest.h>
 
@@ -100,18 +100,21 @@ void rebound(double hz, double restitution, unsigned seed) {
   world.restitution = restitution;
   world.planes.push_back({Vector3::Zero(), Vector3::UnitZ(), 0.7});
   for (const double height : {0.4, 0.8}) {
-    const int box = world.add_box({random(0.1, 0.3), random(0.1, 0.3), random(0.1, 0.3)}, random(0.5, 5),
-                                  testing::at(random(-0.05, 0.05), 0, height), 0.7);
+    const int box = world.add_box({random(0.1, 0.3), random(0.1, 0.3), random(0.1, 0.3)},
+                                  random(0.5, 5), testing::at(random(-0.05, 0.05), 0, height), 0.7);
     Tree& tree = world.tree(box);
     for (int k = 0; k < 3; ++k) tree.v[k] = random(-8, 8);
     velocity_kinematics(tree);
   }
-  const auto energy = [&] { return testing::energy(world.tree(0)) + testing::energy(world.tree(1)); };
+  const auto energy = [&] {
+    return testing::energy(world.tree(0)) + testing::energy(world.tree(1));
+  };
   const double before = energy();
   double least = before;
   for (int i = 0; i < 2 * hz; ++i) {
     world.step(1 / hz);
-    ASSERT_LE(energy() - least, 1e-3 * before) << hz << " " << restitution << " " << seed << " " << i;
+    ASSERT_LE(energy() - least, 1e-3 * before)
+        << hz << " " << restitution << " " << seed << " " << i;
     least = std::min(least, energy());
   }
 }
