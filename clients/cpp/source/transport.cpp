@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <zmq.hpp>
 
-#include "plain_stream.h"
+#include "endpoint.h"
 #include "ziggurat/error.h"
 
 namespace ziggurat {
@@ -18,6 +18,11 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds longest_wait_to_send{500};  // between checks of whether the connection was refused
+constexpr milliseconds longest_linger{1000};       // when a connection ends, with output that waits
+constexpr int most_received = 16;                  // messages that wait here; more wait with the server
+constexpr const char* keys_are_missing =
+    "refused key? The endpoint is protected, and this client has no keys; set the server's public key "
+    "and a secret key";
 constexpr const char* monitor_address = "inproc://monitor";
 constexpr int monitored = ZMQ_EVENT_CONNECTED | ZMQ_EVENT_DISCONNECTED | ZMQ_EVENT_HANDSHAKE_SUCCEEDED |
                           ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
@@ -35,7 +40,7 @@ bool receive_from(zmq::socket_t& socket, zmq::message_t& message, zmq::recv_flag
   }
 }
 
-/// A DEALER of libzmq: encrypted, and for endpoints that only libzmq knows.
+/// A DEALER of libzmq, and the monitor that reports what becomes of its connection.
 class ZeroMq final : public Transport {
  public:
   explicit ZeroMq(const SessionOptions& options);
@@ -56,8 +61,7 @@ class ZeroMq final : public Transport {
   std::string endpoint_;
   zmq::context_t context_;
   zmq::socket_t socket_;
-  zmq::socket_t monitor_;  // reports that the connection was closed, or refused
-  milliseconds socket_timeout_{-1};
+  zmq::socket_t monitor_;
   bool is_accepted_ = false;
   bool is_open_ = false;  // the handshake has succeeded
   bool is_closed_ = false;
@@ -76,6 +80,7 @@ ZeroMq::ZeroMq(const SessionOptions& options)
   socket_.set(zmq::sockopt::sndtimeo, static_cast<int>(longest_wait_to_send.count()));
   socket_.set(zmq::sockopt::linger, 0);
   socket_.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(longest_message));
+  socket_.set(zmq::sockopt::rcvhwm, most_received);
   monitor_.set(zmq::sockopt::linger, 0);
   zmq_socket_monitor(socket_.handle(), monitor_address, monitored);
   monitor_.connect(monitor_address);
@@ -144,12 +149,11 @@ void ZeroMq::send(std::size_t size, const std::function<void(char*)>& write) {
 }
 
 bool ZeroMq::receive(milliseconds timeout) {
-  if (timeout != socket_timeout_) {
-    socket_.set(zmq::sockopt::rcvtimeo, static_cast<int>(timeout.count()));
-    socket_timeout_ = timeout;
-  }
   try {
-    return receive_from(socket_, frame_, zmq::recv_flags::none);
+    if (receive_from(socket_, frame_, zmq::recv_flags::dontwait)) return true;
+    zmq_pollitem_t waiting[] = {{socket_.handle(), 0, ZMQ_POLLIN, 0}, {monitor_.handle(), 0, ZMQ_POLLIN, 0}};
+    if (zmq_poll(waiting, 2, static_cast<long>(timeout.count())) < 0 && errno != EINTR) throw zmq::error_t();
+    return receive_from(socket_, frame_, zmq::recv_flags::dontwait);
   } catch (const zmq::error_t& error) {
     throw ConnectionError(endpoint_ + ": can't receive: " + error.what());
   }
@@ -205,7 +209,6 @@ void ZeroMq::take_event(std::uint16_t event, std::uint32_t value) {
 
 std::unique_ptr<Transport> make_transport(const SessionOptions& options) {
   check_endpoint(options.endpoint);
-  if (auto endpoint = PlainEndpoint::of(options)) return std::make_unique<PlainStream>(*std::move(endpoint));
   return std::make_unique<ZeroMq>(options);
 }
 
