@@ -57,11 +57,11 @@ class Transport:
         self._is_open = False  # the handshake has succeeded
         self.why_closed: Optional[str] = None  # messages that came before may still be in the queue
         self._failed_handshakes = 0
-        self._socket = zmq.Context.instance().socket(zmq.DEALER)
+        self._context = zmq.Context()
+        self._socket = self._context.socket(zmq.DEALER)
         self._socket.setsockopt(zmq.IPV6, endpoint.startswith("tcp://["))
         self._socket.setsockopt(zmq.TCP_KEEPALIVE, 1)
-        # Also of a program that ends without close(), as by Ctrl-C.
-        self._socket.setsockopt(zmq.LINGER, int(1000 * LINGER))
+        self._socket.setsockopt(zmq.LINGER, 0)  # without close()
         self._socket.setsockopt(zmq.SNDTIMEO, int(1000 * SLICE))
         self._socket.setsockopt(zmq.MAXMSGSIZE, LONGEST_MESSAGE)  # a longer one closes the connection
         self._socket.setsockopt(zmq.RCVHWM, MOST_RECEIVED)
@@ -88,6 +88,7 @@ class Transport:
         self._socket.disable_monitor()
         self._monitor.close(linger=0)
         self._socket.close(linger=int(1000 * linger))
+        self._context.term()  # waits for that
 
     @property
     def closed(self) -> bool:
