@@ -1,5 +1,7 @@
 #include "transport.h"
 
+#include <poll.h>
+
 #include <array>
 #include <cerrno>
 #include <cstdint>
@@ -55,7 +57,7 @@ class ZeroMq final : public Transport {
 
  private:
   void set_keys(const SessionOptions& options);
-  void take_events();
+  bool take_events();
   void take_event(std::uint16_t event, std::uint32_t value);
 
   std::string endpoint_;
@@ -69,6 +71,7 @@ class ZeroMq final : public Transport {
   unsigned failed_handshakes_ = 0;  // without a reason
   std::string refusal_;             // of the handshake; empty: none
   zmq::message_t frame_;
+  int socket_fd_ = socket_.get(zmq::sockopt::fd), monitor_fd_ = monitor_.get(zmq::sockopt::fd);
 };
 
 ZeroMq::ZeroMq(const SessionOptions& options)
@@ -151,8 +154,10 @@ void ZeroMq::send(std::size_t size, const std::function<void(char*)>& write) {
 bool ZeroMq::receive(milliseconds timeout) {
   try {
     if (receive_from(socket_, frame_, zmq::recv_flags::dontwait)) return true;
-    zmq_pollitem_t waiting[] = {{socket_.handle(), 0, ZMQ_POLLIN, 0}, {monitor_.handle(), 0, ZMQ_POLLIN, 0}};
-    if (zmq_poll(waiting, 2, static_cast<long>(timeout.count())) < 0 && errno != EINTR) throw zmq::error_t();
+    if (take_events()) return false;
+    // These descriptors tell what comes after both sockets were found empty; zmq_poll() asks them twice.
+    pollfd waiting[] = {{socket_fd_, POLLIN, 0}, {monitor_fd_, POLLIN, 0}};
+    ::poll(waiting, 2, static_cast<int>(timeout.count()));
     return receive_from(socket_, frame_, zmq::recv_flags::dontwait);
   } catch (const zmq::error_t& error) {
     throw ConnectionError(endpoint_ + ": can't receive: " + error.what());
@@ -170,7 +175,9 @@ bool ZeroMq::is_accepted() {
   return is_accepted_;
 }
 
-void ZeroMq::take_events() {
+/// @return  whether there were any
+bool ZeroMq::take_events() {
+  bool were_any = false;
   constexpr std::size_t value_at = sizeof(std::uint16_t);
   zmq::message_t event;
   while (receive_from(monitor_, event, zmq::recv_flags::dontwait)) {
@@ -182,7 +189,9 @@ void ZeroMq::take_events() {
     }
     while (event.more()) receive_from(monitor_, event, zmq::recv_flags::none);  // the address
     take_event(number, value);
+    were_any = true;
   }
+  return were_any;
 }
 
 void ZeroMq::take_event(std::uint16_t event, std::uint32_t value) {
