@@ -21,7 +21,6 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds longest_wait_to_send{500};  // between checks of whether the connection was refused
 constexpr milliseconds longest_linger{1000};       // when a connection ends, with output that waits
-constexpr int most_received = 16;                  // messages that wait here; more wait with the server
 constexpr const char* keys_are_missing =
     "refused key? The endpoint is protected, and this client has no keys; set the server's public key "
     "and a secret key";
@@ -83,7 +82,6 @@ ZeroMq::ZeroMq(const SessionOptions& options)
   socket_.set(zmq::sockopt::sndtimeo, static_cast<int>(longest_wait_to_send.count()));
   socket_.set(zmq::sockopt::linger, 0);
   socket_.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(longest_message));
-  socket_.set(zmq::sockopt::rcvhwm, most_received);
   monitor_.set(zmq::sockopt::linger, 0);
   zmq_socket_monitor(socket_.handle(), monitor_address, monitored);
   monitor_.connect(monitor_address);

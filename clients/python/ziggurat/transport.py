@@ -16,7 +16,6 @@ SLICE = 0.5  # of a wait
 LINGER = 1.0  # time to send the last messages when a session is closed
 
 LONGEST_MESSAGE = (1 << 30) + (1 << 20)  # of a server: an Observation of 1 GiB and what is around it [bytes]
-MOST_RECEIVED = 16  # messages that wait here; more wait with the server
 KEYS_ARE_MISSING = "refused key? The endpoint is protected, and this client has no keys; pass curve=Curve(...)"
 MONITORED = (zmq.EVENT_CONNECTED | zmq.EVENT_DISCONNECTED | zmq.EVENT_HANDSHAKE_SUCCEEDED
              | zmq.EVENT_HANDSHAKE_FAILED_NO_DETAIL | zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL
@@ -64,7 +63,6 @@ class Transport:
         self._socket.setsockopt(zmq.LINGER, 0)  # without close()
         self._socket.setsockopt(zmq.SNDTIMEO, int(1000 * SLICE))
         self._socket.setsockopt(zmq.MAXMSGSIZE, LONGEST_MESSAGE)  # a longer one closes the connection
-        self._socket.setsockopt(zmq.RCVHWM, MOST_RECEIVED)
         # ZeroMQ reconnects by itself, but the server does not know the new connection:
         # detect the end of the first one.
         self._monitor = self._socket.get_monitor_socket(MONITORED)
