@@ -247,5 +247,18 @@ TEST(Devices, UnannouncedObservationsAreRefused) {
   refused(message, "which receives none");
 }
 
+TEST(Devices, AnnouncedSizesAreLimited) {
+  auto message = welcome();
+  message.mutable_welcome()->mutable_robots(1)->mutable_range_and_bearing()->set_data_size(~0U);
+  FakeServer server([message](FakeServer& self) { self.welcome(message); });
+  try {
+    const Session session(options_for(server));
+    ADD_FAILURE() << "was believed";
+  } catch (const ConnectionError& error) {
+    const std::string words = "range-and-bearing packets of 4294967295 bytes for robot 'b'";
+    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace ziggurat

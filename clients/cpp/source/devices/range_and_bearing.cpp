@@ -63,6 +63,16 @@ class DataChannel final : public Channel {
   bool changed_ = false;
 };
 
+/// The number decides how much memory is allocated.
+void check_size(const v1::RobotDescription& robot) {
+  constexpr std::uint32_t max_bytes = 65'536;  // of a packet, as in scenes
+  const std::uint32_t bytes = robot.range_and_bearing().data_size();
+  if (bytes <= max_bytes) return;
+  throw std::runtime_error("the server announced range-and-bearing packets of " +
+                           std::to_string(bytes) + " bytes for robot '" + robot.id() +
+                           "'; at most " + std::to_string(max_bytes) + " are allowed");
+}
+
 void check_sends(const RangeAndBearing& device) {
   if (device.sends()) return;
   throw std::logic_error(
@@ -76,6 +86,7 @@ void Layout::add_range_and_bearing() {
   auto& data = add(DataChannel());
   std::size_t bytes = 0;
   for (const v1::RobotDescription& robot : welcome.robots()) {
+    check_size(robot);
     if (robot.range_and_bearing().sends()) bytes += robot.range_and_bearing().data_size();
   }
   data.resize(bytes);
