@@ -1,6 +1,7 @@
 #include "transport.h"
 
 #include <poll.h>
+#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -9,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <tuple>
 #include <zmq.hpp>
 
 #include "endpoint.h"
@@ -45,6 +47,9 @@ bool receive_from(zmq::socket_t& socket, zmq::message_t& message, zmq::recv_flag
 class ZeroMq final : public Transport {
  public:
   explicit ZeroMq(const SessionOptions& options);
+  ~ZeroMq() override;
+  ZeroMq(const ZeroMq&) = delete;
+  ZeroMq& operator=(const ZeroMq&) = delete;
 
   void send(std::size_t size, const std::function<void(char*)>& write) override;
   bool receive(milliseconds timeout) override;
@@ -55,10 +60,13 @@ class ZeroMq final : public Transport {
   void linger() override;
 
  private:
+  /// Whether the program was forked since: threads of libzmq are the parent's, and calls would wait for them.
+  bool is_parents() const { return ::getpid() != process_; }
   void set_keys(const SessionOptions& options);
   bool take_events();
   void take_event(std::uint16_t event, std::uint32_t value);
 
+  pid_t process_ = ::getpid();
   std::string endpoint_;
   zmq::context_t context_;
   zmq::socket_t socket_;
@@ -94,6 +102,11 @@ ZeroMq::ZeroMq(const SessionOptions& options)
   }
 }
 
+ZeroMq::~ZeroMq() {
+  // Kept for good in a forked child, where they can't be closed.
+  if (is_parents()) new std::tuple(std::move(monitor_), std::move(socket_), std::move(context_));
+}
+
 /// Encrypts the connection, if the options name keys.
 void ZeroMq::set_keys(const SessionOptions& options) {
   if (options.server_key.empty() && options.curve_secret.empty()) return;
@@ -125,6 +138,7 @@ void ZeroMq::set_keys(const SessionOptions& options) {
 }
 
 void ZeroMq::linger() {
+  if (is_parents()) return;
   try {
     take_events();
     if (!is_open_ || is_closed_) return;
@@ -135,6 +149,7 @@ void ZeroMq::linger() {
 }
 
 void ZeroMq::send(std::size_t size, const std::function<void(char*)>& write) {
+  if (is_parents()) throw ConnectionError(endpoint_ + ": can't send: the connection is that of the program that was forked");
   zmq::message_t frame(size);
   write(frame.data<char>());
   for (;;) {
