@@ -60,7 +60,6 @@ class Connection {
 
  private:
   Kind parse();
-  [[noreturn]] void throw_too_much_laid_out() const;
   void forget(std::size_t size);
   void check_alive(std::chrono::milliseconds waited);
 
@@ -73,7 +72,6 @@ class Connection {
   v1::Observation observation_;
   v1::WorldState world_state_;
   std::size_t parsed_ = 0;  // [bytes] since these two last released their memory
-  std::size_t message_size_ = 0, laid_out_ = 0;  // [bytes] of the message, and of all layouts since one that began anew
   v1::ServerMessage message_;
 };
 

@@ -92,8 +92,7 @@ struct SessionCore {
   std::optional<Connection::Kind> heard;  // instead of the answer to a question: the next message
 };
 
-/// @throws ConnectionError if the server speaks another major version of the protocol (H2), or names more robots than
-/// there can be handles for
+/// @throws ConnectionError if the server speaks another major version of the protocol (H2)
 void check_welcome(const v1::Welcome& welcome, const std::string& endpoint);
 /// @throws ProtocolError if the message is a Refusal or an Error
 void check_not_refused(Connection::Kind kind, const v1::ServerMessage& message);

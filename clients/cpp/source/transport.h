@@ -1,5 +1,5 @@
 #pragma once
-// Transport of a client's messages to the server and back. Both ways speak ZeroMQ's wire protocol.
+// Transport of a client's messages to the server and back.
 
 #include <chrono>
 #include <cstddef>
@@ -12,9 +12,6 @@
 
 namespace ziggurat {
 
-/// Longest time for which waiting output is still sent when a connection ends.
-constexpr std::chrono::milliseconds longest_linger{1000};
-
 class Transport {
  public:
   virtual ~Transport() = default;
@@ -25,7 +22,7 @@ class Transport {
   virtual void send(std::size_t size, const std::function<void(char*)>& write) = 0;
 
   /// Waits for a message.
-  /// @return  whether there is one; false after the time-out, after a signal and when closed
+  /// @return  whether there is one; false after the time-out, after a signal, and when the connection has changed
   /// @throws ConnectionError
   virtual bool receive(std::chrono::milliseconds timeout) = 0;
   /// The last message, valid until the next is received, and whether it has more frames.
@@ -45,11 +42,6 @@ class Transport {
 /// Longest message of a server: an Observation of 1 GiB (docs/protocol.md, D5) with its envelope. A
 /// longer one closes the connection when its size is known [bytes].
 inline constexpr std::size_t longest_message = (std::size_t{1} << 30) + (std::size_t{1} << 20);
-
-/// Advice for a client without keys at a protected endpoint.
-inline constexpr const char* keys_are_missing =
-    "refused key? The endpoint is protected, and this client has no keys; set the server's public key "
-    "and a secret key";
 
 /// @throws std::invalid_argument for an unusable endpoint or keys
 std::unique_ptr<Transport> make_transport(const SessionOptions& options);

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
-#include "plain_endpoint.h"
+#include "endpoint.h"
 #include "session_core.h"
 #include "ziggurat/v1/envelope.h"
-#include "ziggurat/v1/extent.h"
 
 namespace ziggurat {
 namespace {
@@ -85,10 +84,6 @@ void SessionCore::read(const v1::Welcome& welcome) {
 }
 
 void check_welcome(const v1::Welcome& welcome, const std::string& endpoint) {
-  if (welcome.robots_size() > static_cast<int>(v1::most_robots)) {
-    throw ConnectionError(endpoint + ": the server sent " + std::to_string(welcome.robots_size()) +
-                          " robots; this client takes " + std::to_string(v1::most_robots) + " at most");
-  }
   const v1::Version& theirs = welcome.version();
   if (theirs.major() == version_major) return;
   throw ConnectionError(endpoint + ": the server speaks version " + std::to_string(theirs.major()) + "." +

@@ -15,15 +15,11 @@ inline constexpr std::size_t bytes_per_field = 16;
 /// Limit of a server for the memory that decoding an Observation or a WorldState takes
 /// (docs/protocol.md, D5) [bytes].
 inline constexpr std::size_t most_counted = std::size_t{2} << 30;
-/// Limit of a client for decoded_size() of one. It leaves place for values that the server does not
-/// count, some twenty million numbers [bytes].
-inline constexpr std::size_t most_decoded = most_counted + (std::size_t{512} << 20);
 
-/// Limit for decoded_size() of all `WorldLayout`s since one that began anew. A server sends no
-/// more, and a client takes no more (R4) [bytes].
+/// Limit of a server for decoded_size() of all `WorldLayout`s since one that began anew (R4) [bytes].
 inline constexpr std::size_t most_laid_out = std::size_t{1} << 30;
 
-/// Limits of a client for all other messages of a server, which are sent once (H9): bytes, fields
+/// Limits of a server for all its other messages, which are sent once (H9): bytes, fields
 /// as in count_fields(), and robots of a session.
 inline constexpr std::size_t longest_sent_once = std::size_t{64} << 20, most_fields_sent_once = std::size_t{1} << 21,
                              most_robots = std::size_t{1} << 18;

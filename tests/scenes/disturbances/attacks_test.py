@@ -6,7 +6,6 @@ import random
 import socket
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 import unittest
@@ -213,41 +212,6 @@ class Attacks(SceneTest):
                 self.assertNotRegex(outcome.stderr, "(?m)^ziggurat: all is well")
         server.join()
         router.close(linger=0)
-
-    def test_a_message_without_end_of_frames_is_not_kept(self):
-        """By `ctl`, `top` and `ziggurat-lua`, at a server that they have no key of."""
-        listener = socket.create_server(("127.0.0.1", 0))
-        self.addCleanup(listener.close)
-        endpoint = f"tcp://127.0.0.1:{listener.getsockname()[1]}"
-        ready = b"\x05READY\x0bSocket-Type\0\0\0\x06ROUTER"
-        greeting = b"\xff" + bytes(8) + b"\x7f\x03\x01" + b"NULL".ljust(52, b"\0") + bytes([4, len(ready)]) + ready
-
-        def serve():
-            for _ in commands:
-                with listener.accept()[0] as connection:
-                    connection.sendall(greeting)
-                    frames = b"\x01\x07a frame" * 100_000
-                    try:
-                        for _ in range(500):
-                            connection.sendall(frames)
-                    except OSError:
-                        pass  # the client has left
-
-        commands = [(ZIGGURAT, "ctl", endpoint, "status"), (ZIGGURAT, "top", endpoint, "--once"),
-                    (LUA, "--connect", endpoint, "--script", "swing.lua")]
-        server = threading.Thread(target=serve)
-        server.start()
-        for words in commands:
-            with self.subTest(words), tempfile.TemporaryFile("w+") as messages:
-                program = subprocess.Popen([str(word) for word in words], cwd=self.folder, env=self.environment,
-                                           stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=messages)
-                _, status, used = os.wait4(program.pid, 0)
-                program.returncode = os.waitstatus_to_exitcode(status)
-                messages.seek(0)
-                self.assertEqual(program.returncode, FAULT)
-                self.assertIn("not a message of ziggurat.v1", messages.read())
-                self.assertLess(used.ru_maxrss, 100 << 10)  # [KiB]
-        server.join()
 
 
 if __name__ == "__main__":

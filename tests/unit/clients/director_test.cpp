@@ -275,24 +275,6 @@ TEST(Director, IsToldOfAMillionBoxes) {
   EXPECT_EQ(director.entities().size(), std::size_t{count});
 }
 
-/// In one layout, and in many.
-TEST(Director, EntitiesThatTakeAllMemoryAreRefused) {
-  for (const auto& [parts, links] : {std::pair{1U, 12'000'000}, {12U, 1'000'000}}) {
-    FakeServer server([parts = parts, links = links](FakeServer& self) {
-      self.welcome(judge());
-      for (std::uint32_t i = 0; i < parts; ++i) self.send(laid_out(i, 1, links));
-      self.receive();
-    });
-    Director director(options_of(server));
-    try {
-      director.next();
-      ADD_FAILURE() << "no exception";
-    } catch (const ConnectionError& error) {
-      EXPECT_NE(std::string(error.what()).find("entities that take more than 1073741824 bytes"), std::string::npos) << error.what();
-    }
-  }
-}
-
 TEST(Director, ResumesAndSendsTheAnswerAgain) {
   FakeServer server([](FakeServer& self) {
     self.welcome(judge());
