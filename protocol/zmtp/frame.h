@@ -1,6 +1,6 @@
 #pragma once
-// ZMTP, ZeroMQ's wire protocol (RFC 37), as a server needs it: a greeting of 64 bytes, then frames: a byte
-// of flags, the size in one byte or eight, the body. Bytes only: no socket, no state.
+// ZMTP, ZeroMQ's wire protocol (RFC 37), as a server needs it: a greeting of 64 bytes, then frames:
+// a byte of flags, the size in one byte or eight, the body. Bytes only: no socket, no state.
 
 #include <cstddef>
 #include <cstdint>
@@ -26,7 +26,8 @@ inline constexpr std::size_t longest_command = 2048;  // that either end takes
 std::string greeting(std::string_view mechanism, bool is_server);
 enum class Greeting {
   incomplete,
-  wrong,  ///< of something else, such as HTTP, or of a version before 3; found before all of it is there
+  wrong,  ///< of something else, such as HTTP, or of a version before 3; found before all of it is
+          ///< there
   whole,
 };
 Greeting check_greeting(Bytes input);

@@ -134,10 +134,9 @@ po::options_description output_options() {
 po::options_description record_options() {
   po::options_description options("Recording", width);
   options.add_options()  //
-      (
-          "record", text("FILE.mcap"),
-          "everything: to replay the run to the bit, to look at it again (MCAP, as Foxglove reads "
-          "it)")  //
+      ("record", text("FILE.mcap"),
+       "everything: to replay the run to the bit, to look at it again (MCAP, as Foxglove reads "
+       "it)")  //
       ("record-topics", texts("PATTERN"),
        "only topics that match, as '/poses' or '/robots/r1*/*'; may be repeated; what a replay "
        "needs "

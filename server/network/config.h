@@ -42,7 +42,7 @@ struct Config {
   };
   std::vector<Deadline> deadlines;  ///< of the scene's controllers, then of its directors; missing:
                                     ///< as the scene says, or to wait
-  Deadline deadline_of_others;  ///< of directors that the scene does not name
+  Deadline deadline_of_others;      ///< of directors that the scene does not name
   std::vector<Injection>
       injections;  ///< of the scene's controllers, then of its directors; missing: none
 };

@@ -25,7 +25,8 @@ std::optional<std::filesystem::path> find_file(const std::string& name,
 std::string looked_for(const std::string& name, const std::filesystem::path& naming_file,
                        const std::filesystem::path& scene_file);
 
-/// The name of a file beside the one that is not there, with nearly its name; empty if there is none.
+/// The name of a file beside the one that is not there, with nearly its name; empty if there is
+/// none.
 std::string similar_file(const std::filesystem::path& missing);
 
 }  // namespace ziggurat::processes

@@ -28,7 +28,8 @@ inline constexpr Bound bound_of_others{std::size_t{64} << 20, std::size_t{256} <
 Bound bound_of(const google::protobuf::Descriptor& type);
 
 /// Replaces a message by what the bytes say. Memory of a large message before is given back first.
-/// @returns what is wrong, as the end of a sentence that begins with the message; nothing: it is decoded
+/// @returns what is wrong, as the end of a sentence that begins with the message; nothing: it is
+/// decoded
 std::optional<std::string> decode(std::string_view bytes, google::protobuf::Message& to);
 
 }  // namespace ziggurat::recording

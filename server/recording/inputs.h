@@ -18,8 +18,8 @@ class ExactState;
 
 namespace ziggurat::recording {
 
-/// Packs the commands of one step after the other, all arrays at the first call. A new epoch takes a
-/// new one.
+/// Packs the commands of one step after the other, all arrays at the first call. A new epoch takes
+/// a new one.
 class CommandPacker {
  public:
   /// Later, arrays that are as in the call before are left out; radio messages never are.

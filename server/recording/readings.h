@@ -13,8 +13,8 @@
 namespace ziggurat::recording {
 
 /// One line per tick and robot that is there, in scene order: ziggurat.v1.Reading as protobuf JSON
-/// with the field names of recording.proto, devices sorted by id. A director that set metrics at the
-/// tick has a line, too, with its id as `robot` and nothing else.
+/// with the field names of recording.proto, devices sorted by id. A director that set metrics at
+/// the tick has a line, too, with its id as `robot` and nothing else.
 class Readings {
  public:
   /// Keeps a reference to `layout`. @throws WriteError

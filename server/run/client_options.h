@@ -13,9 +13,12 @@ struct ExpectedClients {
 };
 
 /// @param with_controllers  whether the run starts controllers and directors
-ExpectedClients expected_clients(const Options& options, const scene::Scene& scene, bool is_serve, bool with_controllers);
+ExpectedClients expected_clients(const Options& options, const scene::Scene& scene, bool is_serve,
+                                 bool with_controllers);
 
-/// @throws text::UsageError if an option is for what no client can ask for, or for drops where no deadline drops
-void check_client_options(const Options& options, const ExpectedClients& clients, const network::Config& config);
+/// @throws text::UsageError if an option is for what no client can ask for, or for drops where no
+/// deadline drops
+void check_client_options(const Options& options, const ExpectedClients& clients,
+                          const network::Config& config);
 
 }  // namespace ziggurat::run

@@ -20,9 +20,9 @@ namespace ziggurat::run {
 /// @throws text::UsageError
 void check_clients(const std::string& path, uid_t user);
 
-/// A sentence on each pattern that limits a key to robots or controllers which the scene does not have: it is misspelt,
-/// or for robots that are to be spawned.
-std::vector<std::string> doubts_of(const std::vector<network::ClientKey>& clients, const scene::Scene& scene,
-                                   const world::Layout& layout);
+/// A sentence on each pattern that limits a key to robots or controllers which the scene does not
+/// have: it is misspelt, or for robots that are to be spawned.
+std::vector<std::string> doubts_of(const std::vector<network::ClientKey>& clients,
+                                   const scene::Scene& scene, const world::Layout& layout);
 
 }  // namespace ziggurat::run

@@ -43,8 +43,8 @@ ControllerCheck::ControllerCheck(const ControllerCheckOptions& options, processe
       callers_(server_),
       population_({}, world_, server_, callers_, controllers_, console_),
       supervision_({}, world_, server_, callers_, population_),
-      watch_({{}, false, false, false, file_.states(), {}}, world_, server_, controllers_, supervision_,
-             signals, console_, nullptr, [](auto...) {}) {}
+      watch_({{}, false, false, false, file_.states(), {}}, world_, server_, controllers_,
+             supervision_, signals, console_, nullptr, [](auto...) {}) {}
 
 /// The commands of the recording are replaced by the user's own: none of them is left by itself.
 supervision::World ControllerCheck::build_world() {
@@ -103,9 +103,9 @@ std::vector<std::string> ControllerCheck::embed_scripts() {
     if (is_own && !runs_script(world_.scene.controllers[layout.robots[r].controller])) {
       throw text::UsageError("--script is for the robots of Lua controllers; write -- COMMAND");
     }
-    scripts[r] = is_own ? std::filesystem::absolute(options_.script).string()
-                        : script_below(below, file_.files(), world_.scene, world_.path,
-                                       layout.robots[r]);
+    scripts[r] =
+        is_own ? std::filesystem::absolute(options_.script).string()
+               : script_below(below, file_.files(), world_.scene, world_.path, layout.robots[r]);
   }
   return scripts;
 }
@@ -147,9 +147,9 @@ processes::Controllers ControllerCheck::start() {
   gone_.assign(layout.robots.size(), false);
   for (const std::size_t robot : without) gone_[robot] = true;
   server_.remove_robots(without);
-  processes::LaunchSettings settings{server_.endpoints().front(), folder_.path(),
-                                     processes::find_lua_runner(), 1, options_.lua_arguments,
-                                     signals_.guardian()};
+  processes::LaunchSettings settings{server_.endpoints().front(),  folder_.path(),
+                                     processes::find_lua_runner(), 1,
+                                     options_.lua_arguments,       signals_.guardian()};
   settings.scene_folder = folder_.path() + "/files";
   settings.python_path = processes::python_path(folder_.path());
   std::vector<std::string> folders{folder_.path() + "/files"};
@@ -184,8 +184,8 @@ int ControllerCheck::execute() {
 std::optional<ControllerCheck::Ending> ControllerCheck::repeat() {
   const auto script_of = [this](const world::RobotLayout& robot) -> std::optional<std::string> {
     if (options_.robot) return std::nullopt;
-    const std::string script = script_below(folder_.path() + "/files", file_.files(), world_.scene,
-                                            world_.path, robot);
+    const std::string script =
+        script_below(folder_.path() + "/files", file_.files(), world_.scene, world_.path, robot);
     return script.empty() ? std::nullopt : std::optional(script);
   };
   const auto tell = [this](std::uint64_t tick, const std::string& robot,
@@ -194,9 +194,11 @@ std::optional<ControllerCheck::Ending> ControllerCheck::repeat() {
     console_.result(fmt::format("tick {}: '{}': {} is {} in the recording, {} now", tick, robot,
                                 found.device, found.recorded, found.now));
   };
-  controller_replay_.emplace(file_, world_, world_, std::function<void()>(), ControllerReplay::Services{server_, controllers_, watch_}, gone_,
-                     script_of, tell);
-  return controller_replay_->tell([this](std::uint64_t tick) { return options_.until && tick > *options_.until; });
+  controller_replay_.emplace(file_, world_, world_, std::function<void()>(),
+                             ControllerReplay::Services{server_, controllers_, watch_}, gone_,
+                             script_of, tell);
+  return controller_replay_->tell(
+      [this](std::uint64_t tick) { return options_.until && tick > *options_.until; });
 }
 
 int ControllerCheck::tell(const std::optional<Ending>& ending) {
@@ -205,7 +207,8 @@ int ControllerCheck::tell(const std::optional<Ending>& ending) {
   const auto failures = watch_.reported().failures();
   for (const auto& [robot, difference] : controller_replay_->differences()) {
     console_.report(fmt::format("'{}': {} of {} ticks differ, the first is {}", robot,
-                                difference.ticks, controller_replay_->ticks(), difference.first_tick));
+                                difference.ticks, controller_replay_->ticks(),
+                                difference.first_tick));
   }
   if (ending == Ending::interrupted || ending == Ending::forced) {
     return reports::exit_code::interrupted;
@@ -213,7 +216,8 @@ int ControllerCheck::tell(const std::optional<Ending>& ending) {
   if (ending || !failures.empty()) return reports::exit_code::controller_failed;
   if (!controller_replay_->differences().empty()) return reports::exit_code::differs;
   if (controller_replay_->ticks() == 0) {
-    console_.fault("nothing was compared: in the recorded run no such robot with a controller was stepped");
+    console_.fault(
+        "nothing was compared: in the recorded run no such robot with a controller was stepped");
     return reports::exit_code::fault;
   }
   console_.result(fmt::format("identical: the commands of {} ticks are as recorded",

@@ -27,13 +27,13 @@ struct ControllerCheckOptions {
   std::string recording;  ///< path
   bool quiet = false;
   std::vector<std::pair<std::string, std::string>> controllers;  ///< id, command of the user
-  bool trusts_commands = false;              ///< those of the recording may be started
-  std::vector<std::string> lua_arguments;    ///< for ziggurat-lua
-  std::optional<std::string> robot;          ///< only this one
-  std::string command;                       ///< with `robot`: of its controller
-  std::string script;                        ///< with `robot`: its Lua script instead
-  std::optional<std::uint64_t> until;        ///< the last tick
-  std::size_t most_told = 1;                 ///< differences that are printed
+  bool trusts_commands = false;            ///< those of the recording may be started
+  std::vector<std::string> lua_arguments;  ///< for ziggurat-lua
+  std::optional<std::string> robot;        ///< only this one
+  std::string command;                     ///< with `robot`: of its controller
+  std::string script;                      ///< with `robot`: its Lua script instead
+  std::optional<std::uint64_t> until;      ///< the last tick
+  std::size_t most_told = 1;               ///< differences that are printed
 };
 
 class ControllerCheck {
@@ -65,7 +65,7 @@ class ControllerCheck {
   const processes::PrivateFolder folder_;
   supervision::World world_;
   std::vector<std::string> scripts_;  ///< per robot at tick 0
-  std::vector<bool> gone_;  ///< robots that no controller has
+  std::vector<bool> gone_;            ///< robots that no controller has
   network::Server server_;
   processes::Controllers controllers_;
   supervision::Callers callers_;

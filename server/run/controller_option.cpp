@@ -15,8 +15,8 @@ namespace {
                          const std::vector<std::string>& ids) {
   const std::string known =
       ids.empty() ? "it has none" : fmt::format("it has: {}", fmt::join(ids, ", "));
-  throw text::UsageError(
-      fmt::format("{}: the scene has no {} '{}'; {}", option, what, id, text::advice(id, ids, known)));
+  throw text::UsageError(fmt::format("{}: the scene has no {} '{}'; {}", option, what, id,
+                                     text::advice(id, ids, known)));
 }
 
 }  // namespace
@@ -51,7 +51,8 @@ std::vector<std::size_t> awaited_named(std::string_view option, const std::strin
 
 void check_command(const std::string& id, const std::string& command) {
   const std::string wrong = processes::why_not_started(command);
-  if (!wrong.empty()) throw text::UsageError(fmt::format("--controller {}={}: {}", id, command, wrong));
+  if (!wrong.empty())
+    throw text::UsageError(fmt::format("--controller {}={}: {}", id, command, wrong));
 }
 
 void set_command(scene::Scene& scene, const std::string& id, const std::string& command) {

@@ -27,12 +27,13 @@ std::vector<std::size_t> awaited_named(std::string_view option, const std::strin
 /// @throws text::UsageError if no shell could start its program
 void check_command(const std::string& id, const std::string& command);
 
-/// The command of `--controller ID=CMD`, of a controller or director; the script of a director is not run then.
+/// The command of `--controller ID=CMD`, of a controller or director; the script of a director is
+/// not run then.
 /// @throws as awaited_named()
 void set_command(scene::Scene& scene, const std::string& id, const std::string& command);
 
-/// Calls apply(option) for every option: first for those without a name, which hold for all, then for those
-/// with a name, each in order.
+/// Calls apply(option) for every option: first for those without a name, which hold for all, then
+/// for those with a name, each in order.
 template <class Option, class Apply>
 void apply_in_order(const std::vector<Option>& options, const Apply& apply) {
   for (const bool by_name : {false, true}) {

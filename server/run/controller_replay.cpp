@@ -26,8 +26,8 @@ ControllerReplay::ControllerReplay(const replay::RecordingFile& file, supervisio
       script_of_(std::move(script_of)),
       tell_difference_(std::move(tell_difference)),
       states_(file_),
-      replay_({recorded_.scene, recorded_.additions, recorded_.simulation, recorded_.seed}, file_.files().opener(),
-              [this] { return states_.next(); }) {
+      replay_({recorded_.scene, recorded_.additions, recorded_.simulation, recorded_.seed},
+              file_.files().opener(), [this] { return states_.next(); }) {
   replay_.tell([this](const v1::Act& act) { take(act); });
   replay_.open_snapshots_by(embedded_snapshots(file_, recorded_));
 }
@@ -74,8 +74,8 @@ void ControllerReplay::take_shown() {
   for (std::size_t entity = 0; entity < layout.entities.size(); ++entity) {
     if (robot != layout.robots.end() && robot->entity < entity) ++robot;
     const bool is_robot = robot != layout.robots.end() && robot->entity == entity;
-    const auto copy = [&](const world::Range& devices, world::Range world::RobotLayout::*set, const auto& from,
-                          auto& to) {
+    const auto copy = [&](const world::Range& devices, world::Range world::RobotLayout::*set,
+                          const auto& from, auto& to) {
       if (is_robot && ((*robot).*set).count > 0) return;
       for (std::size_t i = devices.begin; i < devices.end(); ++i) to[i] = from[i];
     };
@@ -88,7 +88,7 @@ void ControllerReplay::take_shown() {
 }
 
 bool ControllerReplay::skip(const std::function<bool(std::uint64_t)>& is_end,
-                     const std::function<bool()>& meanwhile) {
+                            const std::function<bool()>& meanwhile) {
   is_told_ = false;
   while (advance()) {
     if (is_end(recorded_.simulation.state().tick)) break;
@@ -168,7 +168,8 @@ void ControllerReplay::take_spawn() {
     constexpr auto& channel = std::get<i>(world::commanded);
     auto& values = answered_.*channel.values;
     const auto& all = now.*channel.values;
-    values.insert(values.end(), all.begin() + static_cast<std::ptrdiff_t>(values.size()), all.end());
+    values.insert(values.end(), all.begin() + static_cast<std::ptrdiff_t>(values.size()),
+                  all.end());
   });
   add_robots();
 }
@@ -201,7 +202,7 @@ void ControllerReplay::remove_robot(const std::string& entity) {
     if (layout.entities[layout.robots[r].entity].id != entity || gone_[r]) continue;
     gone_[r] = true;
     services_.server.remove_robots(std::array{r},
-                                  fmt::format("'{}' was removed from the world.", entity));
+                                   fmt::format("'{}' was removed from the world.", entity));
   }
 }
 

@@ -25,8 +25,8 @@ class ControllerReplay {
   struct Difference {
     std::uint64_t first_tick = 0, ticks = 0;  ///< the first tick with one; how many have one
   };
-  /// The script of a robot that was spawned, as a file; empty if its controller needs none. Nothing: the
-  /// robot gets no controller.
+  /// The script of a robot that was spawned, as a file; empty if its controller needs none.
+  /// Nothing: the robot gets no controller.
   using ScriptOf = std::function<std::optional<std::string>(const world::RobotLayout& robot)>;
   using TellDifference = std::function<void(std::uint64_t tick, const std::string& robot,
                                             const replay::CommandDifference& difference)>;
@@ -37,20 +37,23 @@ class ControllerReplay {
   };
 
   /// All that is given must outlive this, but for the functions.
-  /// @param recorded  world of the recording's scene and seed, at its begin; the recorded run is repeated in it
-  /// @param told      world that the controllers were told of: the same one, or one of a scene with other values
-  /// @param follow    gives the told world the population of the recorded one; empty: it is the same
+  /// @param recorded  world of the recording's scene and seed, at its begin; the recorded run is
+  /// repeated in it
+  /// @param told      world that the controllers were told of: the same one, or one of a scene with
+  /// other values
+  /// @param follow    gives the told world the population of the recorded one; empty: it is the
+  /// same
   /// @param gone      robots that no controller has
   ControllerReplay(const replay::RecordingFile& file, supervision::World& recorded,
                    const supervision::World& told, std::function<void()> follow,
                    const Services& services, std::vector<bool> gone, ScriptOf script_of,
                    TellDifference tell_difference);
 
-  /// To the state for which `is_end(tick)` holds, which controllers are not given, or to the end of the
-  /// recording. Controllers must have been gathered.
+  /// To the state for which `is_end(tick)` holds, which controllers are not given, or to the end of
+  /// the recording. Controllers must have been gathered.
   /// @return  nothing, or what ended the run
-  /// @throws replay::RecordingError if a state differs from the recorded one, or if the run went back to a
-  /// snapshot after controllers were given something: they cannot go back
+  /// @throws replay::RecordingError if a state differs from the recorded one, or if the run went
+  /// back to a snapshot after controllers were given something: they cannot go back
   std::optional<reports::Ending> tell(const std::function<bool(std::uint64_t tick)>& is_end);
   /// The same, but controllers are given nothing.
   /// @param meanwhile  is called between two ticks; false: the run ends
@@ -61,9 +64,11 @@ class ControllerReplay {
   /// Commands of the controllers after tell(), with values that stay set; null: they were given
   /// nothing.
   const world::Commands* commanded() const { return is_restarted_ ? nullptr : &answered_; }
-  bool has_ended() const { return has_ended_; }      ///< it came to the end of the recording
-  std::uint64_t ticks() const { return ticks_; }     ///< whose commands were compared
-  const std::map<std::string, Difference>& differences() const { return differences_; }  ///< by robot
+  bool has_ended() const { return has_ended_; }   ///< it came to the end of the recording
+  std::uint64_t ticks() const { return ticks_; }  ///< whose commands were compared
+  const std::map<std::string, Difference>& differences() const {
+    return differences_;
+  }  ///< by robot
 
  private:
   bool advance();

@@ -75,7 +75,8 @@ std::string Fork::embedded_script(const std::string& name) const {
 
 void Fork::use_own_scripts() {
   for (const auto& [name, path] : fork_options_.scripts) {
-    if (const auto fault = processes::compile_error(path)) throw text::UsageError("--script: " + *fault);
+    if (const auto fault = processes::compile_error(path))
+      throw text::UsageError("--script: " + *fault);
     std::ifstream file(path, std::ios::binary);
     std::string bytes{std::istreambuf_iterator<char>(file), {}};
     files_.add(embedded_script(name), std::move(bytes));
@@ -112,7 +113,8 @@ supervision::World Fork::build(const simulation::TellStep& tell) const {
   const v1::RunStart& run = file_.run();
   scene::OpenScene opened = replay::read_scene(run, files_, options_.scene_file.variation);
   set_commands(opened.scene);
-  const std::string hash = changes_world() ? replay::scene_hash(opened.scene, files_) : run.scene_hash();
+  const std::string hash =
+      changes_world() ? replay::scene_hash(opened.scene, files_) : run.scene_hash();
   return {run.scene(), std::move(opened), seed_, tell, hash};
 }
 
@@ -125,15 +127,15 @@ void Fork::prepare(supervision::World& world) {
   const v1::RunStart& run = file_.run();
   const bool has_other_values = changes_world();
   if (has_other_values) {
-    recorded_.reset(new supervision::World{run.scene(), replay::read_scene(run, file_.files()),
-                                           run.seed(), {}, run.scene_hash()});
+    recorded_.reset(new supervision::World{
+        run.scene(), replay::read_scene(run, file_.files()), run.seed(), {}, run.scene_hash()});
   }
   supervision::World& recorded_world = recorded_ ? *recorded_ : world;
   begin_as_recorded(file_, recorded_world);
   if (!has_other_values) return;
   const auto refuse = [](const std::string& why) {
-    throw replay::RecordingError("--set, --param, --seed: the fork cannot go on from recorded states: " +
-                                 why);
+    throw replay::RecordingError(
+        "--set, --param, --seed: the fork cannot go on from recorded states: " + why);
   };
   if (recorded_world.scene.experiment.ticks_per_second != world.scene.experiment.ticks_per_second) {
     refuse("ticks_per_second must stay as it is");
@@ -164,10 +166,11 @@ std::vector<scene::Director> Fork::directors(const supervision::World& world,
   std::vector<scene::Director> directors = world.scene.directors;
   for (scene::Director& director : directors) {
     if (director.script.empty() && director.command.empty() && options_.endpoints.empty()) {
-      throw text::UsageError(fmt::format(
-          "the command of the director '{0}' is not started by itself; write --controller {0}=COMMAND, "
-          "--trust-recorded-commands, or --endpoint where it connects",
-          director.id));
+      throw text::UsageError(
+          fmt::format("the command of the director '{0}' is not started by itself; write "
+                      "--controller {0}=COMMAND, "
+                      "--trust-recorded-commands, or --endpoint where it connects",
+                      director.id));
     }
     director.script = script_below(folder, files_, world.scene, world.path, director);
   }
@@ -191,17 +194,21 @@ std::vector<std::size_t> Fork::idle_robots(const supervision::World& world,
     }
   }
   if (!missing.empty() && options_.endpoints.empty()) {
-    throw text::UsageError(fmt::format(
-        "the commands of the recording are not started by themselves; for each of these controllers "
-        "write --controller ID=COMMAND: {}; or --trust-recorded-commands, or --endpoint where they connect",
-        fmt::join(missing, ", ")));
+    throw text::UsageError(
+        fmt::format("the commands of the recording are not started by themselves; for each of "
+                    "these controllers "
+                    "write --controller ID=COMMAND: {}; or --trust-recorded-commands, or "
+                    "--endpoint where they connect",
+                    fmt::join(missing, ", ")));
   }
   return idle;
 }
 
-std::optional<Ending> Fork::replay_to_begin(supervision::World& world, const ControllerReplay::Services& services,
-                                   const std::vector<std::size_t>& idle, const std::string& folder,
-                                   processes::Signals& signals, reports::Console& console) {
+std::optional<Ending> Fork::replay_to_begin(supervision::World& world,
+                                            const ControllerReplay::Services& services,
+                                            const std::vector<std::size_t>& idle,
+                                            const std::string& folder, processes::Signals& signals,
+                                            reports::Console& console) {
   supervision::World& recorded_world = recorded_ ? *recorded_ : world;
   std::vector<bool> gone(world.simulation.layout().robots.size());
   for (const std::size_t robot : idle) gone[robot] = true;
@@ -214,7 +221,8 @@ std::optional<Ending> Fork::replay_to_begin(supervision::World& world, const Con
   const auto follow = [&] {
     if (recorded_) branch(world);
   };
-  ControllerReplay controller_replay(file_, recorded_world, world, follow, services, std::move(gone), script_of, {});
+  ControllerReplay controller_replay(file_, recorded_world, world, follow, services,
+                                     std::move(gone), script_of, {});
   const auto is_there = [this](std::uint64_t tick) { return tick == fork_options_.at; };
   using clock = std::chrono::steady_clock;
   auto last_look = clock::now();
@@ -233,8 +241,9 @@ std::optional<Ending> Fork::replay_to_begin(supervision::World& world, const Con
     if (file_.states() == 0) {
       throw text::UsageError("the recording holds no tick: the run ended before its first");
     }
-    throw text::UsageError(fmt::format("--at {}: the recording has no such tick, it ends at tick {}",
-                                       fork_options_.at, recorded_world.simulation.state().tick));
+    throw text::UsageError(
+        fmt::format("--at {}: the recording has no such tick, it ends at tick {}", fork_options_.at,
+                    recorded_world.simulation.state().tick));
   }
   follow();
   if (const world::Commands* commanded = controller_replay.commanded()) {
@@ -257,14 +266,16 @@ void Fork::report(const ControllerReplay& controller_replay, reports::Console& c
   for (const auto& [robot, difference] : differences) {
     if (robots.size() == most) break;
     robots.push_back(fmt::format("'{}' from tick {} on, in {} of {} ticks", robot,
-                                 difference.first_tick, difference.ticks, controller_replay.ticks()));
+                                 difference.first_tick, difference.ticks,
+                                 controller_replay.ticks()));
   }
   if (differences.size() > most) {
     robots.push_back(fmt::format("and {} more robots", differences.size() - most));
   }
-  console.notice(fmt::format(
-      "up to tick {} the controllers command otherwise than in the recording, whose commands were applied: {}", fork_options_.at,
-      fmt::join(robots, "; ")));
+  console.notice(
+      fmt::format("up to tick {} the controllers command otherwise than in the recording, whose "
+                  "commands were applied: {}",
+                  fork_options_.at, fmt::join(robots, "; ")));
 }
 
 void Fork::describe(const supervision::World& world, recorder::Start& start) const {

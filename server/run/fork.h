@@ -19,7 +19,8 @@ namespace ziggurat::run {
 
 class Fork {
  public:
-  /// Opens the recording. @throws replay::RecordingError, text::UsageError; all of options.fork is needed
+  /// Opens the recording. @throws replay::RecordingError, text::UsageError; all of options.fork is
+  /// needed
   explicit Fork(const Options& options);
 
   const std::string& scene_path() const { return file_.run().scene(); }
@@ -38,7 +39,8 @@ class Fork {
                                          const std::string& folder) const;
   /// Directors of the scene, with the paths of their scripts.
   /// @throws text::UsageError if one has no command that may be started
-  std::vector<scene::Director> directors(const supervision::World& world, const std::string& folder) const;
+  std::vector<scene::Director> directors(const supervision::World& world,
+                                         const std::string& folder) const;
   /// Robots that get no controller: those that had none.
   /// @throws text::UsageError if a controller has no command that may be started
   std::vector<std::size_t> idle_robots(const supervision::World& world,
@@ -48,10 +50,12 @@ class Fork {
   /// @param idle    robots without controller
   /// @param folder  of write_scripts()
   /// @return  nothing, or what ended the run on the way
-  std::optional<reports::Ending> replay_to_begin(supervision::World& world, const ControllerReplay::Services& services,
-                                        const std::vector<std::size_t>& idle,
-                                        const std::string& folder, processes::Signals& signals,
-                                        reports::Console& console);
+  std::optional<reports::Ending> replay_to_begin(supervision::World& world,
+                                                 const ControllerReplay::Services& services,
+                                                 const std::vector<std::size_t>& idle,
+                                                 const std::string& folder,
+                                                 processes::Signals& signals,
+                                                 reports::Console& console);
 
   /// Adds the begin of the fork to its recording, with the snapshot and the files.
   /// @param world  world at the begin of the fork
@@ -68,8 +72,8 @@ class Fork {
   const Options& options_;
   const ForkOptions& fork_options_;
   const replay::RecordingFile file_;
-  replay::EmbeddedFiles files_;  ///< of the recording, with the user's own scripts
-  std::uint64_t seed_;           ///< of the fork
+  replay::EmbeddedFiles files_;                   ///< of the recording, with the user's own scripts
+  std::uint64_t seed_;                            ///< of the fork
   std::unique_ptr<supervision::World> recorded_;  ///< null: the world of the fork is the same
 };
 

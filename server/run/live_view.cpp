@@ -18,7 +18,8 @@ constexpr std::chrono::milliseconds fresh_interval(16);  // a viewer could subsc
 constexpr std::chrono::milliseconds barrier_interval{250};
 constexpr const char* over = "The run is over: its last state is shown, and nothing changes it.";
 constexpr const char* over_for_good =
-    "The run is over and its controllers have ended, so it can't be reset; start the program again, "
+    "The run is over and its controllers have ended, so it can't be reset; start the program "
+    "again, "
     "with --duration=0 for a run that does not end by itself.";
 
 view::Settings settings_of(const Options& options, const LiveView::Run& run) {
@@ -56,31 +57,33 @@ std::string wait_notice() {
   return fmt::format("waits for a viewer, for {} s at most", longest_wait_for_viewer.count());
 }
 
-LiveView::LiveView(const Options& options, Run run) : run_(run), server_(settings_of(options, run)) {
+LiveView::LiveView(const Options& options, Run run)
+    : run_(run), server_(settings_of(options, run)) {
   connect_callers();
   populate();
 }
 
 void LiveView::connect_callers() {
   run_.connect({[this] { return take_calls(); },
-                    [this](const network::Call& call) {
-                      const auto found = unanswered_.find(call.request.id);
-                      return found != unanswered_.end() &&
-                             server_.requests().is_connected(found->second.viewer);
-                    },
-                    [this](const network::Call& call, std::uint64_t tick) {
-                      const auto found = unanswered_.extract(call.request.id);
-                      if (found) server_.answer(found.mapped(), tick);  // otherwise the viewer has left
-                    },
-                    [this](const network::Call& call, const std::string& why) {
-                      const auto found = unanswered_.extract(call.request.id);
-                      if (found) server_.refuse(found.mapped(), why);
-                    }});
+                [this](const network::Call& call) {
+                  const auto found = unanswered_.find(call.request.id);
+                  return found != unanswered_.end() &&
+                         server_.requests().is_connected(found->second.viewer);
+                },
+                [this](const network::Call& call, std::uint64_t tick) {
+                  const auto found = unanswered_.extract(call.request.id);
+                  if (found) server_.answer(found.mapped(), tick);  // otherwise the viewer has left
+                },
+                [this](const network::Call& call, const std::string& why) {
+                  const auto found = unanswered_.extract(call.request.id);
+                  if (found) server_.refuse(found.mapped(), why);
+                }});
 }
 
 std::vector<network::Call> LiveView::take_calls() {
-  std::erase_if(unanswered_,
-                [&](const auto& entry) { return !server_.requests().is_connected(entry.second.viewer); });
+  std::erase_if(unanswered_, [&](const auto& entry) {
+    return !server_.requests().is_connected(entry.second.viewer);
+  });
   std::vector<network::Call> calls;
   for (view::ViewerCall& call : std::exchange(calls_, {})) {
     network::Call& taken = calls.emplace_back();
@@ -95,8 +98,12 @@ std::vector<network::Call> LiveView::take_calls() {
 
 channels::Moment LiveView::moment() const {
   simulation::Simulation& simulation = run_.world.simulation;
-  return {simulation.state(), simulation.observations(), simulation.commands(),
-          simulation.contacts(), phases_, simulation.rays()};
+  return {simulation.state(),
+          simulation.observations(),
+          simulation.commands(),
+          simulation.contacts(),
+          phases_,
+          simulation.rays()};
 }
 
 void LiveView::populate() {
@@ -171,7 +178,8 @@ void LiveView::apply(const view::Parameter& parameter) {
     frames_per_second_ = std::get<double>(parameter.value);
     return;
   }
-  (parameter.name == "draw_labels" ? layers_.labels : layers_.frusta) = std::get<bool>(parameter.value);
+  (parameter.name == "draw_labels" ? layers_.labels : layers_.frusta) =
+      std::get<bool>(parameter.value);
   server_.set_layers(layers_);
   show(wanted_, true);
 }
@@ -206,10 +214,10 @@ void LiveView::update() {
     is_current_ = true;
     show(wanted_, false);
   }
-  const auto phase = is_over_               ? wire::Status::Phase::ending
+  const auto phase = is_over_           ? wire::Status::Phase::ending
                      : run_.is_paused() ? wire::Status::Phase::paused
-                     : is_gathered_         ? wire::Status::Phase::running
-                                            : wire::Status::Phase::gathering;
+                     : is_gathered_     ? wire::Status::Phase::running
+                                        : wire::Status::Phase::gathering;
   if (phase != phase_) {
     phase_ = phase;
     server_.set_parameter({"phase", std::string(name_of(phase))});
@@ -228,8 +236,8 @@ void LiveView::show_barrier() {
   std::vector<channels::Histogram> histograms;
   for (std::size_t c = 0; c < controllers.size(); ++c) {
     const network::AnswerTimes& times = controllers[c].answer_times;
-    histograms.push_back({run_.world.scene.controllers[c].id, times.least, times.growth, times.counts,
-                          controllers[c].missed_ticks});
+    histograms.push_back({run_.world.scene.controllers[c].id, times.least, times.growth,
+                          times.counts, controllers[c].missed_ticks});
   }
   server_.show_event(channels::Channels::barrier(status, histograms));
 }

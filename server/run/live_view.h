@@ -91,10 +91,10 @@ class LiveView {
   const Run run_;
   view::ViewerServer server_;
   channels::Layers layers_;
-  std::vector<std::uint32_t> wanted_;               ///< ids of channels, ascending
-  channels::Kinds kinds_;                           ///< of these
-  std::vector<std::uint32_t> fresh_;                ///< of these: not shown since a viewer subscribed
-  std::vector<view::ViewerCall> calls_;                   ///< not taken yet
+  std::vector<std::uint32_t> wanted_;    ///< ids of channels, ascending
+  channels::Kinds kinds_;                ///< of these
+  std::vector<std::uint32_t> fresh_;     ///< of these: not shown since a viewer subscribed
+  std::vector<view::ViewerCall> calls_;  ///< not taken yet
   std::map<std::uint64_t, view::ViewerCall> unanswered_;  ///< by Request::id
   std::uint64_t next_call_ = 1, seen_changes_ = 0;
   channels::PhaseTimes phases_;

@@ -33,8 +33,8 @@ class LocalEndpoints {
  private:
   const processes::Guardian* guardian_;
   std::list<processes::PrivateFolder> folders_;
-  std::string shared_;          ///< the folder of of_server()
-  posix::Descriptor opened_;    ///< the same
+  std::string shared_;        ///< the folder of of_server()
+  posix::Descriptor opened_;  ///< the same
 };
 
 }  // namespace ziggurat::run

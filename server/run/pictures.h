@@ -52,8 +52,8 @@ class Pictures {
   Pictures(const PictureOptions& options, const scene::Scene& scene,
            const simulation::Simulation& simulation);
 
-  /// Takes the pictures of the world's tick, with its rays if the view asks for them; waits for earlier ones if
-  /// they are many.
+  /// Takes the pictures of the world's tick, with its rays if the view asks for them; waits for
+  /// earlier ones if they are many.
   /// @throws recording::WriteError, render::RenderError
   void tick(const simulation::Simulation& simulation);
 
@@ -63,14 +63,15 @@ class Pictures {
 
   /// The paths of pictures and film, after close().
   const std::vector<std::string>& taken() const { return taken_; }
-  /// A sentence if there are fewer pictures, or frames of the film, than there should be, otherwise empty;
-  /// after close().
+  /// A sentence if there are fewer pictures, or frames of the film, than there should be, otherwise
+  /// empty; after close().
   std::string shortcoming() const;
 
  private:
   render::View view(const world::State& state);
   void populate(const simulation::Simulation& simulation);
-  void draw(const simulation::Simulation& simulation, const render::View& view, render::Several::Take take);
+  void draw(const simulation::Simulation& simulation, const render::View& view,
+            render::Several::Take take);
 
   PictureOptions options_;
   const scene::Scene& scene_;

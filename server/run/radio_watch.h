@@ -34,7 +34,7 @@ class RadioWatch {
 
   std::vector<Radio> radios_;  // into Layout::radios; may be shorter
   std::uint64_t ticks_ = 0;
-  std::uint64_t left_out_ = 0;         // messages
+  std::uint64_t left_out_ = 0;        // messages
   std::uint64_t first_left_out_ = 0;  // tick of the first of them
 };
 

@@ -40,17 +40,24 @@ std::string name_of_script(const fs::path& script, const std::string& scene_file
   return (folder / relative).lexically_normal().string();
 }
 
-/// Folder of the scene file, which names in a recording leave out: they would tell the folders of its author. Empty, if
-/// a file of the scene or a setting tells it anyway: that one would not be found again.
+/// Folder of the scene file, which names in a recording leave out: they would tell the folders of
+/// its author. Empty, if a file of the scene or a setting tells it anyway: that one would not be
+/// found again.
 std::string folder_to_hide(const recorder::Start& start) {
   const fs::path folder = fs::path(start.scene).parent_path();
   if (folder.empty()) return {};
   std::string prefix = folder.string();
   if (!prefix.ends_with('/')) prefix += '/';
-  const auto tells = [&](std::string_view text) { return folder.is_absolute() && text.find(prefix) != std::string_view::npos; };
-  const bool is_told = std::ranges::any_of(start.files, tells, [](const auto& file) -> std::string_view { return file.text; }) ||
-                       std::ranges::any_of(start.settings, tells, [](const auto& each) -> std::string_view { return each.second; }) ||
-                       std::ranges::any_of(start.parameters, tells, [](const auto& each) -> std::string_view { return each.second; });
+  const auto tells = [&](std::string_view text) {
+    return folder.is_absolute() && text.find(prefix) != std::string_view::npos;
+  };
+  const bool is_told =
+      std::ranges::any_of(start.files, tells,
+                          [](const auto& file) -> std::string_view { return file.text; }) ||
+      std::ranges::any_of(start.settings, tells,
+                          [](const auto& each) -> std::string_view { return each.second; }) ||
+      std::ranges::any_of(start.parameters, tells,
+                          [](const auto& each) -> std::string_view { return each.second; });
   return is_told ? std::string() : prefix;
 }
 
@@ -70,14 +77,16 @@ void attach(const fs::path& script, std::string name, std::vector<recorder::Embe
 void add_required(std::vector<fs::path>& scripts, reports::Console& console) {
   for (const fs::path& folder : processes::add_required(scripts)) {
     console.notice(fmt::format(
-        "some Lua files of {} are not in the recording: it takes 1000 at most, of 4 MiB each, and 16 MiB of those "
+        "some Lua files of {} are not in the recording: it takes 1000 at most, of 4 MiB each, and "
+        "16 MiB of those "
         "whose names scripts compute; controllers that load others cannot be repeated from it",
         folder.string()));
   }
 }
 
 /// Each script of the scene, and what it loads from its folders, once.
-void add_scripts(const supervision::World& world, recorder::Start& start, reports::Console& console) {
+void add_scripts(const supervision::World& world, recorder::Start& start,
+                 reports::Console& console) {
   std::vector<fs::path> scripts = processes::scripts_of(world.scene, world.path);
   add_required(scripts, console);
   for (const fs::path& script : scripts) {
@@ -117,8 +126,9 @@ std::function<bool(std::string_view)> wish_of(const std::vector<std::string>& pa
 std::vector<std::string> topics_of(const supervision::World& world) {
   std::vector<std::string> topics{"/run", "/inputs", "/state"};
   channels::Channels channels;
-  channels.populate({world.scene, world.path, world.scene_hash, world.seed, 0, world.simulation.layout(),
-                     world.simulation.entities(), world.simulation.state()});
+  channels.populate({world.scene, world.path, world.scene_hash, world.seed, 0,
+                     world.simulation.layout(), world.simulation.entities(),
+                     world.simulation.state()});
   for (const channels::Channel& channel : channels.list()) {
     if (recorder::is_recorded(channel.kind)) topics.push_back(channel.topic);
   }
@@ -132,25 +142,35 @@ bool is_of_robots(std::string_view pattern) {
   return pattern.substr(0, exact) == robots.substr(0, exact);
 }
 
-/// Robots that are spawned later have topics that fit then: only a warning. @throws text::UsageError
-void check_topics(const std::vector<std::string>& patterns, const supervision::World& world, reports::Console& console) {
-  const std::vector<std::string> topics = patterns.empty() ? std::vector<std::string>() : topics_of(world);
+/// Robots that are spawned later have topics that fit then: only a warning. @throws
+/// text::UsageError
+void check_topics(const std::vector<std::string>& patterns, const supervision::World& world,
+                  reports::Console& console) {
+  const std::vector<std::string> topics =
+      patterns.empty() ? std::vector<std::string>() : topics_of(world);
   for (const std::string& pattern : patterns) {
-    if (std::ranges::any_of(topics, [&](const std::string& topic) { return network::matches(pattern, topic); })) continue;
-    const std::string told = fmt::format("--record-topics: '{}' fits no topic", text::shortened(pattern));
+    if (std::ranges::any_of(
+            topics, [&](const std::string& topic) { return network::matches(pattern, topic); }))
+      continue;
+    const std::string told =
+        fmt::format("--record-topics: '{}' fits no topic", text::shortened(pattern));
     if (is_of_robots(pattern)) {
       console.warning(told + " of this world; it is for robots that are spawned later, if any");
       continue;
     }
-    throw text::UsageError(fmt::format("{}; {}", told,
-                                       text::advice(pattern, topics, "write /poses or '/robots/*', for example (docs/recordings.md)")));
+    throw text::UsageError(
+        fmt::format("{}; {}", told,
+                    text::advice(pattern, topics,
+                                 "write /poses or '/robots/*', for example (docs/recordings.md)")));
   }
 }
 
 /// Names in a recording are UTF-8: others would not be found again. @throws text::UsageError
 void check_names(const recorder::Start& start) {
   const auto check = [](const std::string& name) {
-    if (!text::is_utf8(name)) throw text::UsageError(fmt::format("{}: the name is not UTF-8, as names in a recording are; rename it", name));
+    if (!text::is_utf8(name))
+      throw text::UsageError(
+          fmt::format("{}: the name is not UTF-8, as names in a recording are; rename it", name));
   };
   check(start.scene);
   for (const recorder::EmbeddedFile& file : start.files) check(file.name);
@@ -173,8 +193,9 @@ recorder::Start start_of(const Options& options, const supervision::World& world
   start.last_tick = last_tick;
   start.controllers = controllers_of(world);
   start.robots_without_controller = idle;
-  start.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(
-                                                        std::chrono::system_clock::now())));
+  start.date = fmt::format(
+      "{:%Y-%m-%dT%H:%M:%SZ}",
+      fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
   start.build = this_build();
   start.arguments = options.arguments;
   start.files = files.all();
@@ -213,7 +234,8 @@ RecordedRun::RecordedRun(const Options& options, supervision::World& world, cons
       recorder_({options.record,
                  options.record_compression,
                  {wish_of(options.record_topics), options.record_every}},
-                begin(start_of(options, world, files, last_tick, idle, fork, console), options.record_paths)) {}
+                begin(start_of(options, world, files, last_tick, idle, fork, console),
+                      options.record_paths)) {}
 
 /// @param with_paths  names and the command line stay as they were written
 recorder::Start RecordedRun::begin(recorder::Start start, bool with_paths) {
@@ -231,7 +253,8 @@ recorder::Start RecordedRun::begin(recorder::Start start, bool with_paths) {
 
 void RecordedRun::log(channels::Severity severity, std::string_view name, std::string_view text) {
   std::string shown(text);
-  for (std::size_t at = 0; !hidden_folder_.empty() && (at = shown.find(hidden_folder_, at)) != std::string::npos;) {
+  for (std::size_t at = 0;
+       !hidden_folder_.empty() && (at = shown.find(hidden_folder_, at)) != std::string::npos;) {
     shown.erase(at, hidden_folder_.size());
   }
   recorder_.log(severity, name, shown);
@@ -247,9 +270,13 @@ void RecordedRun::tick() {
     recorder_.populate({world_.scene, scene_name_, world_.scene_hash, world_.seed, last_tick_,
                         simulation.layout(), simulation.entities(), simulation.state()});
   }
-  recorder_.tick({simulation.state(), simulation.observations(), simulation.commands(),
-                  simulation.contacts(), {}});
-  report_failure(fmt::format("the recording ends before tick {}", simulation.state().tick), ", the run goes on");
+  recorder_.tick({simulation.state(),
+                  simulation.observations(),
+                  simulation.commands(),
+                  simulation.contacts(),
+                  {}});
+  report_failure(fmt::format("the recording ends before tick {}", simulation.state().tick),
+                 ", the run goes on");
 }
 
 void RecordedRun::close(const std::vector<world::Metric>& metrics) {
@@ -268,7 +295,8 @@ void RecordedRun::report_failure(const std::string& missing, const char* otherwi
 /// Embeds the script of a spawned robot, and the scripts that it loads. Scripts that the recording
 /// has already are left out: they may have been edited since, but their robots began with the first
 /// version.
-void RecordedRun::add_script(const std::string& script, std::vector<recorder::EmbeddedFile>& files) {
+void RecordedRun::add_script(const std::string& script,
+                             std::vector<recorder::EmbeddedFile>& files) {
   if (script.empty() || !scripts_.insert(script).second) return;
   std::vector<fs::path> scripts{script};
   add_required(scripts, console_);

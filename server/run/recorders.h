@@ -22,8 +22,8 @@
 
 namespace ziggurat::run {
 
-/// Output files of a run. The output of a tick is on the disk within half a second of wall time. This
-/// also holds while the world is paused or a tick takes long.
+/// Output files of a run. The output of a tick is on the disk within half a second of wall time.
+/// This also holds while the world is paused or a tick takes long.
 class Recorders {
  public:
   /// Creates all files, so that a path that cannot be written is reported before the run.

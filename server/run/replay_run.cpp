@@ -40,13 +40,14 @@ supervision::World build_world(const replay::RecordingFile& file) {
 /// Refuses outputs that need a simulation, not only poses.
 void check_poses_suffice(const Options& options) {
   const std::pair<const char*, bool> others[] = {
-      {"--readings", !options.readings.empty()}, {"--rays", !options.rays.empty()},
-      {"--images", !options.images.empty()},     {"--summary", !options.summary.empty()},
+      {"--readings", !options.readings.empty()},   {"--rays", !options.rays.empty()},
+      {"--images", !options.images.empty()},       {"--summary", !options.summary.empty()},
       {"--hash-file", !options.hash_file.empty()}, {"--hash", options.hash}};
   for (const auto& [option, is_given] : others) {
     if (!is_given) continue;
     throw text::UsageError(fmt::format(
-        "--from-poses simulates nothing, and {} needs more than poses; leave out one of them", option));
+        "--from-poses simulates nothing, and {} needs more than poses; leave out one of them",
+        option));
   }
 }
 
@@ -57,12 +58,14 @@ std::pair<std::uint64_t, std::uint64_t> ticks_of(const replay::RecordingFile& fi
   if (next == nullptr) return {0, 0};
   std::pair<std::uint64_t, std::uint64_t> ticks{next->tick(), next->tick()};
   for (; next != nullptr; next = states.next()) {
-    ticks = {std::min<std::uint64_t>(ticks.first, next->tick()), std::max<std::uint64_t>(ticks.second, next->tick())};
+    ticks = {std::min<std::uint64_t>(ticks.first, next->tick()),
+             std::max<std::uint64_t>(ticks.second, next->tick())};
   }
   return ticks;
 }
 
-/// Before any output is created. A film of the recording is as long as it is, unless other ends are asked for.
+/// Before any output is created. A film of the recording is as long as it is, unless other ends are
+/// asked for.
 Options checked_outputs(const ReplayOptions& options, const replay::RecordingFile& file,
                         const scene::Experiment& experiment) {
   if (options.until) check_until(file, *options.until);
@@ -71,7 +74,8 @@ Options checked_outputs(const ReplayOptions& options, const replay::RecordingFil
   FilmOptions& film = *outputs.pictures->film;
   const auto [first, last] = ticks_of(file);
   film.from = std::max(film.from, static_cast<double>(first) / experiment.ticks_per_second);
-  if (!film.to) film.to = static_cast<double>(options.until.value_or(last)) / experiment.ticks_per_second;
+  if (!film.to)
+    film.to = static_cast<double>(options.until.value_or(last)) / experiment.ticks_per_second;
   if (*film.to < film.from) throw text::UsageError("--from is after the end of the recording");
   return outputs;
 }
@@ -112,9 +116,10 @@ ReplayRun::ReplayRun(const ReplayOptions& options, processes::Signals& signals)
 
 void ReplayRun::show_poses() {
   if (!file_.reader().contents().channel_of("/state")) {
-    throw text::UsageError(fmt::format(
-        "--from-poses: {} has no topic /state, in which the poses are (--record-topics); replay it without",
-        file_.path()));
+    throw text::UsageError(
+        fmt::format("--from-poses: {} has no topic /state, in which the poses are "
+                    "(--record-topics); replay it without",
+                    file_.path()));
   }
   replay_.show([this] { return states_.links(); });
   const std::string& begin = file_.run().snapshot();
@@ -124,7 +129,9 @@ void ReplayRun::show_poses() {
 
 LiveView::Run ReplayRun::shown() {
   LiveView::Run watched{world_, schedule_, file_.run().last_tick(), {}, {}, {}, {}, {}, {}};
-  watched.connect = [this](supervision::LocalCalls calls) { viewer_controls_.connect(std::move(calls)); };
+  watched.connect = [this](supervision::LocalCalls calls) {
+    viewer_controls_.connect(std::move(calls));
+  };
   watched.changes = [this] { return replay_.changes(); };
   watched.is_paused = [this] { return viewer_controls_.is_paused(); };
   watched.paused_for = [this] { return viewer_controls_.paused_for(); };
@@ -153,7 +160,8 @@ int ReplayRun::execute() {
     end = repeat();
     if (same_ == 0 && end == End::complete) {  // each recording has the state of tick 0
       is_empty_ = file_.shortcoming().empty();
-      damage_ = is_empty_ ? "it holds no tick: the run ended before its first" : file_.shortcoming();
+      damage_ =
+          is_empty_ ? "it holds no tick: the run ended before its first" : file_.shortcoming();
       end = End::damaged;
     }
   } catch (const replay::RecordingError& error) {
@@ -183,7 +191,8 @@ int ReplayRun::execute() {
     case End::stopped:
       break;
   }
-  return viewer_controls_.is_over() ? reports::exit_code::finished : reports::exit_code::interrupted;
+  return viewer_controls_.is_over() ? reports::exit_code::finished
+                                    : reports::exit_code::interrupted;
 }
 
 /// From the first recorded state to the last one, or to the first that differs.
@@ -200,7 +209,8 @@ ReplayRun::End ReplayRun::repeat() {
     }
     ++same_;
     const v1::Inputs& inputs = replay_.inputs();
-    if (same_ == 1 || inputs.epoch() != epoch) schedule_.begin(inputs.tick(), viewer_controls_.paused_for());
+    if (same_ == 1 || inputs.epoch() != epoch)
+      schedule_.begin(inputs.tick(), viewer_controls_.paused_for());
     if (live_view_ && inputs.epoch() != epoch) live_view_->restarted();
     if (inputs.epoch() != epoch) summary_.metrics.clear();
     epoch = inputs.epoch();
@@ -252,7 +262,8 @@ bool ReplayRun::may_step(clock::time_point now, int& timeout_ms) {
     schedule_.begin(world_.simulation.state().tick, viewer_controls_.paused_for());
   }
   if (viewer_controls_.is_paused()) return false;
-  const auto moment = schedule_.end_of(world_.simulation.state().tick, viewer_controls_.paused_for());
+  const auto moment =
+      schedule_.end_of(world_.simulation.state().tick, viewer_controls_.paused_for());
   if (now >= moment) return true;
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(moment - now).count();
   timeout_ms = static_cast<int>(std::min<std::int64_t>(left, longest_sleep_ms));
@@ -289,8 +300,7 @@ void ReplayRun::show_end() {
 
 void ReplayRun::complete_summary(End end) {
   const simulation::Simulation& simulation = world_.simulation;
-  summary_.ending =
-      end == End::stopped ? reports::Ending::interrupted : reports::Ending::finished;
+  summary_.ending = end == End::stopped ? reports::Ending::interrupted : reports::Ending::finished;
   summary_.ticks = simulation.state().tick;
   summary_.simulated_s = static_cast<double>(summary_.ticks) * simulation.tick_length();
   summary_.wall_s = summary_.physics_s + summary_.recording_s + summary_.pacing_s;

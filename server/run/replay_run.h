@@ -71,10 +71,10 @@ class ReplayRun {
   reports::Progress progress_;
   reports::Summary summary_;
   PhaseTimer timer_;
-  std::uint64_t same_ = 0;     ///< states that are as recorded
-  std::string difference_;     ///< what differs first
-  std::string damage_;         ///< what ends the recording early
-  bool is_empty_ = false;      ///< it is whole, without any state
+  std::uint64_t same_ = 0;  ///< states that are as recorded
+  std::string difference_;  ///< what differs first
+  std::string damage_;      ///< what ends the recording early
+  bool is_empty_ = false;   ///< it is whole, without any state
   clock::time_point waits_for_viewer_until_{};
 };
 

@@ -46,8 +46,9 @@ struct Plan {
 struct RunStatistics {
   reports::Summary summary;
   PhaseTimer timer;
-  std::chrono::system_clock::time_point date = std::chrono::system_clock::now();  ///< of the beginning
-  std::vector<reports::TickStart> tick_starts;                                     ///< of paced ticks
+  std::chrono::system_clock::time_point date =
+      std::chrono::system_clock::now();         ///< of the beginning
+  std::vector<reports::TickStart> tick_starts;  ///< of paced ticks
   std::uint32_t resets = 0;
 };
 
@@ -103,8 +104,8 @@ class Run {
   processes::Signals& signals_;
   reports::Console console_;
   const std::unique_ptr<Fork> fork_;  ///< null: the run begins at tick 0
-  const std::string path_;  ///< of the scene file
-  ReadFiles files_;  ///< of the scene
+  const std::string path_;            ///< of the scene file
+  ReadFiles files_;                   ///< of the scene
   LocalEndpoints local_;
   network::Config config_;
   std::unique_ptr<network::Server> listening_;

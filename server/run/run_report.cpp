@@ -33,9 +33,10 @@ void Run::end_in_failure(const std::exception& error) {
 void Run::complete_summary() {
   const simulation::Simulation& simulation = world_.simulation;
   statistics_.summary.ticks = simulation.state().tick;
-  statistics_.summary.simulated_s = static_cast<double>(statistics_.summary.ticks) * simulation.tick_length();
-  statistics_.summary.wall_s =
-      statistics_.summary.physics_s + statistics_.summary.exchange_s + statistics_.summary.recording_s + statistics_.summary.pacing_s;
+  statistics_.summary.simulated_s =
+      static_cast<double>(statistics_.summary.ticks) * simulation.tick_length();
+  statistics_.summary.wall_s = statistics_.summary.physics_s + statistics_.summary.exchange_s +
+                               statistics_.summary.recording_s + statistics_.summary.pacing_s;
   statistics_.summary.seed = world_.seed;  // a reset may have changed it
   statistics_.summary.hash = simulation.hash();
   statistics_.summary.solver = supervision::solver_status(simulation);
@@ -55,8 +56,8 @@ reports::ReportCard Run::report_card() const {
   reports::ReportCard card;
   card.scene = path_;
   card.seed = world_.seed;
-  card.date =
-      fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(statistics_.date)));
+  card.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
+                          fmt::gmtime(std::chrono::system_clock::to_time_t(statistics_.date)));
   if (plan_.real_time) card.period_s = world_.simulation.tick_length() / *plan_.real_time;
   card.ticks = statistics_.summary.ticks;
   card.warm_up = options_.warm_up;
@@ -100,7 +101,8 @@ void Run::print_summary() {
     console_.warning(deaf);
   }
   console_.report(options_.json ? to_json(statistics_.summary) : to_text(statistics_.summary));
-  if (options_.hash) console_.result(recording::hash_line(statistics_.summary.ticks, statistics_.summary.hash));
+  if (options_.hash)
+    console_.result(recording::hash_line(statistics_.summary.ticks, statistics_.summary.hash));
   console_.flush();
 }
 

@@ -36,15 +36,17 @@ void add_controllers(const Options& options, const scene::Scene& scene, network:
 void announce(const Options& options, const std::vector<std::string>& endpoints,
               reports::Console& console);
 
-/// A line on each kind of program that the world waits for: scripts, and the programs of controllers and directors.
-void tell_how_to_connect(const Options& options, const std::string& endpoint, const supervision::World& world,
-                         reports::Console& console);
+/// A line on each kind of program that the world waits for: scripts, and the programs of
+/// controllers and directors.
+void tell_how_to_connect(const Options& options, const std::string& endpoint,
+                         const supervision::World& world, reports::Console& console);
 
 /// Description of a run for its clients. Refers to both arguments.
 /// @param scripts  per robot of the scene; empty = none
 wire::Run description_of(const supervision::World& world, const std::vector<std::string>& scripts);
 
-/// Checks that directors can be started. @throws scene::SceneError that names those without script and command
+/// Checks that directors can be started. @throws scene::SceneError that names those without script
+/// and command
 void check_programs(const scene::Scene& scene);
 
 /// Directors of the scene, with the paths of their scripts.
@@ -59,9 +61,9 @@ wire::End end_message(const reports::Summary& summary);
 
 /// A run as viewers see and change it. Everything must outlive what it is given to.
 /// @param last_tick  0: until stopped
-LiveView::Run shown(supervision::World& world, network::Server& server, supervision::Callers& callers,
-                   supervision::Supervision& supervision, Schedule& schedule,
-                   std::uint64_t last_tick);
+LiveView::Run shown(supervision::World& world, network::Server& server,
+                    supervision::Callers& callers, supervision::Supervision& supervision,
+                    Schedule& schedule, std::uint64_t last_tick);
 
 /// Serves viewers, if the options ask for that. Prints the addresses on stderr also if the run is
 /// to be quiet: without them nothing can be seen.

@@ -33,8 +33,8 @@ class Watch {
     bool fail_fast = false;          ///< the first failure or drop of a robot ends the run
     bool waits_for_clients = false;  ///< serve: a client that disconnected may connect again
     std::optional<std::uint64_t> ticks;  ///< of the whole run; none: until it is stopped
-    std::vector<unsigned> restarts;  ///< per controller of the scene: how often a process that died is
-                                     ///< started again at most; empty: never
+    std::vector<unsigned> restarts;  ///< per controller of the scene: how often a process that died
+                                     ///< is started again at most; empty: never
   };
 
   /// Everything but the settings must outlive this.
@@ -57,7 +57,8 @@ class Watch {
   /// Until that moment, which may change. A client that connects meanwhile may answer the tick.
   std::optional<reports::Ending> sleep_until(const std::function<clock::time_point()>& moment,
                                              world::Commands& commands);
-  /// Until the first viewer is there, so that it sees the beginning; for longest_wait_for_viewer at most.
+  /// Until the first viewer is there, so that it sees the beginning; for longest_wait_for_viewer at
+  /// most.
   std::optional<reports::Ending> wait_for_viewer(world::Commands& commands);
   /// Shows the last state to viewers until an interruption, or until one of them ends it.
   void show_end();
@@ -85,7 +86,8 @@ class Watch {
   std::optional<reports::Ending> until(const Step& step);
   std::optional<reports::Ending> interruption();
   std::optional<reports::Ending> supervisor_request();
-  bool is_missed(const processes::ControllerProcess& process, const std::vector<network::RobotStatus>& status,
+  bool is_missed(const processes::ControllerProcess& process,
+                 const std::vector<network::RobotStatus>& status,
                  const std::vector<std::string>& free_directors) const;
   std::optional<reports::Ending> lost_controller();
   std::optional<reports::Ending> settle(processes::ControllerProcess& ended,
@@ -118,13 +120,15 @@ class Watch {
   reports::Progress progress_;
   bool gathered_ = false;
   std::uint64_t tick_ = 0;
-  std::vector<std::size_t> restarted_;  ///< robots whose process was started again and is still to connect
+  std::vector<std::size_t>
+      restarted_;  ///< robots whose process was started again and is still to connect
   std::vector<world::Metric> measured_;
   std::string vanished_;
   bool child_ended_ = false;                ///< one or more, since the last look
   std::optional<reports::Ending> stopped_;  ///< by a deadline or a failure
   std::vector<std::string> dropped_;
-  std::optional<clock::time_point> missed_since_;  ///< since when a controller of others seems to be lost
+  std::optional<clock::time_point>
+      missed_since_;       ///< since when a controller of others seems to be lost
   bool is_early_ = false;  ///< a process has ended whose last messages may still come
   clock::time_point waiting_since_{};
   std::string printed_;  ///< the robots that were last printed as awaited

@@ -155,9 +155,8 @@ TEST(Deadline, W11_ResumingATickAgainAndAgainHoldsItForThreeDeadlines) {
   Pair pair(with_deadline(DeadlineAction::hold, 50));
   auto resume = Peers::hello("");
   resume.mutable_hello()->clear_robots();
-  resume.mutable_hello()->set_session_token(pair.peers.barrier.sessions
-                                                .find(pair.peers.barrier.ownership[0].holder)
-                                                ->token);
+  resume.mutable_hello()->set_session_token(
+      pair.peers.barrier.sessions.find(pair.peers.barrier.ownership[0].holder)->token);
   for (int i = 0; i < 3; ++i) {  // over a new connection each time, as L8 allows
     pair.peers.pass(milliseconds{40});
     pair.peers.say("again" + std::to_string(i), resume);

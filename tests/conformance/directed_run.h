@@ -69,7 +69,8 @@ inline v1::ClientMessage pushes(std::uint64_t tick, std::vector<double> force) {
 
 /// Two robots that "c" has, and the directors `judge` and, with a deadline of 50 ms, `hasty`.
 struct Directing : ::testing::Test {
-  explicit Directing(const Config& config = {}) : small(make_run()), peers(small, config), boxes(2) {
+  explicit Directing(const Config& config = {})
+      : small(make_run()), peers(small, config), boxes(2) {
     peers.say("c", Peers::hello("*"));
     peers.inboxes.clear();
   }

@@ -1,5 +1,5 @@
-// The rules of docs/protocol.md on pausing (section 3.3) and reset (L6). A test is named after the rule it
-// holds.
+// The rules of docs/protocol.md on pausing (section 3.3) and reset (L6). A test is named after the
+// rule it holds.
 
 #include <gtest/gtest.h>
 

@@ -40,7 +40,8 @@ Connection::Kind Connection::parse() {
   } else {
     forget(content.size());
   }
-  if (transport_->has_more() || !message->ParseFromArray(content.data(), static_cast<int>(content.size()))) {
+  if (transport_->has_more() ||
+      !message->ParseFromArray(content.data(), static_cast<int>(content.size()))) {
     throw ConnectionError(
         options_.endpoint +
         ": the answer is not a message of ziggurat.v1; is this the endpoint of a server?");

@@ -12,7 +12,8 @@ namespace {
 
 // As the server allows, in one answer.
 constexpr int most_acts = 10'000;
-constexpr std::size_t most_act_bytes = std::size_t{2} << 20;  // of texts; the rest of 4 MiB is for numbers and the log
+constexpr std::size_t most_act_bytes =
+    std::size_t{2} << 20;  // of texts; the rest of 4 MiB is for numbers and the log
 constexpr int most_lines = 1000;
 constexpr std::size_t most_log_bytes = std::size_t{1} << 20;
 constexpr std::size_t longest_result = 1024;

@@ -51,9 +51,9 @@ class Part {
   /// Adds log lines and metrics since the last answer.
   virtual void write(v1::Leave& leave) = 0;
 
-  virtual void warn(const v1::Error&) {}  ///< something that was asked for has no effect
-  virtual void reset() = 0;                        ///< the world begins anew
-  virtual void restore(const v1::Command&) {}      ///< after reset(): it has gone back to this
+  virtual void warn(const v1::Error&) {}       ///< something that was asked for has no effect
+  virtual void reset() = 0;                    ///< the world begins anew
+  virtual void restore(const v1::Command&) {}  ///< after reset(): it has gone back to this
   /// These robots (positions) have left the run.
   virtual void remove(const google::protobuf::RepeatedField<std::uint32_t>&) {}
 };

@@ -21,15 +21,17 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds longest_wait_to_send{500};  // between checks of whether the connection was refused
-constexpr milliseconds longest_linger{1000};       // when a connection ends, with output that waits
+constexpr milliseconds longest_wait_to_send{
+    500};  // between checks of whether the connection was refused
+constexpr milliseconds longest_linger{1000};  // when a connection ends, with output that waits
 constexpr const char* keys_are_missing =
-    "refused key? The endpoint is protected, and this client has no keys; set the server's public key "
+    "refused key? The endpoint is protected, and this client has no keys; set the server's public "
+    "key "
     "and a secret key";
 constexpr const char* monitor_address = "inproc://monitor";
-constexpr int monitored = ZMQ_EVENT_CONNECTED | ZMQ_EVENT_DISCONNECTED | ZMQ_EVENT_HANDSHAKE_SUCCEEDED |
-                          ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
-                          ZMQ_EVENT_HANDSHAKE_FAILED_AUTH;
+constexpr int monitored = ZMQ_EVENT_CONNECTED | ZMQ_EVENT_DISCONNECTED |
+                          ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL |
+                          ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL | ZMQ_EVENT_HANDSHAKE_FAILED_AUTH;
 // A server that ends, or has no place, also breaks a handshake off: ZeroMQ tries again.
 constexpr unsigned most_failed_handshakes = 3;
 
@@ -60,7 +62,8 @@ class ZeroMq final : public Transport {
   void linger() override;
 
  private:
-  /// Whether the program was forked since: threads of libzmq are the parent's, and calls would wait for them.
+  /// Whether the program was forked since: threads of libzmq are the parent's, and calls would wait
+  /// for them.
   bool is_parents() const { return ::getpid() != process_; }
   void set_keys(const SessionOptions& options);
   bool take_events();
@@ -115,7 +118,8 @@ void ZeroMq::set_keys(const SessionOptions& options) {
         "only one of server_key and curve_secret is set; an encrypted connection needs both");
   }
   std::error_code error;
-  const bool is_file = std::filesystem::is_regular_file(options.curve_secret, error);  // no pipe: it could wait
+  const bool is_file =
+      std::filesystem::is_regular_file(options.curve_secret, error);  // no pipe: it could wait
   std::ifstream file(is_file ? options.curve_secret : "");
   std::string secret, more;
   std::array<char, 41> own;
@@ -149,14 +153,17 @@ void ZeroMq::linger() {
 }
 
 void ZeroMq::send(std::size_t size, const std::function<void(char*)>& write) {
-  if (is_parents()) throw ConnectionError(endpoint_ + ": can't send: the connection is that of the program that was forked");
+  if (is_parents())
+    throw ConnectionError(endpoint_ +
+                          ": can't send: the connection is that of the program that was forked");
   zmq::message_t frame(size);
   write(frame.data<char>());
   for (;;) {
     try {
       if (socket_.send(frame, zmq::send_flags::none)) return;
       // ZeroMQ drops the queue of a connection that the server has refused.
-      if (was_closed()) throw ConnectionError(endpoint_ + ": can't send: the server closed the connection");
+      if (was_closed())
+        throw ConnectionError(endpoint_ + ": can't send: the server closed the connection");
     } catch (const zmq::error_t& error) {
       if (error.num() == EINTR) continue;
       throw ConnectionError(endpoint_ + ": can't send: " + error.what());
@@ -168,7 +175,8 @@ bool ZeroMq::receive(milliseconds timeout) {
   try {
     if (receive_from(socket_, frame_, zmq::recv_flags::dontwait)) return true;
     if (take_events()) return false;
-    // These descriptors tell what comes after both sockets were found empty; zmq_poll() asks them twice.
+    // These descriptors tell what comes after both sockets were found empty; zmq_poll() asks them
+    // twice.
     pollfd waiting[] = {{socket_fd_, POLLIN, 0}, {monitor_fd_, POLLIN, 0}};
     ::poll(waiting, 2, static_cast<int>(timeout.count()));
     return receive_from(socket_, frame_, zmq::recv_flags::dontwait);

@@ -22,15 +22,16 @@ class Transport {
   virtual void send(std::size_t size, const std::function<void(char*)>& write) = 0;
 
   /// Waits for a message.
-  /// @return  whether there is one; false after the time-out, after a signal, and when the connection has changed
+  /// @return  whether there is one; false after the time-out, after a signal, and when the
+  /// connection has changed
   /// @throws ConnectionError
   virtual bool receive(std::chrono::milliseconds timeout) = 0;
   /// The last message, valid until the next is received, and whether it has more frames.
   virtual std::string_view content() = 0;
   virtual bool has_more() const = 0;
 
-  /// Whether the connection was closed after it had been open. It is not opened again, and messages may be
-  /// lost. Until it is open, connecting is retried.
+  /// Whether the connection was closed after it had been open. It is not opened again, and messages
+  /// may be lost. Until it is open, connecting is retried.
   /// @throws ConnectionError if the server does not accept this client's keys, or that it has none
   virtual bool was_closed() = 0;
   /// Whether the server has accepted the connection: if nothing arrives then, the server is slow.

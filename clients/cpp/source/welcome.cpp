@@ -25,7 +25,8 @@ void fill(const SessionOptions& options, v1::Hello& hello) {
 }
 
 /// Longest silence of a connection that is not lost (docs/protocol.md, M3); 0 = any time.
-std::chrono::milliseconds longest_silence(const v1::Welcome& welcome, const SessionOptions& options) {
+std::chrono::milliseconds longest_silence(const v1::Welcome& welcome,
+                                          const SessionOptions& options) {
   // The end of a local connection is always told, so a server that is silent there is slow.
   if (welcome.wall_heartbeat_ms() == 0 || options.endpoint.starts_with("ipc://")) return {};
   return std::max(std::chrono::milliseconds(3000),
@@ -86,8 +87,8 @@ void SessionCore::read(const v1::Welcome& welcome) {
 void check_welcome(const v1::Welcome& welcome, const std::string& endpoint) {
   const v1::Version& theirs = welcome.version();
   if (theirs.major() == version_major) return;
-  throw ConnectionError(endpoint + ": the server speaks version " + std::to_string(theirs.major()) + "." +
-                        std::to_string(theirs.minor()) + " of the protocol, this client " +
+  throw ConnectionError(endpoint + ": the server speaks version " + std::to_string(theirs.major()) +
+                        "." + std::to_string(theirs.minor()) + " of the protocol, this client " +
                         std::to_string(version_major) + "." + std::to_string(version_minor));
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // Ends scripts from a signal handler, also in endless loops: when the program is interrupted, and
-// when a call runs too many instructions or computes for too long. Signals belong to the process, and so does this state;
-// nothing else in this program does.
+// when a call runs too many instructions or computes for too long. Signals belong to the process,
+// and so does this state; nothing else in this program does.
 
 #include <cstdint>
 #include <lua.hpp>
@@ -42,12 +42,13 @@ struct Calling {
   lua_State* state = nullptr;          ///< of the script
   std::uint64_t max_instructions = 0;  ///< 0 = any number
   std::uint64_t max_computing = 0;     ///< processor time [s]; 0 = any
-  std::uint64_t max_in_library = 5;    ///< processor time of a function of Lua's library [s], if there is another limit
-  std::uint64_t max_seconds = 0;       ///< wall time, of a call that computes; 0 = any
+  std::uint64_t max_in_library =
+      5;  ///< processor time of a function of Lua's library [s], if there is another limit
+  std::uint64_t max_seconds = 0;  ///< wall time, of a call that computes; 0 = any
 };
 
-/// While it lives, interrupt_scripts() ends the script, and so do too many instructions and too much
-/// time. Do not nest.
+/// While it lives, interrupt_scripts() ends the script, and so do too many instructions and too
+/// much time. Do not nest.
 class Running {
  public:
   explicit Running(const Calling& calling) noexcept;

@@ -1,5 +1,6 @@
 #pragma once
-// The files that a script has open: their number is bounded, as all scripts of a process share what it may open.
+// The files that a script has open: their number is bounded, as all scripts of a process share what
+// it may open.
 
 #include <cstddef>
 #include <lua.hpp>

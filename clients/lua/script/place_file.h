@@ -7,8 +7,8 @@
 
 namespace ziggurat::lua {
 
-/// From now on the file has `ROBOT`, a line feed, `FILE:LINE` or `FILE`, and a 0 byte; no robot while
-/// no script runs.
+/// From now on the file has `ROBOT`, a line feed, `FILE:LINE` or `FILE`, and a 0 byte; no robot
+/// while no script runs.
 /// @throws std::runtime_error if it can't be written
 void open_place_file(const std::string& path);
 

@@ -1,5 +1,6 @@
 #pragma once
-// The table `world` of a director's script: the entities as they are, and functions that change the world.
+// The table `world` of a director's script: the entities as they are, and functions that change the
+// world.
 
 #include <cstdint>
 #include <lua.hpp>

@@ -78,7 +78,8 @@ TEST(Director, IsToldOfTheWorldAndAnswers) {
   director.metric("height", 2);
   director.log("hello");
   EXPECT_THROW(director.metric("two words", 1), std::invalid_argument);
-  EXPECT_THROW(director.push("arm", {std::numeric_limits<double>::quiet_NaN(), 0, 0}), std::invalid_argument);
+  EXPECT_THROW(director.push("arm", {std::numeric_limits<double>::quiet_NaN(), 0, 0}),
+               std::invalid_argument);
   ASSERT_TRUE(director.next());
   EXPECT_EQ(director.event(), Event::step);
   EXPECT_EQ(director.time(), std::chrono::milliseconds(50));
@@ -217,7 +218,8 @@ TEST(Director, AfterAResetSameEntitiesKeepTheirHandlesAndOthersWithTheirIdsAreNe
     box.add_leds();
     auto all = full_state(0, -2);
     all.mutable_world_state()->add_led_colors(0x00ff00);
-    for (const auto& [layout, state] : {std::pair(arm_and_box(), full_state(0, -2)), std::pair(lit, all)}) {
+    for (const auto& [layout, state] :
+         {std::pair(arm_and_box(), full_state(0, -2)), std::pair(lit, all)}) {
       v1::ServerMessage reset;
       reset.mutable_reset()->set_seed(8);
       self.send(reset);

@@ -38,7 +38,8 @@ TEST(HostileServer, TextsOfAServerArePrintableAndBounded) {
 
 TEST(HostileServer, IdsAndEndingsOfAServerArePrintableAndBounded) {
   v1::ServerMessage welcome = FakeServer::two_robots();
-  for (int i = 0; i < 1000; ++i) welcome.mutable_welcome()->mutable_robots(0)->add_joint_sensors()->set_id(hostile);
+  for (int i = 0; i < 1000; ++i)
+    welcome.mutable_welcome()->mutable_robots(0)->add_joint_sensors()->set_id(hostile);
   welcome.mutable_welcome()->mutable_robots(0)->set_id(hostile);
   FakeServer server([&](FakeServer& self) {
     self.welcome(welcome);

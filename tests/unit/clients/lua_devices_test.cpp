@@ -47,8 +47,9 @@ TEST_F(Devices, HaveTheFunctionsAndReadingsThatAreEnabled) {
 
 TEST_F(Devices, AJointHasASensorOfItsPositionAndOneOfItsVelocity) {
   using Description = v1::JointDescription;
-  for (const auto& [id, mode] : {std::pair{"arm", Description::VELOCITY}, std::pair{"arm", Description::POSITION},
-                                 std::pair{"leg", Description::POSITION}}) {
+  for (const auto& [id, mode] :
+       {std::pair{"arm", Description::VELOCITY}, std::pair{"arm", Description::POSITION},
+        std::pair{"leg", Description::POSITION}}) {
     v1::JointDescription& sensor = *robot_.add_joint_sensors();
     sensor.set_id(id);
     sensor.set_mode(mode);
@@ -248,7 +249,8 @@ TEST_F(Devices, PositioningHasOneFormOfEachRotation) {
 }
 
 TEST_F(Devices, ThatDoNotWorkYetAreEmptyTables) {
-  for (const char* device : {"light", "footbot_base_ground", "colored_blob_omnidirectional_camera"}) {
+  for (const char* device :
+       {"light", "footbot_base_ground", "colored_blob_omnidirectional_camera"}) {
     robot_.add_devices_to_come(device);
   }
   EXPECT_RUNS(start(R"lua(

@@ -44,7 +44,8 @@ TEST(Transport, AConnectionThatIsRefusedTellsTheSender) {
       return false;
     });
   };
-  EXPECT_THROW(send_for_long(), ConnectionError) << "without a queue ZeroMQ alone would wait without end";
+  EXPECT_THROW(send_for_long(), ConnectionError)
+      << "without a queue ZeroMQ alone would wait without end";
 }
 
 /// RFC 6761: no name that ends with .invalid has an address.
@@ -127,7 +128,8 @@ class RawServer {
     EXPECT_FALSE(transport.was_closed());
   }
   void write(const std::string& bytes) {
-    EXPECT_EQ(::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL), static_cast<ssize_t>(bytes.size()));
+    EXPECT_EQ(::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(bytes.size()));
   }
   static std::string header(std::size_t size) {
     std::string bytes(zmtp::header_length(size), '\0');

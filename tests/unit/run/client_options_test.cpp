@@ -16,7 +16,8 @@ struct ClientOptionsTest : testing::Test {
   }
   std::string refused() const {
     try {
-      check_client_options(options, expected_clients(options, scene, is_serve, with_controllers), config);
+      check_client_options(options, expected_clients(options, scene, is_serve, with_controllers),
+                           config);
     } catch (const text::UsageError& error) {
       return std::string(error.what()).substr(0, std::string(error.what()).find(' '));
     }

@@ -22,7 +22,8 @@ struct Viewer {
     controls.connect({[this] { return std::exchange(calls, {}); },
                       [this](const network::Call&) { return is_there; },
                       [this](const network::Call& call, std::uint64_t tick) {
-                        answers.push_back(std::to_string(call.request.id) + " at " + std::to_string(tick));
+                        answers.push_back(std::to_string(call.request.id) + " at " +
+                                          std::to_string(tick));
                       },
                       [this](const network::Call& call, const std::string&) {
                         answers.push_back(std::to_string(call.request.id) + " refused");
@@ -84,7 +85,8 @@ TEST(ViewerControls, StepsEndWithTheirViewer) {
 TEST(ViewerControls, ChangesNothingOfTheWorld) {
   Viewer viewer;
   for (const Kind kind : {Kind::move, Kind::spawn, Kind::remove, Kind::reset}) viewer.ask(kind, 3);
-  EXPECT_EQ(viewer.answers, (std::vector<std::string>{"1 refused", "2 refused", "3 refused", "4 refused"}));
+  EXPECT_EQ(viewer.answers,
+            (std::vector<std::string>{"1 refused", "2 refused", "3 refused", "4 refused"}));
   EXPECT_FALSE(viewer.controls.is_over());
   viewer.ask(Kind::shutdown, 3);
   EXPECT_TRUE(viewer.controls.is_over());

@@ -100,13 +100,15 @@ TEST_F(DeviceWire, PicturesCountToo) {
 }
 
 /// Expects the counted sizes of an observation in the message that is made of it.
-void expect_counted(const Roster& roster, const world::Observations& seen, const std::vector<std::string>& texts) {
+void expect_counted(const Roster& roster, const world::Observations& seen,
+                    const std::vector<std::string>& texts) {
   Outbox outbox;
   ASSERT_TRUE(outbox.observation(roster, seen, texts));
   const ReadingSize size = size_of_readings(roster, seen, texts);
   const std::string bytes = outbox.message().observation().SerializeAsString();
   constexpr std::size_t other_readings = 4096;
-  EXPECT_LE(v1::decoded_size(bytes, *v1::Observation::descriptor(), v1::most_counted), size.memory + other_readings);
+  EXPECT_LE(v1::decoded_size(bytes, *v1::Observation::descriptor(), v1::most_counted),
+            size.memory + other_readings);
   EXPECT_LT(size.memory, v1::most_counted);
 }
 
@@ -121,7 +123,8 @@ TEST_F(DeviceWire, AllThatASessionIsToldOfItsCamerasIsCounted) {
   seen.leds.clear();
   seen.directional_leds.assign(many, {2, 0xFFFFFF, {0, 0}});
   expect_counted(roster, seen, payloads);
-  EXPECT_GE(v1::most_counted / v1::counted_led, std::size_t{1} << 24) << "all that cameras may see at a tick";
+  EXPECT_GE(v1::most_counted / v1::counted_led, std::size_t{1} << 24)
+      << "all that cameras may see at a tick";
 }
 
 TEST_F(DeviceWire, AllThatASessionHearsIsCounted) {

@@ -40,7 +40,8 @@ class ProximitySensor {
   double reading_ = 0;
 };
 
-/// The heading of a body: from the world's x axis to the body's, seen from above, in (-pi, pi] [rad].
+/// The heading of a body: from the world's x axis to the body's, seen from above, in (-pi, pi]
+/// [rad].
 /// @param orientation  unit quaternion w, x, y, z, body to world
 inline double yaw_of(const std::array<double, 4>& orientation) {
   const auto [w, x, y, z] = orientation;
@@ -49,8 +50,9 @@ inline double yaw_of(const std::array<double, 4>& orientation) {
 
 /// The pose of the robot's origin in the world.
 struct Positioning {
-  std::array<double, 3> position{};               ///< x, y, z [m]
-  std::array<double, 4> orientation{1, 0, 0, 0};  ///< unit quaternion w, x, y, z, robot to world; w >= 0
+  std::array<double, 3> position{};  ///< x, y, z [m]
+  std::array<double, 4> orientation{1, 0, 0,
+                                    0};  ///< unit quaternion w, x, y, z, robot to world; w >= 0
   double yaw() const { return yaw_of(orientation); }  ///< (-pi, pi] [rad]
 };
 

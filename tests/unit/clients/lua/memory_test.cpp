@@ -1,4 +1,5 @@
-// The memory of Lua states: blocks side by side in a region, the others by malloc(), all of them counted.
+// The memory of Lua states: blocks side by side in a region, the others by malloc(), all of them
+// counted.
 
 #include "script/memory.h"
 
