@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <random>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -48,8 +47,6 @@ void handle_interruptions() {
   }
 }
 
-int create(const std::string& path) { return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); }
-
 }  // namespace
 
 AtomicFile::AtomicFile(std::string out) : out_(std::move(out)), part_(out_) {
@@ -57,14 +54,8 @@ AtomicFile::AtomicFile(std::string out) : out_(std::move(out)), part_(out_) {
   if (out_ == "-" || (fs::exists(out_, error) && !fs::is_regular_file(out_, error))) return;
   target_ = fs::is_symlink(out_, error) ? fs::weakly_canonical(out_, error).string() : out_;
   part_ = fmt::format("{}.{}.part", target_, ::getpid());  // another process may write the same
-  // A file that another user has put there, as a link to a file of ours, is never written to.
-  fs::remove(part_, error);
-  int file = create(part_);
-  if (file < 0 && errno == EEXIST) {  // and can't be removed from a folder such as /tmp
-    std::random_device number;
-    part_ = fmt::format("{}.{:08x}{:08x}.part", target_, number(), number());
-    file = create(part_);
-  }
+  fs::remove(part_, error);  // of a process that was killed
+  const int file = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file < 0) throw std::runtime_error(fmt::format("{} can't be written: {}", out_, std::strerror(errno)));
   ::close(file);
   unfinished = part_.c_str();

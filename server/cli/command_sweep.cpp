@@ -7,7 +7,6 @@
 #include "cli/sweep_cluster.h"
 #include "cli/sweep_options.h"
 #include "cli/sweep_results.h"
-#include "recording/output_name.h"
 #include "reports/console.h"
 #include "sweep/folder.h"
 #include "sweep/slurm.h"
@@ -70,7 +69,6 @@ int execute_local(const SweepOptions& options, processes::Signals& signals) {
   const sweep::Experiment& experiment = options.definition.experiment;
   reports::Console console({options.quiet, false});
   const sweep::Folder folder(options.out);
-  recording::check_output_folder("--out", folder.path().string());
   folder.check(options.definition);  // before anything is written there
   std::filesystem::create_directories(folder.path());
   const sweep::Lock lock(folder.path() / "lock");

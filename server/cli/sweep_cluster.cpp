@@ -76,7 +76,6 @@ int submit_sweep(const SweepOptions& options) {
     check_is_mounted(options.kubernetes.mount, folder.path());
     check_is_mounted(options.kubernetes.mount, options.definition.experiment.scene);
   }
-  recording::check_output_folder("--out", folder.path().string());
   folder.check(options.definition);
   fs::create_directories(folder.path());
   const sweep::Lock lock(folder.path() / "lock");

@@ -123,7 +123,7 @@ Film::Film(std::string path, const FilmFormat& format)
 Film::~Film() { end(); }
 
 void Film::start() {
-  const posix::Descriptor film(open_alone(path_));  // by which ffmpeg opens it: the name may lead elsewhere by then
+  const posix::Descriptor film(open_alone(path_));  // by which ffmpeg opens it, and keeps it locked
   Arguments arguments{"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
                       "-f", "rawvideo", "-pixel_format", "rgb24",
                       "-video_size", fmt::format("{}x{}", format_.width, format_.height),

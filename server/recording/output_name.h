@@ -23,14 +23,10 @@ struct TakenFile {
 /// Whether both paths are one file, by links too. What several may write to at once, a device or a pipe, is not.
 bool is_one_file(const std::string& a, const std::string& b);
 
-/// Checks the ending of the name, and that the file is neither planted by another user
-/// (planted_at()) nor taken. A file of another kind that ziggurat reads would be lost, and is
-/// refused: a scene, a script, a recording, a database. Pipes, devices and `-` need no ending.
+/// Checks that the name has the ending of its content, and the file is not taken. A file of another kind that ziggurat reads,
+/// known by its ending, would be lost, and is refused: a scene, a script, a recording, a database. Pipes, devices and `-` need
+/// no ending.
 /// @throws text::UsageError
 void check_output(const OutputName& output, std::span<const TakenFile> taken = {});
-
-/// Checks that another user has put no link on the way to a folder for outputs, or in its place.
-/// @throws text::UsageError
-void check_output_folder(const std::string& option, const std::string& path);
 
 }  // namespace ziggurat::recording

@@ -83,7 +83,6 @@ void check_files(const Options& options) {
     taken.push_back(taken_by(output.option, output.path));
   }
   for (const OutputName& picture : pictures_of(options)) check_output(picture, inputs);
-  if (!options.snapshot_folder.empty()) recording::check_output_folder("--snapshot-folder", options.snapshot_folder);
   check_clients(options.curve_clients, ::geteuid());
 }
 

@@ -77,8 +77,7 @@ std::string read_file(const fs::path& path) {
 void write_file(const fs::path& path, const std::string& text) {
   fs::path draft = path;
   draft += fmt::format(".{}.new", ::getpid());
-  // A file that another user has put there, as a link to a file of ours, is never written to.
-  ::unlink(draft.c_str());
+  ::unlink(draft.c_str());  // of a process that was killed
   const int file = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
   if (file < 0) fail_at(draft);
   try {

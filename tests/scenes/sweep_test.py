@@ -259,20 +259,6 @@ class Refusals(SweepTest):
         self.assert_is_sentence(outcome, "has files that are no sweep's")
         self.assertEqual([path.name for path in self.out.iterdir()], ["mine"])
 
-    @unittest.skipIf(os.geteuid() != 0, "only root makes files of others")
-    def test_no_link_of_another_user_leads_to_the_folder(self):
-        shared, ours = self.folder / "shared", self.folder / "ours"
-        for folder in (shared, ours):
-            folder.mkdir()
-        shared.chmod(0o1777)
-        (shared / "link").symlink_to(ours)
-        os.lchown(shared / "link", 12345, 12345)
-        for out in (shared / "link", shared / "link" / "new"):
-            outcome = self.ziggurat("sweep", self.scene, "--seeds", "1", "--ticks", "2", "--out", out)
-            self.assertEqual(outcome.code, FAULT)
-            self.assert_is_sentence(outcome, "a link of another user in a folder that all can write; name another folder")
-            self.assertEqual([], list(ours.iterdir()))
-
     def test_a_folder_that_is_moved_away_is_named(self):
         process = self.start("sweep", self.scene, "--seeds", "1..500", "--ticks", "50", "--out", self.out)
         wait_until(lambda: (self.out / "runs").exists() or process.poll() is not None, "the first run")

@@ -55,19 +55,6 @@ TEST_F(AtomicFileTest, IsNotWrittenThroughALinkThatWasThereBefore) {
   EXPECT_EQ(only_file(), "out.csv: new\n");
 }
 
-TEST_F(AtomicFileTest, HasAnotherPlaceIfWhatIsThereCannotBeRemoved) {
-  const std::string part = AtomicFile(out_).path();
-  fs::create_directories(part + "/full");
-  {
-    AtomicFile file(out_);
-    EXPECT_NE(file.path(), part);
-    std::ofstream(file.path()) << "new";
-    file.commit();
-  }
-  fs::remove_all(part);
-  EXPECT_EQ(only_file(), "out.csv: new\n");
-}
-
 TEST_F(AtomicFileTest, IsRemovedIfItIsNotKept) {
   {
     const AtomicFile file(out_);
