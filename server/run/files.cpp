@@ -1,7 +1,7 @@
 #include "run/files.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <string>
@@ -9,7 +9,7 @@
 
 #include "processes/scripts.h"
 #include "recording/output_name.h"
-#include "run/clients_file.h"
+#include "text/numbers.h"
 
 namespace ziggurat::run {
 namespace {
@@ -43,6 +43,14 @@ std::vector<OutputName> pictures_of(const Options& options) {
     files.push_back({"--out", picture_path(options.pictures->out, i, count), {".png"}});
   }
   return files;
+}
+
+/// @throws text::UsageError if all users can write the list of clients' keys
+void check_clients(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode) || (status.st_mode & S_IWOTH) == 0) return;
+  throw text::UsageError(
+      fmt::format("--curve-clients is '{}', which all users can write: they could add their keys; write: chmod o-w '{}'", path, path));
 }
 
 TakenFile taken_by(const std::string& what, const std::string& path) {
@@ -83,7 +91,7 @@ void check_files(const Options& options) {
     taken.push_back(taken_by(output.option, output.path));
   }
   for (const OutputName& picture : pictures_of(options)) check_output(picture, inputs);
-  check_clients(options.curve_clients, ::geteuid());
+  check_clients(options.curve_clients);
 }
 
 void check_outputs(const Options& options, const scene::Scene& scene,

@@ -12,7 +12,7 @@
 namespace ziggurat::run {
 
 /// @throws text::UsageError if check_output() refuses an output, or it is the scene, a key file or another output; if
-/// others may write the list of clients' keys
+/// all users can write the list of clients' keys
 void check_files(const Options& options);
 
 /// The scene's file, what it includes, and its scripts.

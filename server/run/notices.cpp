@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "run/client_options.h"
+#include "run/client_scopes.h"
 #include "run/run.h"
 #include "simulation/scene_warnings.h"
 

@@ -15,7 +15,6 @@
 #include "processes/spawned_scripts.h"
 #include "run/background.h"
 #include "run/client_options.h"
-#include "run/clients_file.h"
 #include "run/files.h"
 #include "run/gate_option.h"
 #include "run/loading.h"
