@@ -66,6 +66,16 @@ void set_option(int socket, int level, int option, int value) {
   ::setsockopt(socket, level, option, &value, sizeof value);
 }
 
+/// Name of an abstract socket that locks this path until a server listens there; empty if there is no such folder.
+std::string lock_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  struct stat status {};
+  if (::stat(folder.c_str(), &status) != 0) return {};
+  const std::size_t name = std::hash<std::string>{}(path.substr(slash + 1));  // npos + 1 is 0
+  return fmt::format("ziggurat-path-{}-{}-{:x}", status.st_dev, status.st_ino, name);
+}
+
 /// Locks a path, so that of several servers only one checks the path and then listens there. The
 /// lock is held while the descriptor is open. Any user of this machine may hold it, too, so no
 /// server waits for long.
@@ -151,15 +161,6 @@ std::string name_of(const posix::Descriptor& socket) {
 }
 
 }  // namespace
-
-std::string lock_of(const std::string& path) {
-  const std::size_t slash = path.rfind('/');
-  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
-  struct stat status {};
-  if (::stat(folder.c_str(), &status) != 0) return {};
-  const std::size_t name = std::hash<std::string>{}(path.substr(slash + 1));  // npos + 1 is 0
-  return fmt::format("ziggurat-path-{}-{}-{:x}", status.st_dev, status.st_ino, name);
-}
 
 Listener::Listener(const std::string& endpoint) {
   if (endpoint.starts_with(path_scheme)) {

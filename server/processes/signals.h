@@ -24,7 +24,7 @@ class Signals {
   /// in an output that takes no more. main() makes the only one.
   /// @param guardian  must outlive this; null: none
   /// @throws std::system_error
-  explicit Signals(Guardian* guardian = nullptr);
+  explicit Signals(const Guardian* guardian = nullptr);
   /// Restores the previous mask.
   ~Signals();
   Signals(const Signals&) = delete;
@@ -57,7 +57,7 @@ class Signals {
   /// there was an interruption.
   void limit_what_follows() const;
 
-  Guardian* guardian() const { return guardian_; }
+  const Guardian* guardian() const { return guardian_; }
 
  private:
   void watch();
@@ -65,7 +65,7 @@ class Signals {
   bool has_input_ended();
   [[noreturn]] void end_by_force();
 
-  Guardian* guardian_;
+  const Guardian* guardian_;
   int signals_ = -1, news_ = -1, order_ = -1;
   sigset_t former_;
   std::atomic<int> interruptions_ = 0, exit_code_ = 0;

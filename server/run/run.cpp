@@ -8,7 +8,6 @@
 #include <span>
 #include <utility>
 
-#include "network/listener.h"
 #include "processes/commands.h"
 #include "processes/python_package.h"
 #include "processes/scripts.h"
@@ -131,7 +130,7 @@ std::unique_ptr<network::Server> Run::listen() const {
   const processes::Guardian* const guardian = signals_.guardian();
   for (const std::string& endpoint : config_.endpoints) {
     const std::string file = network::file_of(endpoint);
-    if (guardian != nullptr && !file.empty()) guardian->remove_dead_socket(file, network::lock_of(file));
+    if (guardian != nullptr && !file.empty()) guardian->remove_dead_socket(file);
   }
   return std::make_unique<network::Server>(config_);
 }
