@@ -68,11 +68,12 @@ int lock_new(const std::string& folder) {
 }
 
 /// A folder with its lock; an empty path and -1 if the parent takes none.
-std::pair<std::string, int> make_locked(const std::string& parent) {
+std::pair<std::string, int> make_locked(const std::string& parent, const Guardian* guardian) {
   constexpr int most_tries = 100;
   for (int i = 0; i < most_tries; ++i) {
     std::string path = parent + "/" + std::string(prefix) + "XXXXXX";
     if (::mkdtemp(path.data()) == nullptr) break;
+    if (guardian) guardian->remove_folder(path);  // before anything is in it: this program may be killed at any moment
     const int file = lock_new(path);
     if (file >= 0) return {path, file};
     ::rmdir(path.c_str());
@@ -91,10 +92,8 @@ PrivateFolder::PrivateFolder(const Guardian* guardian) {
   parents.emplace_back("/tmp");
   for (const auto& parent : parents) {
     remove_left_folders(parent);
-    std::tie(path_, lock_) = make_locked(parent);
-    if (lock_ < 0) continue;
-    if (guardian) guardian->remove_folder(path_);
-    return;
+    std::tie(path_, lock_) = make_locked(parent, guardian);
+    if (lock_ >= 0) return;
   }
   throw std::system_error(errno, std::generic_category(), "cannot make a folder in /tmp");
 }

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -159,7 +158,6 @@ Lock::Lock(const fs::path& path) {
   // Without O_CLOEXEC: runs hold it, too.
   file_ = ::open(path.c_str(), O_RDWR | O_CREAT, 0600);
   if (file_ < 0) fail_at(path);
-  ::fchmod(file_, 0600);  // who could read it could hold it
   const auto end = std::chrono::steady_clock::now() + lock_patience;
   while (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
     if (std::chrono::steady_clock::now() > end) {
