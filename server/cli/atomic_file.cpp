@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <random>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -22,10 +21,12 @@ namespace fs = std::filesystem;
 
 constexpr int interruptions[] = {SIGINT, SIGTERM, SIGHUP};
 
-std::atomic<const char*> unfinished = nullptr;  // to be removed; handlers of signals may use no more than this
+std::atomic<const char*> unfinished =
+    nullptr;  // to be removed; handlers of signals may use no more than this
 
 void remove_and_end(int number) {
-  constexpr std::string_view words = "ziggurat: interrupted; the file was not finished and is removed\n";
+  constexpr std::string_view words =
+      "ziggurat: interrupted; the file was not finished and is removed\n";
   if (const char* const path = unfinished.exchange(nullptr)) {
     ::unlink(path);
     pollfd reader{STDERR_FILENO, POLLOUT, 0};  // a full pipe must not hold up the end
@@ -48,8 +49,6 @@ void handle_interruptions() {
   }
 }
 
-int create(const std::string& path) { return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); }
-
 }  // namespace
 
 AtomicFile::AtomicFile(std::string out) : out_(std::move(out)), part_(out_) {
@@ -57,15 +56,10 @@ AtomicFile::AtomicFile(std::string out) : out_(std::move(out)), part_(out_) {
   if (out_ == "-" || (fs::exists(out_, error) && !fs::is_regular_file(out_, error))) return;
   target_ = fs::is_symlink(out_, error) ? fs::weakly_canonical(out_, error).string() : out_;
   part_ = fmt::format("{}.{}.part", target_, ::getpid());  // another process may write the same
-  // A file that another user has put there, as a link to a file of ours, is never written to.
-  fs::remove(part_, error);
-  int file = create(part_);
-  if (file < 0 && errno == EEXIST) {  // and can't be removed from a folder such as /tmp
-    std::random_device number;
-    part_ = fmt::format("{}.{:08x}{:08x}.part", target_, number(), number());
-    file = create(part_);
-  }
-  if (file < 0) throw std::runtime_error(fmt::format("{} can't be written: {}", out_, std::strerror(errno)));
+  fs::remove(part_, error);                                // of a process that was killed
+  const int file = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (file < 0)
+    throw std::runtime_error(fmt::format("{} can't be written: {}", out_, std::strerror(errno)));
   ::close(file);
   unfinished = part_.c_str();
   handle_interruptions();
@@ -81,7 +75,8 @@ void AtomicFile::commit() {
   if (target_.empty()) return;
   std::error_code error;
   fs::rename(part_, target_, error);
-  if (error) throw std::runtime_error(fmt::format("{} can't be written: {}", out_, error.message()));
+  if (error)
+    throw std::runtime_error(fmt::format("{} can't be written: {}", out_, error.message()));
   unfinished = nullptr;
 }
 

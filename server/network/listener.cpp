@@ -56,14 +56,25 @@ posix::Descriptor open_socket(const std::string& endpoint, int family) {
   return made;
 }
 
-void bind_and_listen(const std::string& endpoint, const posix::Descriptor& socket, const sockaddr* address,
-                     socklen_t size) {
+void bind_and_listen(const std::string& endpoint, const posix::Descriptor& socket,
+                     const sockaddr* address, socklen_t size) {
   if (::bind(socket.number(), address, size) != 0) fail(endpoint, errno);
   if (::listen(socket.number(), waiting_connections) != 0) fail(endpoint, errno);
 }
 
 void set_option(int socket, int level, int option, int value) {
   ::setsockopt(socket, level, option, &value, sizeof value);
+}
+
+/// Name of an abstract socket that locks this path until a server listens there; empty if there is
+/// no such folder.
+std::string lock_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  struct stat status {};
+  if (::stat(folder.c_str(), &status) != 0) return {};
+  const std::size_t name = std::hash<std::string>{}(path.substr(slash + 1));  // npos + 1 is 0
+  return fmt::format("ziggurat-path-{}-{}-{:x}", status.st_dev, status.st_ino, name);
 }
 
 /// Locks a path, so that of several servers only one checks the path and then listens there. The
@@ -78,7 +89,8 @@ posix::Descriptor hold_path(const std::string& path) {
   address.sun_family = AF_UNIX;
   lock.copy(address.sun_path + 1, sizeof address.sun_path - 1);
   const auto* generic = reinterpret_cast<const sockaddr*>(&address);
-  for (int i = 0; ::bind(held.number(), generic, sizeof address) != 0 && i < most_tries; ++i) ::usleep(between_us);
+  for (int i = 0; ::bind(held.number(), generic, sizeof address) != 0 && i < most_tries; ++i)
+    ::usleep(between_us);
   return held;
 }
 
@@ -151,15 +163,6 @@ std::string name_of(const posix::Descriptor& socket) {
 }
 
 }  // namespace
-
-std::string lock_of(const std::string& path) {
-  const std::size_t slash = path.rfind('/');
-  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
-  struct stat status {};
-  if (::stat(folder.c_str(), &status) != 0) return {};
-  const std::size_t name = std::hash<std::string>{}(path.substr(slash + 1));  // npos + 1 is 0
-  return fmt::format("ziggurat-path-{}-{}-{:x}", status.st_dev, status.st_ino, name);
-}
 
 Listener::Listener(const std::string& endpoint) {
   if (endpoint.starts_with(path_scheme)) {

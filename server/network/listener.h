@@ -7,10 +7,6 @@
 
 namespace ziggurat::network {
 
-/// Name of an abstract socket that locks this path until a server listens there; empty if there is
-/// no such folder. Removing a socket that was left there takes the same lock.
-std::string lock_of(const std::string& path);
-
 class Listener {
  public:
   /// @param endpoint  as check_endpoint() allows it; tcp port `*` or 0 = any free one

@@ -17,14 +17,9 @@ class WriteError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Description of a file, pipe or link that another user has planted at a path in a folder that all
-/// can write, as /tmp. A link could lead to a file of ours. None if it is ours, of the folder's
-/// owner, or not there.
-std::optional<std::string> planted_at(const std::string& path);
-
-/// Opens a file to write to it alone, and empties it. What is written goes to its end, also behind a program that shortens it.
-/// A pipe or a device may have several writers. @throws WriteError if it can't be created, another user has planted it, or
-/// another program writes to it, which would mix both
+/// Opens a file to write to it alone, and empties it. What is written goes to its end, also behind
+/// a program that shortens it. A pipe or a device may have several writers. @throws WriteError if
+/// it can't be created, or another program writes to it, which would mix both
 int open_alone(const std::string& path, int flags = 0);
 
 /// Checks that open_alone() could open it. It stays as it is, and no file stays that was not there.
@@ -59,8 +54,8 @@ class OutputFile {
   /// Writes what is in the buffer. Call it between whole lines. @throws WriteError
   void flush();
 
-  /// Writes the rest and closes; further calls do nothing. @throws WriteError, also if the file was removed or shortened
-  /// meanwhile
+  /// Writes the rest and closes; further calls do nothing. @throws WriteError, also if the file was
+  /// removed or shortened meanwhile
   void close();
 
  private:

@@ -11,8 +11,8 @@
 
 namespace ziggurat::run {
 
-/// @throws text::UsageError if check_output() refuses an output, or it is the scene, a key file or another output; if
-/// others may write the list of clients' keys
+/// @throws text::UsageError if check_output() refuses an output, or it is the scene, a key file or
+/// another output; if all users can write the list of clients' keys
 void check_files(const Options& options);
 
 /// The scene's file, what it includes, and its scripts.
@@ -31,6 +31,7 @@ void check_outputs(const Options& options, const scene::Scene& scene,
 /// Scripts can't change the scene, its includes and scripts, outputs, and the list of keys. They
 /// can't read the secret key.
 /// @param scene  null: its files are not on the disk
-std::vector<std::string> exceptions_of(const Options& options, const scene::Scene* scene, const std::string& path);
+std::vector<std::string> exceptions_of(const Options& options, const scene::Scene* scene,
+                                       const std::string& path);
 
 }  // namespace ziggurat::run

@@ -1,18 +1,22 @@
-// Notices of a run: what its author should know before it begins, and what goes wrong while it runs.
+// Notices of a run: what its author should know before it begins, and what goes wrong while it
+// runs.
 
 #include <fmt/format.h>
 
-#include "run/client_options.h"
+#include "run/client_scopes.h"
 #include "run/run.h"
 #include "simulation/scene_warnings.h"
 
 namespace ziggurat::run {
 
 void Run::print_notices() {
-  for (const auto& doubt : simulation::scene_warnings(world_.scene, world_.simulation)) console_.problem(doubt);
+  for (const auto& doubt : simulation::scene_warnings(world_.scene, world_.simulation))
+    console_.problem(doubt);
   for (const auto& notice : world_.simulation.notices()) console_.notice(path_ + ": " + notice);
   if (config_.curve) {
-    for (const auto& doubt : doubts_of(config_.curve->clients, world_.scene, world_.simulation.layout())) console_.notice(doubt);
+    for (const auto& doubt :
+         doubts_of(config_.curve->clients, world_.scene, world_.simulation.layout()))
+      console_.notice(doubt);
   }
   const std::uint64_t scene_seed = fork_ ? world_.seed : world_.scene.experiment.random_seed;
   if (options_.seed.value_or(scene_seed) == 0) {
@@ -31,9 +35,11 @@ void Run::print_notices() {
       "'ziggurat ctl URL resume'");
 }
 
-/// A notice when the physics' solver has not converged for the first time, and one when something makes it slow.
+/// A notice when the physics' solver has not converged for the first time, and one when something
+/// makes it slow.
 void Run::print_troubles() {
-  if (const auto notice = printed_.slow ? std::nullopt : simulation::slow_notice(world_.simulation)) {
+  if (const auto notice =
+          printed_.slow ? std::nullopt : simulation::slow_notice(world_.simulation)) {
     printed_.slow = true;
     console_.notice(fmt::format("tick {}: {}", world_.simulation.state().tick, *notice));
   }
@@ -42,7 +48,8 @@ void Run::print_troubles() {
   printed_.not_converged = true;
   console_.notice(fmt::format(
       "tick {}: the solver did not converge: bodies that touch miss the laws of contact by up to "
-      "{:.2g} m/s or rad/s, or light links carry more than a substep can follow; more iterations in "
+      "{:.2g} m/s or rad/s, or light links carry more than a substep can follow; more iterations "
+      "in "
       "<dynamics3d> make substeps shorter; the summary counts such cases",
       world_.simulation.state().tick, solver.worst_residual));
 }

@@ -8,14 +8,12 @@
 #include <span>
 #include <utility>
 
-#include "network/listener.h"
 #include "processes/commands.h"
 #include "processes/python_package.h"
 #include "processes/scripts.h"
 #include "processes/spawned_scripts.h"
 #include "run/background.h"
 #include "run/client_options.h"
-#include "run/clients_file.h"
 #include "run/files.h"
 #include "run/gate_option.h"
 #include "run/loading.h"
@@ -62,8 +60,7 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       signals_(signals),
       console_({options.quiet, options.json}),
       fork_(options.fork ? std::make_unique<Fork>(options) : nullptr),
-      path_(fork_ ? fork_->scene_path()
-                  : existing_scene(options, console_)),
+      path_(fork_ ? fork_->scene_path() : existing_scene(options, console_)),
       local_(signals.guardian()),
       config_(network_config(options, service == Service::serve, local_)),
       listening_(listen()),
@@ -87,7 +84,7 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       directing_(world_, server_, callers_, population_, console_),
       schedule_(plan_.real_time, world_.simulation.tick_length()),
       live_view_(make_showing(options, shown(world_, server_, callers_, supervision_, schedule_,
-                                           plan_.ticks.value_or(0)))),
+                                             plan_.ticks.value_or(0)))),
       watch_({options.metrics, options.insecure, options.fail_fast, service == Service::serve,
               plan_.ticks, restarts_of(options.restarts, world_.scene)},
              world_, server_, controllers_, supervision_, signals, console_, live_view_.get(),
@@ -113,7 +110,8 @@ supervision::World Run::read_world(const Tell& tell_clients) {
   };
   const auto tell_step = [&](simulation::Step step, std::size_t done, std::size_t all) {
     const bool is_placing = step == simulation::Step::placing;
-    const double from = is_placing ? before_placing : before_building, to = is_placing ? before_building : 1;
+    const double from = is_placing ? before_placing : before_building,
+                 to = is_placing ? before_building : 1;
     tell(from + (to - from) * static_cast<double>(done) / static_cast<double>(all),
          fmt::format("{} of {} entities are {}.", done, all, is_placing ? "placed" : "built"));
   };
@@ -127,12 +125,13 @@ supervision::World Run::read_world(const Tell& tell_clients) {
   return {path_, std::move(opened), seed, tell_step};
 }
 
-/// A killed program cannot remove the files of its sockets: the guardian has their names before they are made.
+/// A killed program cannot remove the files of its sockets: the guardian has their names before
+/// they are made.
 std::unique_ptr<network::Server> Run::listen() const {
   const processes::Guardian* const guardian = signals_.guardian();
   for (const std::string& endpoint : config_.endpoints) {
     const std::string file = network::file_of(endpoint);
-    if (guardian != nullptr && !file.empty()) guardian->remove_dead_socket(file, network::lock_of(file));
+    if (guardian != nullptr && !file.empty()) guardian->remove_dead_socket(file);
   }
   return std::make_unique<network::Server>(config_);
 }
@@ -147,7 +146,8 @@ std::unique_ptr<supervision::World> Run::load_world() {
     if (status.is_done) {
       auto world = loading.take();
       fork_ ? fork_->prepare(*world) : check_outputs(options_, world->scene, files_.names());
-      if (service_ == Service::serve) tell_how_to_connect(options_, server_.endpoints().front(), *world, console_);
+      if (service_ == Service::serve)
+        tell_how_to_connect(options_, server_.endpoints().front(), *world, console_);
       return world;
     }
     server_.attend({status.progress, status.message}, {std::chrono::milliseconds{-1}, descriptors});
@@ -181,11 +181,13 @@ Plan Run::make_plan() const {
 network::Config Run::complete_config() {
   add_controllers(options_, world_.scene, config_);
   const auto& controllers = world_.scene.controllers;
-  const ExpectedClients clients = expected_clients(options_, world_.scene, service_ == Service::serve, with_controllers_);
+  const ExpectedClients clients =
+      expected_clients(options_, world_.scene, service_ == Service::serve, with_controllers_);
   check_client_options(options_, clients, config_);
-  check_gate(options_.gate, {std::span(config_.deadlines).first(controllers.size()), clients.can_connect,
-                             plan_.real_time.has_value()});
-  if (service_ == Service::run || options_.starts_directors) config_.private_endpoint = "ipc://" + folder_.path() + "/run";
+  check_gate(options_.gate, {std::span(config_.deadlines).first(controllers.size()),
+                             clients.can_connect, plan_.real_time.has_value()});
+  if (service_ == Service::run || options_.starts_directors)
+    config_.private_endpoint = "ipc://" + folder_.path() + "/run";
   return config_;
 }
 
@@ -214,7 +216,8 @@ processes::Controllers Run::start_controllers() {
   server_.remove_robots(robots_without_controller());
   if (options_.starts_directors) check_programs(world_.scene);
   if (!with_controllers_ || (service_ == Service::serve && !options_.starts_directors)) return {};
-  return {world_.scene, world_.simulation.layout(), scripts_, launch_settings(std::move(directors))};
+  return {world_.scene, world_.simulation.layout(), scripts_,
+          launch_settings(std::move(directors))};
 }
 
 processes::LaunchSettings Run::launch_settings(std::vector<scene::Director> directors) const {
@@ -267,8 +270,8 @@ int Run::execute() {
   print_summary();
   int code = exit_code_of(statistics_.summary);
   if (code == reports::exit_code::finished && !has_passed) code = reports::exit_code::gate_missed;
-  const bool is_stopped =
-      statistics_.summary.ending == Ending::interrupted || statistics_.summary.ending == Ending::forced;
+  const bool is_stopped = statistics_.summary.ending == Ending::interrupted ||
+                          statistics_.summary.ending == Ending::forced;
   if (live_view_ && !is_stopped) {
     console_.notice("the run is over; its last state is shown until Ctrl-C");
     console_.flush();
@@ -281,9 +284,9 @@ int Run::execute() {
 /// A fork begins with the recorded run. Supervisors wait meanwhile.
 std::optional<Ending> Run::replay_to_begin() {
   callers_.hold(true);
-  const auto ending = fork_->replay_to_begin(world_, {server_, controllers_, watch_},
-                                    robots_without_controller(), folder_.path() + "/files",
-                                    signals_, console_);
+  const auto ending =
+      fork_->replay_to_begin(world_, {server_, controllers_, watch_}, robots_without_controller(),
+                             folder_.path() + "/files", signals_, console_);
   callers_.hold(false);
   if (ending) return ending;
   recorded_ = start_recording(options_, world_, files_, plan_.ticks.value_or(0),
@@ -372,8 +375,7 @@ std::optional<Ending> Run::collect() {
 std::optional<Ending> Run::pace() {
   const std::uint64_t tick = world_.simulation.state().tick;
   if (std::exchange(waits_for_viewer_, false)) {
-    const auto stopped =
-        wait([&] { return watch_.wait_for_viewer(world_.simulation.commands()); });
+    const auto stopped = wait([&] { return watch_.wait_for_viewer(world_.simulation.commands()); });
     statistics_.timer.end_startup(statistics_.summary);
     if (stopped) return stopped;
     schedule_.begin(tick, supervision_.paused_for());
@@ -387,7 +389,8 @@ std::optional<Ending> Run::pace() {
   if (stopped || !config_.keeps_reactions) return stopped;
   const std::chrono::duration<double> late = Watch::clock::now() - moment();
   const auto next = static_cast<std::uint32_t>(tick + 1);
-  statistics_.tick_starts.push_back({statistics_.resets, next, std::max(late.count(), 0.0), is_late});
+  statistics_.tick_starts.push_back(
+      {statistics_.resets, next, std::max(late.count(), 0.0), is_late});
   return std::nullopt;
 }
 

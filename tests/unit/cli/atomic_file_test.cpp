@@ -23,7 +23,8 @@ class AtomicFileTest : public ::testing::Test {
     std::string all;
     for (const auto& each : fs::directory_iterator(folder_.path)) {
       std::ifstream file(each.path());
-      all += each.path().filename().string() + ": " + std::string(std::istreambuf_iterator<char>(file), {}) + "\n";
+      all += each.path().filename().string() + ": " +
+             std::string(std::istreambuf_iterator<char>(file), {}) + "\n";
     }
     return all;
   }
@@ -55,19 +56,6 @@ TEST_F(AtomicFileTest, IsNotWrittenThroughALinkThatWasThereBefore) {
   EXPECT_EQ(only_file(), "out.csv: new\n");
 }
 
-TEST_F(AtomicFileTest, HasAnotherPlaceIfWhatIsThereCannotBeRemoved) {
-  const std::string part = AtomicFile(out_).path();
-  fs::create_directories(part + "/full");
-  {
-    AtomicFile file(out_);
-    EXPECT_NE(file.path(), part);
-    std::ofstream(file.path()) << "new";
-    file.commit();
-  }
-  fs::remove_all(part);
-  EXPECT_EQ(only_file(), "out.csv: new\n");
-}
-
 TEST_F(AtomicFileTest, IsRemovedIfItIsNotKept) {
   {
     const AtomicFile file(out_);
@@ -84,7 +72,8 @@ TEST_F(AtomicFileTest, IsRemovedByASignalThatEndsTheProgram) {
       std::ofstream(file.path()) << "part";
       ::raise(number);
     };
-    EXPECT_EXIT(end(), ::testing::KilledBySignal(number), "ziggurat: interrupted; the file was not finished");
+    EXPECT_EXIT(end(), ::testing::KilledBySignal(number),
+                "ziggurat: interrupted; the file was not finished");
     EXPECT_EQ(only_file(), "out.csv: old\n");
   }
 }

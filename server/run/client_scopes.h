@@ -1,8 +1,5 @@
 #pragma once
-// Checks of the file of --curve-clients: its permissions decide who may connect, and its ids must
-// fit the scene.
-
-#include <sys/types.h>
+// Patterns of --curve-clients, which must fit the scene.
 
 #include <string>
 #include <vector>
@@ -12,13 +9,6 @@
 #include "world/layout.h"
 
 namespace ziggurat::run {
-
-/// Checks that only root and the user who starts the program can change or replace the file. A file
-/// that can't be read passes.
-/// @param path  may be empty
-/// @param user  user who starts the program
-/// @throws text::UsageError
-void check_clients(const std::string& path, uid_t user);
 
 /// A sentence on each pattern that limits a key to robots or controllers which the scene does not
 /// have: it is misspelt, or for robots that are to be spawned.
