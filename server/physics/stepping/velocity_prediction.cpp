@@ -76,19 +76,6 @@ void find_impacts(const std::vector<Tree>& trees, const std::vector<unsigned cha
   }
 }
 
-/// Sets the rebound of contacts that close within the substep as target velocity: bodies that are
-/// struck may strike others.
-void set_rebound_velocities(Problem& problem) {
-  for (Constraint& constraint : problem.constraints) {
-    if (constraint.kind != Constraint::Kind::contact || constraint.restitution <= 0) continue;
-    double u[Constraint::most_rows];
-    problem.constraint_velocity(constraint, u);
-    if (u[0] >= -restitution_threshold || constraint.gap + problem.time_step * u[0] >= 0) continue;
-    constraint.compliance = 0;
-    constraint.target_velocity[0] = -constraint.restitution * u[0];
-  }
-}
-
 }  // namespace
 
 bool System::predict_velocities(std::span<Limit> limits, double far,
@@ -122,7 +109,6 @@ bool System::predict_velocities(std::span<Limit> limits, double far,
     const IslandStep step = island_step(number);
     if (step.island.trees.size() > most_bodies) continue;
     assemble_problem(step);
-    set_rebound_velocities(memory_.problem);
     solve_velocities(memory_.problem, memory_.solver);
     out.trees.insert(out.trees.end(), step.island.trees.begin(), step.island.trees.end());
     out.velocities.insert(out.velocities.end(), memory_.problem.velocity.begin(),
