@@ -40,30 +40,34 @@ std::string name_of_script(const fs::path& script, const std::string& scene_file
   return (folder / relative).lexically_normal().string();
 }
 
-/// Folder of the scene file, which names in a recording leave out: they would tell the folders of
-/// its author. Empty, if a file of the scene or a setting tells it anyway: that one would not be
-/// found again.
+/// Folder of the scene file, as seen from which files are named: other names would tell the folders
+/// of the author. Empty, if a file of the scene or a setting names one of its folders in full: that
+/// one would not be found again.
 std::string folder_to_hide(const recorder::Start& start) {
-  const fs::path folder = fs::path(start.scene).parent_path();
-  if (folder.empty()) return {};
-  std::string prefix = folder.string();
-  if (!prefix.ends_with('/')) prefix += '/';
-  const auto tells = [&](std::string_view text) {
-    return folder.is_absolute() && text.find(prefix) != std::string_view::npos;
+  const std::string folder = fs::path(start.scene).parent_path().string();
+  const auto tells = [](std::string_view text, const std::string& path) {
+    return path.starts_with('/') && text.find(path) != std::string_view::npos;
   };
-  const bool is_told =
-      std::ranges::any_of(start.files, tells,
-                          [](const auto& file) -> std::string_view { return file.text; }) ||
-      std::ranges::any_of(start.settings, tells,
-                          [](const auto& each) -> std::string_view { return each.second; }) ||
-      std::ranges::any_of(start.parameters, tells,
-                          [](const auto& each) -> std::string_view { return each.second; });
-  return is_told ? std::string() : prefix;
+  for (const auto& named : start.files) {
+    const std::string in = fs::path(named.name).parent_path().string() + "/";
+    for (const auto& file : start.files) {
+      if (tells(file.text, in)) return {};
+    }
+    for (const auto* values : {&start.settings, &start.parameters}) {
+      for (const auto& each : *values) {
+        if (tells(each.second, in)) return {};
+      }
+    }
+  }
+  return folder;
 }
 
-/// Name of a file as seen from the scene's folder.
-void leave_out(const std::string& folder, std::string& name) {
-  if (!folder.empty() && name.starts_with(folder)) name.erase(0, folder.size());
+/// Name of a file as seen from a folder; empty: as it is.
+void name_from(const std::string& folder, std::string& name) {
+  if (folder.empty() || folder.starts_with('/') != name.starts_with('/')) return;
+  const fs::path relative =
+      fs::path(name).lexically_normal().lexically_relative(fs::path(folder).lexically_normal());
+  if (!relative.empty()) name = relative.string();
 }
 
 /// Attaches a script under a name that no other file has. One that cannot be read is left out.
@@ -240,12 +244,13 @@ RecordedRun::RecordedRun(const Options& options, supervision::World& world, cons
 /// @param with_paths  names and the command line stay as they were written
 recorder::Start RecordedRun::begin(recorder::Start start, bool with_paths) {
   if (!with_paths) {
-    hidden_folder_ = folder_to_hide(start);
+    if (start.snapshot.empty())
+      hidden_folder_ = folder_to_hide(start);  // else names are those of a recording
     start.arguments.clear();
   }
-  leave_out(hidden_folder_, start.scene);
-  for (auto& controller : start.controllers) leave_out(hidden_folder_, controller.script);
-  for (auto& file : start.files) leave_out(hidden_folder_, file.name);
+  name_from(hidden_folder_, start.scene);
+  for (auto& controller : start.controllers) name_from(hidden_folder_, controller.script);
+  for (auto& file : start.files) name_from(hidden_folder_, file.name);
   scene_name_ = start.scene;
   note(start.files);
   return start;
@@ -302,7 +307,7 @@ void RecordedRun::add_script(const std::string& script,
   add_required(scripts, console_);
   for (const fs::path& each : scripts) {
     std::string name = name_of_script(each, world_.path);
-    leave_out(hidden_folder_, name);
+    name_from(hidden_folder_, name);
     if (!embedded_.contains(name)) attach(each, std::move(name), files);
   }
 }
@@ -319,7 +324,7 @@ void RecordedRun::record(const supervision::WorldChange& change) {
         } else if constexpr (std::is_same_v<Type, supervision::Spawned>) {
           std::vector<recorder::EmbeddedFile> files;
           for (const auto& [name, text] : made.files) files.push_back({name, text});
-          for (auto& file : files) leave_out(hidden_folder_, file.name);
+          for (auto& file : files) name_from(hidden_folder_, file.name);
           add_script(made.script, files);
           note(files);
           to.spawned(made.xml, std::move(files));

@@ -70,8 +70,8 @@ class RecordedRun {
   reports::Console& console_;
   const std::uint64_t last_tick_;
   const bool is_strict_;
-  std::string hidden_folder_;  ///< that names in the recording leave out, with a slash; empty: none
-  std::string scene_name_;     ///< of the scene file in the recording
+  std::string hidden_folder_;                ///< from which files are named; empty: as they are
+  std::string scene_name_;                   ///< of the scene file in the recording
   std::set<std::string> embedded_;           // names of files that the recording has
   std::set<std::filesystem::path> scripts_;  // of spawned robots
   recorder::Recorder recorder_;

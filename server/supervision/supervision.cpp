@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <string_view>
@@ -154,10 +155,22 @@ Reply Supervision::handle(const network::Call& call) {
 }
 
 Reply Supervision::pause(const network::Call& call) {
+  constexpr std::chrono::milliseconds in_flight{
+      300};  // for an answer that was sent before the request
+  const auto now = std::chrono::steady_clock::now();
+  const bool was_paused = server_.pause() != network::Pause::none;
   const bool waits = !is_halted() && is_gathered_;
-  if (waits && network::need_of(server_, call.request.held_up) == network::Need::answer)
+  if (waits && network::need_of(server_, call.request.held_up) == network::Need::answer) {
+    const bool is_known =
+        held_up_ && held_up_->peer == call.peer && held_up_->id == call.request.id;
+    if (!is_known) held_up_ = HeldUp{call.peer, call.request.id, now, was_paused};
+    server_.set_paused(true);  // the world stands behind that answer
+    if (now - held_up_->since < in_flight) return Reply::later;
+    server_.set_paused(std::exchange(held_up_, std::nullopt)->was_paused);
     return fail(call, held_up("pause"));
-  const bool was_asked = server_.pause() != network::Pause::none || steps_left_ > 0;
+  }
+  const bool was_asked = (held_up_ ? held_up_->was_paused : was_paused) || steps_left_ > 0;
+  held_up_.reset();
   steps_left_ = 0;
   server_.set_paused(true);
   if (!was_asked) callers_.tell(Paused{});  // it may be handled again until the world is halted
@@ -171,6 +184,7 @@ Reply Supervision::pause(const network::Call& call) {
 /// A step that still runs ends here: its supervisor is told that the world is not paused.
 Reply Supervision::resume(const network::Call& call) {
   stepping_.reset();
+  held_up_.reset();
   steps_left_ = 0;
   server_.set_paused(false);
   callers_.tell(Resumed{});

@@ -96,6 +96,14 @@ class Supervision {
   Snapshots snapshots_;
   std::optional<FoundSnapshot> restoring_;  ///< with resetting_
   std::uint64_t steps_left_ = 0;
+  /// A pause that names a session of its program which still owes an answer: it may be on its way.
+  struct HeldUp {
+    std::string peer;
+    std::uint64_t id = 0;  ///< of the request
+    std::chrono::steady_clock::time_point since;
+    bool was_paused = false;
+  };
+  std::optional<HeldUp> held_up_;
   bool is_gathered_ = false;
   std::optional<std::string> shutdown_;  // the reason
   clock::time_point start_ = clock::now();
