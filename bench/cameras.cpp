@@ -3,8 +3,8 @@
 // usage: bench_cameras
 //
 // 64 robots on a lattice of 1.25 m, each with a camera that looks at five boxes with a tag and six
-// LEDs each: 320 tags and 1 920 LEDs in view. The arena contains 180 more tags and 80 more LEDs. The
-// second run adds 5 000 boxes with a tag each at 20 to 60 m, ten times as many tags as before.
+// LEDs each: 320 tags and 1 920 LEDs in view. The arena contains 180 more tags and 80 more LEDs.
+// The second run adds 5 000 boxes with a tag each at 20 to 60 m, ten times as many tags as before.
 
 #include <fmt/format.h>
 #include <time.h>

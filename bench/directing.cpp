@@ -51,8 +51,9 @@ std::string scene_text(int robots) {
         R"(<foot-bot id="r{}"><body position="{},{},0"/><controller config="c"/></foot-bot>)", i,
         0.6 * (i % side) - 0.3 * side, 0.6 * (i / side) - 0.3 * side);
   }
-  return text + R"(</arena><physics_engines><dynamics3d id="d" iterations="10"><gravity g="9.8"/><floor/>)"
-                R"(</dynamics3d></physics_engines><media/></argos-configuration>)";
+  return text +
+         R"(</arena><physics_engines><dynamics3d id="d" iterations="10"><gravity g="9.8"/><floor/>)"
+         R"(</dynamics3d></physics_engines><media/></argos-configuration>)";
 }
 
 double median(std::vector<double>& values) {
@@ -81,8 +82,9 @@ int measure(int ticks, int robots) {
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   server.remove_robots(all);
   const pid_t director = start_director(server.endpoints().front());
-  network::DirectorsDesk desk(server);
-  while (desk.status().empty()) server.linger(simulation.commands(), {std::chrono::milliseconds(20), {}});
+  network::ServerDirectors directors(server);
+  while (directors.status().empty())
+    server.linger(simulation.commands(), {std::chrono::milliseconds(20), {}});
   for (auto& wheels : simulation.commands().wheels) wheels = {0.1, 0.05};
   const wire::Truth truth{simulation.layout(), simulation.entities(), simulation.state(),
                           simulation.observations(), simulation.contacts()};
@@ -106,10 +108,12 @@ int measure(int ticks, int robots) {
   int status = 0;
   ::waitpid(director, &status, 0);
   const double told = median(with), alone = median(without);
-  fmt::print("{} robots, medians of {} ticks: {:.3f} ms without, {:.3f} ms with a director ({:+.1f} %), of "
-             "which the exchange takes {:.3f} ms ({:.1f} % of a tick)\n",
-             robots, ticks, alone, told, 100 * (told / alone - 1), median(exchanges),
-             100 * median(exchanges) / alone);
+  fmt::print(
+      "{} robots, medians of {} ticks: {:.3f} ms without, {:.3f} ms with a director ({:+.1f} %), "
+      "of "
+      "which the exchange takes {:.3f} ms ({:.1f} % of a tick)\n",
+      robots, ticks, alone, told, 100 * (told / alone - 1), median(exchanges),
+      100 * median(exchanges) / alone);
   return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
 }
 

@@ -1,17 +1,17 @@
 // The substep of the drop scene (n/2 boxes and n/2 cylinders of 1 cm, 0.25 kg, at the areal density
-// of dynamics3d_single_body_test, 10 ms substeps) in four worlds, interleaved round by round:
+// of dynamics3d_single_body_test, 10 ms substeps) in two worlds, interleaved round by round:
 //
-//   newton, sweeps   physics::World by either solver, its state read once per tick of 20 substeps
+//   ours   physics::World, its state read once per tick of 20 substeps
 //   raw    bare Bullet in raw metres with its default margins and 10 iterations, box floor of 1 cm
-//   same   bare Bullet with the contacts, solver and boxes of "sweeps", and nothing else
 //
 // Thread CPU time. usage: bench_drop [rounds]
 
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btCylinderShape.h>
-#include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 #include <fmt/format.h>
 #include <time.h>
 
@@ -22,11 +22,7 @@
 #include <random>
 #include <vector>
 
-#include "physics/bullet/dynamics.h"
-#include "physics/bullet/solver.h"
-#include "physics/contact/algorithm.h"
-#include "physics/convert.h"
-#include "physics/shape.h"
+#include "physics/bodies/convert.h"
 #include "physics/world.h"
 
 namespace {
@@ -100,9 +96,8 @@ Times time_run(const std::function<void(int)>& tick) {
           (mark[3] - mark[0]) / (40 * per_tick) * 1e6};
 }
 
-Times ours(const std::vector<Placed>& placed, scene::Solver solver) {
+Times ours(const std::vector<Placed>& placed) {
   scene::Physics settings;
-  settings.solver = solver;
   settings.floor = scene::Floor{};
   settings.gravity = 9.8;
   physics::World world(settings, substep);
@@ -142,6 +137,14 @@ struct BareBodies {
   }
 };
 
+std::unique_ptr<btCollisionShape> bullet_shape(const Placed& placed) {
+  if (const auto* box = std::get_if<scene::Box>(&placed.geometry)) {
+    return std::make_unique<btBoxShape>(physics::to_bullet(math::Vector3(box->size / 2)));
+  }
+  const auto& can = std::get<scene::Cylinder>(placed.geometry);
+  return std::make_unique<btCylinderShapeZ>(btVector3(can.radius, can.radius, can.height / 2));
+}
+
 btTransform centre(const Placed& placed) {
   const double up = std::holds_alternative<scene::Box>(placed.geometry)
                         ? std::get<scene::Box>(placed.geometry).size.z() / 2
@@ -160,56 +163,10 @@ Times raw(const std::vector<Placed>& placed) {
   btTransform floor(btQuaternion::getIdentity(), btVector3(0, 0, -0.005));
   world.addRigidBody(&bare.add(std::make_unique<btBoxShape>(btVector3(2, 2, 0.005)), 0, floor));
   for (const Placed& each : placed) {
-    world.addRigidBody(&bare.add(physics::bullet_shape(each.geometry), each.mass, centre(each)));
+    world.addRigidBody(&bare.add(bullet_shape(each), each.mass, centre(each)));
   }
   const Times times = time_run([&](int) {
     for (int i = 0; i < per_tick; ++i) world.stepSimulation(substep, 0);
-  });
-  for (auto& body : bare.bodies) world.removeRigidBody(body.get());
-  return times;
-}
-
-Times same(const std::vector<Placed>& placed) {
-  BareBodies bare;
-  std::vector<std::unique_ptr<physics::contact::Collider>> colliders;
-  btDefaultCollisionConfiguration configuration(physics::contact::construction_info());
-  btCollisionDispatcher dispatcher(&configuration);
-  const auto algorithms = physics::contact::register_algorithms(dispatcher);
-  btDbvtBroadphase broadphase;
-  physics::Solver solver(10);
-  physics::Dynamics world(dispatcher, broadphase, solver, configuration);
-  world.setGravity(btVector3(0, 0, 0));
-  btContactSolverInfo& info = world.getSolverInfo();
-  info.m_numIterations = 50;
-  info.m_warmstartingFactor = 0.5;
-  info.m_splitImpulse = false;
-  info.m_leastSquaresResidualThreshold = 1e-8;
-  info.m_minimumSolverBatchSize = 1;
-  const auto add = [&](std::unique_ptr<btCollisionShape> shape, const physics::contact::Shape& ours,
-                       double mass, const btTransform& pose) {
-    btRigidBody& body = bare.add(std::move(shape), mass, pose);
-    colliders.push_back(std::make_unique<physics::contact::Collider>());
-    colliders.back()->shape = ours;
-    colliders.back()->rolling_friction = mass > 0 ? 2e-4 : 0;
-    colliders.back()->previous = pose;
-    body.setUserPointer(colliders.back().get());
-    body.setSleepingThresholds(4e-3, 0.4);
-    world.addRigidBody(&body);
-  };
-  add(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0), physics::contact::HalfSpace{}, 0,
-      btTransform::getIdentity());
-  for (const Placed& each : placed) {
-    add(physics::bullet_shape(each.geometry), physics::contact_shape(each.geometry), each.mass,
-        centre(each));
-  }
-  const Times times = time_run([&](int) {
-    for (int i = 0; i < per_tick; ++i) {
-      for (auto& body : bare.bodies) {
-        if (body->getInvMass() > 0 && body->isActive())
-          body->applyCentralForce(btVector3(0, 0, -9.8 * 0.25));
-      }
-      world.substep(substep);
-    }
   });
   for (auto& body : bare.bodies) world.removeRigidBody(body.get());
   return times;
@@ -222,24 +179,18 @@ double median(std::vector<double> values) {
 
 void compare(int count, int rounds) {
   const std::vector<Placed> placed = drop_scene(count);
-  std::vector<Times> newton, own, bare, own_settings;
+  std::vector<Times> own, bare;
   for (int round = 0; round < rounds; ++round) {
-    newton.push_back(ours(placed, scene::Solver::newton));
-    own.push_back(ours(placed, scene::Solver::sweeps));
+    own.push_back(ours(placed));
     bare.push_back(raw(placed));
-    own_settings.push_back(same(placed));
   }
   const auto row = [&](const char* phase, double Times::*part) {
-    std::vector<double> newton_us, newton_faster, us, faster, over;
+    std::vector<double> us, faster;
     for (int i = 0; i < rounds; ++i) {
-      newton_us.push_back(newton[i].*part);
-      newton_faster.push_back(bare[i].*part / (newton[i].*part));
       us.push_back(own[i].*part);
       faster.push_back(bare[i].*part / (own[i].*part));
-      over.push_back(own[i].*part / (own_settings[i].*part));
     }
-    fmt::print("| {} | {} | {:.0f} | {:.2f} | {:.0f} | {:.2f} | {:.2f} |\n", count, phase,
-               median(newton_us), median(newton_faster), median(us), median(faster), median(over));
+    fmt::print("| {} | {} | {:.0f} | {:.2f} |\n", count, phase, median(us), median(faster));
   };
   row("fall, 0-0.6 s", &Times::fall);
   row("settling, 0.6-2 s", &Times::settle);
@@ -250,10 +201,7 @@ void compare(int count, int rounds) {
 
 int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 7;
-  fmt::print(
-      "| bodies | phase | newton, us per substep | raw Bullet / newton | sweeps, us per substep | "
-      "raw "
-      "Bullet / sweeps | sweeps / same settings, bare |\n|---|---|---|---|---|---|---|\n");
+  fmt::print("| bodies | phase | us per substep | raw Bullet / ours |\n|---|---|---|---|\n");
   for (const int count : {100, 400, 1600})
     compare(count, count > 1000 ? std::max(1, rounds / 2) : rounds);
 }

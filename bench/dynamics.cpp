@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dynamics/system.h"
+#include "physics/stepping/system.h"
 #include "pile.h"
 
 namespace {
@@ -110,11 +110,11 @@ void bench_robots(int count) {
     worst.not_converged += report.not_converged;
   }
   std::printf("%5d robots: %.2f us per robot and substep, %.1f iterations, %d not converged\n",
-              count, 1e6 * total / steps / count, double(iterations) / steps,
-              worst.not_converged);
+              count, 1e6 * total / steps / count, double(iterations) / steps, worst.not_converged);
 }
 
-/// Towers that stand; contacts of sleepers are not told, as collision detection would not find them.
+/// Towers that stand; contacts of sleepers are not told, as collision detection would not find
+/// them.
 void bench_boxes(int count, int height, bool sleeps) {
   System system;
   system.sleeping.enabled = sleeps;
@@ -179,7 +179,7 @@ void bench_pile(int count, int steps, double hz, bool verbose) {
   double total = 0, worst_time = 0, deepest = 0;
   std::vector<double> misses;
   std::size_t points = 0;
-  long iterations = 0, descents = 0, interior = 0, sweeps = 0;
+  long iterations = 0, descents = 0, interior = 0, passes = 0;
   for (int i = 0; i < steps; ++i) {
     for (Tree& tree : world.system.trees) tree.gravity = Vector3(0, 0, -g);
     world.find(1 / hz);
@@ -190,13 +190,16 @@ void bench_pile(int count, int steps, double hz, bool verbose) {
     worst_time = std::max(worst_time, time);
     misses.push_back(report.residual);
     points = std::max(points, world.contacts.size());
-    iterations += report.most_iterations, descents += report.most_augmented_lagrangian_steps, interior += report.most_interior_point_steps;
-    sweeps += report.most_sweeps;
+    iterations += report.most_iterations, descents += report.most_augmented_lagrangian_steps,
+        interior += report.most_interior_point_steps;
+    passes += report.most_passes;
     for (const ContactPoint& contact : world.contacts) deepest = std::max(deepest, -contact.gap);
     if (verbose) {
-      std::printf("%4d: %5zu points, %2d iterations, %3d descents, %2d interior, %3d sweeps, miss %.1e, %.2f ms\n", i,
-                  world.contacts.size(), report.most_iterations, report.most_augmented_lagrangian_steps, report.most_interior_point_steps,
-                  report.most_sweeps, report.residual, 1e3 * time);
+      std::printf(
+          "%4d: %5zu points, %2d iterations, %3d descents, %2d interior, %3d passes, miss %.1e, "
+          "%.2f ms\n",
+          i, world.contacts.size(), report.most_iterations, report.most_augmented_lagrangian_steps,
+          report.most_interior_point_steps, report.most_passes, report.residual, 1e3 * time);
     }
   }
   double energy = 0, highest = 0;
@@ -207,14 +210,15 @@ void bench_pile(int count, int steps, double hz, bool verbose) {
   const auto over = [&](double bound) {
     return std::count_if(misses.begin(), misses.end(), [&](double m) { return m > bound; });
   };
-  std::printf("%5d cubes in a bin, %d substeps at %g Hz, up to %zu points: %.2f ms, at most %.1f\n"
-              "      miss > 1e-4 m/s: %ld, > 1e-3: %ld, worst %.1e; per substep %.1f iterations, "
-              "%.1f descents, %.1f interior, %.1f sweeps\n"
-              "      overlap %.2f mm, energy left %.1e J, top %.3f m\n",
-              count, steps, hz, points, 1e3 * total / steps, 1e3 * worst_time, long(over(1e-4)),
-              long(over(1e-3)),
-              *std::max_element(misses.begin(), misses.end()), double(iterations) / steps,
-              double(descents) / steps, double(interior) / steps, double(sweeps) / steps, 1e3 * deepest, energy, highest);
+  std::printf(
+      "%5d cubes in a bin, %d substeps at %g Hz, up to %zu points: %.2f ms, at most %.1f\n"
+      "      miss > 1e-4 m/s: %ld, > 1e-3: %ld, worst %.1e; per substep %.1f iterations, "
+      "%.1f descents, %.1f interior, %.1f passes\n"
+      "      overlap %.2f mm, energy left %.1e J, top %.3f m\n",
+      count, steps, hz, points, 1e3 * total / steps, 1e3 * worst_time, long(over(1e-4)),
+      long(over(1e-3)), *std::max_element(misses.begin(), misses.end()), double(iterations) / steps,
+      double(descents) / steps, double(interior) / steps, double(passes) / steps, 1e3 * deepest,
+      energy, highest);
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // Magnetism: the neighbour list and its kernels compared with simple loops, all with the project's
-// release flags. Blocks of eight dipoles on a 60 mm lattice; each block moves on a circle at 5 cm/s with
-// its own phase, in 10 ms substeps, so that lists are rebuilt as in a real run. Every variant computes
-// wrenches from poses. Thread CPU time, median over steps; only ratios are comparable between machines.
+// release flags. Blocks of eight dipoles on a 60 mm lattice; each block moves on a circle at 5 cm/s
+// with its own phase, in 10 ms substeps, so that lists are rebuilt as in a real run. Every variant
+// computes wrenches from poses. Thread CPU time, median over steps; only ratios are comparable
+// between machines.
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +48,8 @@ struct Lattice {
   std::vector<double> currents;
   std::vector<Wrench> wrenches;
 
-  bool drifting = false;  ///< all blocks move together in a straight line; otherwise each on its circle
+  bool drifting =
+      false;  ///< all blocks move together in a straight line; otherwise each on its circle
 
   void move(int step) {
     for (std::size_t b = 0; b < poses.size(); ++b) {

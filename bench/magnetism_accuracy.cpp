@@ -1,8 +1,8 @@
 // Accuracy of the adaptive magnets: worst errors over gaps from 5 % of the magnet's size to twenty
-// sizes and over random poses, relative to a fine integration over pole charges (which the unit tests
-// compare with Akoun and Yonnet and with the axial integral for cylinders). Torque errors are relative to
-// max(|T|, |F| side / 2). Prints for each shape and tolerance the worst errors of force and torque, the
-// number of poses outside the tolerance, and the mean time of a pair.
+// sizes and over random poses, relative to a fine integration over pole charges (which the unit
+// tests compare with Akoun and Yonnet and with the axial integral for cylinders). Torque errors are
+// relative to max(|T|, |F| side / 2). Prints for each shape and tolerance the worst errors of force
+// and torque, the number of poses outside the tolerance, and the mean time of a pair.
 
 #include <algorithm>
 #include <chrono>

@@ -1,5 +1,5 @@
-// Time of a picture: a hundred boxes with a tag and an LED each, on a floor, with shadows. Measures the
-// processor time of all threads, which other programs affect little, and wall time.
+// Time of a picture: a hundred boxes with a tag and an LED each, on a floor, with shadows. Measures
+// the processor time of all threads, which other programs affect little, and wall time.
 
 #include <fmt/format.h>
 
@@ -58,7 +58,8 @@ struct World {
 double processor_ms() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 double wall_ms() {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
+  return std::chrono::duration<double, std::milli>(
+             std::chrono::steady_clock::now().time_since_epoch())
       .count();
 }
 
@@ -81,7 +82,8 @@ void measure(const World& world, unsigned width, unsigned height, unsigned overs
   for (int i = 0; i < pictures; ++i) renderer.draw(world.state, view, picture);
   const double each = (processor_ms() - begin - first) / pictures;
   fmt::print(
-      "{} x {}, oversampling {}: first picture {:.0f} ms, each further one {:.1f} ms of processor time, "
+      "{} x {}, oversampling {}: first picture {:.0f} ms, each further one {:.1f} ms of processor "
+      "time, "
       "{:.1f} ms of wall time\n",
       width, height, oversampling, first, each, (wall_ms() - wall) / pictures);
 }
@@ -97,9 +99,11 @@ void measure_several(const World& world, unsigned threads) {
   const double wall = wall_ms(), begin = processor_ms();
   for (int i = 0; i < pictures; ++i) several.draw(world.state, {}, view, [](const auto&) {});
   several.finish();
-  fmt::print("640 x 480, oversampling 2, {} at a time: each {:.1f} ms of processor time, {:.1f} ms of wall "
-             "time\n",
-             threads, (processor_ms() - begin) / pictures, (wall_ms() - wall) / pictures);
+  fmt::print(
+      "640 x 480, oversampling 2, {} at a time: each {:.1f} ms of processor time, {:.1f} ms of "
+      "wall "
+      "time\n",
+      threads, (processor_ms() - begin) / pictures, (wall_ms() - wall) / pictures);
 }
 #endif
 

@@ -1,7 +1,7 @@
-// Boxes and cubes of about 1 cm that fall at random into a bin of 10 ms substeps, in two worlds
-// that differ in the solver, substep by substep in turn. Printed per phase: thread CPU time per
-// substep, the worst overlap after a substep, and how often the contact law was missed (newton
-// tells it). The heap is at rest when no body has moved by more than 1 um in a substep for 0.5 s.
+// Boxes and cubes of about 1 cm that fall at random into a bin, in substeps of 10 ms. Printed per
+// phase: thread CPU time per substep, the worst overlap after a substep, and how often the contact
+// law was missed. The heap is at rest when no body has moved by more than 1 um in a substep for 0.5
+// s.
 //
 // usage: bench_pile [BODIES [SECONDS [HZ]]]    default: 100, 400, 1 000 bodies, 6 s, 100 Hz
 
@@ -14,8 +14,8 @@
 #include <random>
 #include <vector>
 
-#include "physics/contact/shapes.h"
-#include "physics/convert.h"
+#include "physics/bodies/convert.h"
+#include "physics/collision/shapes.h"
 #include "physics/world.h"
 
 namespace {
@@ -151,38 +151,28 @@ void Run::step(double substep, double now) {
   for (std::size_t i = 0; i < before.size(); ++i) before[i] = state.origins[i].position;
 }
 
-void compare(int count, double seconds, double hz) {
+void measure(int count, double seconds, double hz) {
   const std::vector<scene::Entity> entities = pile_scene(count);
   scene::Physics settings;
   settings.floor = scene::Floor{};
   settings.gravity = 9.8;
-  settings.solver = scene::Solver::sweeps;
-  Run sweeps(settings, entities, 1 / hz);
-  settings.solver = scene::Solver::newton;
-  Run newton(settings, entities, 1 / hz);
+  Run run(settings, entities, 1 / hz);
   const int steps = static_cast<int>(std::lround(seconds * hz));
   const int phase = std::max(1, steps / 6);
   for (int n = 0; n < steps; ++n) {
-    for (Run* run : {&sweeps, &newton}) run->step(1 / hz, (n + 1) / hz);
+    run.step(1 / hz, (n + 1) / hz);
     if (n % phase != phase - 1) continue;
-    for (Run* run : {&sweeps, &newton}) {
-      const physics::Convergence told = run->world.convergence();
-      fmt::print(
-          "| {} | {:.1f} s | {} | {:.2f} | {:.1f} | {:.2f} | {:.2f} | {:.2g} | {} | {:.1e} |\n",
-          count, (n + 1) / hz, run == &sweeps ? "sweeps" : "newton",
-          1e3 * run->seconds / double(run->steps), 1e3 * run->longest,
-          newton.seconds / sweeps.seconds, 1e3 * run->overlap, 1e3 * run->moved * hz,
-          told.not_converged - run->missed_before, told.worst);
-      run->missed_before = told.not_converged;
-    }
+    const physics::Convergence told = run.world.convergence();
+    fmt::print("| {} | {:.1f} s | {:.2f} | {:.1f} | {:.2f} | {:.2g} | {} | {:.1e} |\n", count,
+               (n + 1) / hz, 1e3 * run.seconds / double(run.steps), 1e3 * run.longest,
+               1e3 * run.overlap, 1e3 * run.moved * hz, told.not_converged - run.missed_before,
+               told.worst);
     std::fflush(stdout);
-    for (Run* run : {&sweeps, &newton}) {
-      run->seconds = run->longest = run->overlap = 0;
-      run->steps = 0;
-    }
+    run.missed_before = told.not_converged;
+    run.seconds = run.longest = run.overlap = 0;
+    run.steps = 0;
   }
-  fmt::print("| {} | at rest | sweeps {:.2f} s, newton {:.2f} s (-1: never) |\n", count,
-             sweeps.at_rest, newton.at_rest);
+  fmt::print("| {} | at rest | {:.2f} s (-1: never) |\n", count, run.at_rest);
 }
 
 }  // namespace
@@ -191,9 +181,9 @@ int main(int argc, char** argv) {
   const double seconds = argc > 2 ? std::atof(argv[2]) : 6,
                hz = argc > 3 ? std::atof(argv[3]) : 100;
   fmt::print(
-      "| bodies | until | solver | ms per substep | longest | newton / sweeps | overlap, mm | "
-      "fastest now, mm/s | islands that missed | worst miss so far "
-      "|\n|---|---|---|---|---|---|---|---|---|---|\n");
-  if (argc > 1) return compare(std::atoi(argv[1]), seconds, hz), 0;
-  for (const int count : {100, 400, 1000}) compare(count, seconds, hz);
+      "| bodies | until | ms per substep | longest | overlap, mm | fastest now, mm/s | islands "
+      "that "
+      "missed | worst miss so far |\n|---|---|---|---|---|---|---|---|\n");
+  if (argc > 1) return measure(std::atoi(argv[1]), seconds, hz), 0;
+  for (const int count : {100, 400, 1000}) measure(count, seconds, hz);
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Wall time per tick of scenes whose time is known from the reference simulator.
 
-    bench/reference.py [--repeat 3] [--only NAME] [--solver newton] [--solver sweeps]
+    bench/reference.py [--repeat 3] [--only NAME]
     bench/reference.py --swarm 16,64,256,1024 [--repeat 3]
 
 Controllers are Lua scripts in a process of their own; the reference had them in its own process. Both take
@@ -71,22 +71,14 @@ def time_per_tick(folder, tree, short, long, which):
 
 def compare(arguments, folder):
     """The reference's times beside ours."""
-    solvers = arguments.solver or ["newton"]
-    columns = "".join(f" {solver} [ms] | times as fast |" for solver in solvers)
-    print(f"| scene, ms per tick | reference [ms] |{columns}")
-    print("|---|---|" + "---|---|" * len(solvers))
+    print("| scene, ms per tick | reference [ms] | ours [ms] | times as fast |")
+    print("|---|---|---|---|")
     for name, make, short, long, reference in ROWS:
         if arguments.only and arguments.only not in name:
             continue
-        times = {solver: [] for solver in solvers}
-        for _ in range(arguments.repeat):
-            for solver in solvers:
-                tree = make()
-                tree.find("physics_engines/dynamics3d").set("solver", solver)
-                times[solver].append(1e3 * time_per_tick(folder, tree, short, long, 0))
-        medians = [statistics.median(times[solver]) for solver in solvers]
-        columns = "".join(f" {ms:.2f} | {reference / ms:.1f} |" for ms in medians)
-        print(f"| {name} | {reference} |{columns}", flush=True)
+        ms = statistics.median(1e3 * time_per_tick(folder, make(), short, long, 0)
+                               for _ in range(arguments.repeat))
+        print(f"| {name} | {reference} | {ms:.2f} | {reference / ms:.1f} |", flush=True)
 
 
 def measure_swarm(arguments, folder):
@@ -105,7 +97,6 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--repeat", type=int, default=3)
     parser.add_argument("--only", metavar="NAME", help="rows whose name contains this")
-    parser.add_argument("--solver", action="append", choices=["newton", "sweeps"])
     parser.add_argument("--swarm", metavar="COUNTS")
     arguments = parser.parse_args()
     folder = Folder()

@@ -25,9 +25,8 @@ int main(int count, char** arguments) {
     const Channel *poses = all.channel_of("/poses"), *state = all.channel_of("/state");
     if (!poses || !state) return 1;
     // The first state of the chunk is complete, the others say what changed.
-    const auto chunk = std::find_if(all.chunks.rbegin(), all.chunks.rend(), [&](const auto& each) {
-      return each.start_time <= moment;
-    });
+    const auto chunk = std::find_if(all.chunks.rbegin(), all.chunks.rend(),
+                                    [&](const auto& each) { return each.start_time <= moment; });
     if (chunk == all.chunks.rend()) return 1;
     Messages messages(reader, {{poses->id, state->id}, chunk->start_time, moment});
     std::size_t bytes = 0;
@@ -36,6 +35,6 @@ int main(int count, char** arguments) {
     seconds.push_back(std::chrono::duration<double>(clock::now() - begin).count());
   }
   std::sort(seconds.begin(), seconds.end());
-  std::printf("%d seeks: median %.1f ms, longest %.1f ms\n", times, 1e3 * seconds[seconds.size() / 2],
-              1e3 * seconds.back());
+  std::printf("%d seeks: median %.1f ms, longest %.1f ms\n", times,
+              1e3 * seconds[seconds.size() / 2], 1e3 * seconds.back());
 }

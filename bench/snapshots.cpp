@@ -1,5 +1,4 @@
-// Cost of a snapshot and of a restore, with the solver that a scene chooses. Thread CPU time,
-// medians of 21.
+// Cost of a snapshot and of a restore. Thread CPU time, medians of 21.
 //
 // usage: bench_snapshots TICK SCENE...
 
@@ -10,7 +9,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,10 +38,8 @@ double median_of(int runs, Function function) {
   return times[times.size() / 2];
 }
 
-void measure(const std::string& path, int tick, std::optional<scene::Clock> clock) {
-  scene::ReadOptions options;
-  options.clock = clock;
-  const auto read = scene::read_file(path, options);
+void measure(const std::string& path, int tick) {
+  const auto read = scene::read_file(path);
   if (!read.ok()) throw scene::SceneError(read.problems);
   simulation::Simulation simulation(read.scene, {7, {}});
   const auto drive = [&] {
@@ -52,19 +48,18 @@ void measure(const std::string& path, int tick, std::optional<scene::Clock> cloc
   };
   drive();
   for (int i = 0; i < tick; ++i) simulation.step();
-  const bool copies = read.scene.physics.solver == scene::Solver::newton;
   const simulation::Snapshot snapshot = simulation.snapshot();
   simulation::Snapshot elsewhere = snapshot;
   elsewhere.is_checked = false;
-  const int runs = copies ? 21 : 3;
+  constexpr int runs = 21;
   const double keep = median_of(runs, [&] { (void)simulation.snapshot(); });
   const double restore = median_of(runs, [&] { simulation.restore(read.scene, snapshot); });
   const double rebuild = median_of(3, [&] { simulation.restore(read.scene, elsewhere); });
   const double step = median_of(runs, [&] { simulation.step(); });
-  fmt::print("{}, {}, tick {}: snapshot {:.3f} ms, restore {:.3f} ms, in a new world {:.1f} ms, "
-             "{} bytes; a tick {:.3f} ms\n",
-             path, copies ? "newton: copied" : "sweeps: repeated", tick, keep, restore, rebuild,
-             snapshot.size(), step);
+  fmt::print(
+      "{}, tick {}: snapshot {:.3f} ms, restore {:.3f} ms, in a new world {:.1f} ms, "
+      "{} bytes; a tick {:.3f} ms\n",
+      path, tick, keep, restore, rebuild, snapshot.size(), step);
 }
 
 }  // namespace
@@ -74,10 +69,7 @@ int main(int count, char** arguments) try {
     std::puts("usage: bench_snapshots TICK SCENE...");
     return 1;
   }
-  for (int i = 2; i < count; ++i) {
-    measure(arguments[i], std::atoi(arguments[1]), {});
-    measure(arguments[i], std::atoi(arguments[1]), scene::Clock::beta50);
-  }
+  for (int i = 2; i < count; ++i) measure(arguments[i], std::atoi(arguments[1]));
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 1;

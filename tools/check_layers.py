@@ -24,13 +24,18 @@ MODULES = {
     "scene": ["text", "math"],
     "world": ["math"],
     "magnetism": ["math"],
-    "dynamics": ["math"],
-    "physics": ["scene", "world", "magnetism", "dynamics", "math"],
+    "physics/multibody": ["math"],
+    "physics/solver": ["physics/multibody"],
+    "physics/stepping": ["physics/multibody", "physics/solver", "math"],
+    "physics/bodies": ["physics/multibody", "physics/stepping", "scene", "math"],
+    "physics/collision": ["physics/multibody", "physics/solver", "physics/stepping", "physics/bodies", "scene", "world"],
+    "physics": ["physics/multibody", "physics/stepping", "physics/bodies", "physics/collision", "scene", "world", "magnetism",
+                "math"],
     "media": ["world", "math"],
     "camera": ["world", "media", "math"],
     "render": ["camera", "scene", "world", "math"],
-    "devices": ["scene", "world", "physics", "media", "camera", "render", "math"],
-    "simulation": ["scene", "world", "physics", "media", "devices", "math"],
+    "devices": ["scene", "world", "physics", "physics/collision", "media", "camera", "render", "math"],
+    "simulation": ["scene", "world", "physics", "physics/bodies", "physics/collision", "media", "devices", "math"],
     "wire": ["scene", "world", "protocol"],
     "recording": ["posix", "text", "world", "protocol", "math"],
     "replay": ["mcap", "recording", "simulation", "scene", "world", "protocol", "math"],
@@ -57,7 +62,7 @@ LIBRARIES = {
     "pugixml": (r"pugixml\.hpp$|pugiconfig\.hpp$", ["scene"]),
     "Qhull": (r"libqhull_r/", ["scene"]),
     "tinyobjloader": (r"tiny_obj_loader\.h$", ["scene"]),
-    "Bullet": (r"bullet/|bt[A-Z]\w*\.h$|Bullet\w*/|LinearMath/", ["physics"]),
+    "Bullet": (r"bullet/|bt[A-Z]\w*\.h$|Bullet\w*/|LinearMath/", ["physics/bodies", "physics/collision", "physics"]),
     "protobuf": (r"google/protobuf/", ["protocol", "wire", "recording", "channels", "replay"]),
     "ZeroMQ": (r"zmq(_addon)?\.hp?p?$", ["network", "clients/cpp"]),
     "libsodium": (r"sodium\.h$", ["network"]),
@@ -80,7 +85,10 @@ def module_of(path):
     """The module that a file belongs to; path is relative to the root."""
     if path.parts[0] == "protocol":
         return "protocol"
-    return path.parts[1] if path.parts[0] == "server" else "/".join(path.parts[:2])
+    if path.parts[0] == "server":
+        part = "/".join(path.parts[1:3])
+        return part if part in MODULES else path.parts[1]
+    return "/".join(path.parts[:2])
 
 
 def target_of(header, root, including):

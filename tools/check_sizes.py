@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Finds functions that are too long and classes with too many functions in server/.
+"""Finds functions that are too long, and classes with too many data members or friends, in server/.
 
 usage: check_sizes.py [ROOT]     ROOT is the top of the checkout (default: this file's)
 
-A function may have 59 lines, from its name to its last brace, and a class 25 functions: those that its
-body declares, without defaulted and deleted ones, operators and what is nested in it. Each violation is
-printed as file:line: text; the exit code is 1 if there is any.
+A function may have 59 lines, from its name to its last brace. A class may have 30 data members, without static ones
+and what is nested in it, and 6 friends; a struct is plain data and may have more. A limit on functions would make
+friends of members. Each violation is printed as
+file:line: text; the exit code is 1 if there is any.
 
 This is no C++ parser. It removes comments and texts, follows braces, and looks at what stands before
 each of them, which is enough for clang-formatted sources.
@@ -18,7 +19,8 @@ import sys
 from checkout import named_root
 
 LONGEST_FUNCTION = 59  # lines
-MOST_FUNCTIONS = 25  # of a class
+MOST_MEMBERS = 30  # data members of a class
+MOST_FRIENDS = 6
 
 IGNORED = re.compile(r"""
       //[^\n]*                                       # comments
@@ -39,7 +41,9 @@ class Block:
     kind: str  # "class", "function", "namespace" or "other"
     name: str
     line: int  # on which it is introduced, from 1 on
-    functions: int = 0  # that a class declares
+    members: int = 0  # data members of a class
+    friends: int = 0
+    is_plain: bool = False  # a struct or union
 
 
 def without_texts(source):
@@ -82,16 +86,19 @@ def kind_of(declaration, outer):
     return ("function", name) if name else ("other", "")
 
 
-def is_counted(name, declaration):
-    """Whether a function that a class declares counts."""
-    return (name is not None and not name.startswith("operator")
-            and not re.search(r"=\s*(default|delete)\s*$", declaration)
-            and not re.match(r"\s*(using|friend|typedef|static_assert)\b", declaration))
+def count(declaration, block):
+    """Adds what a declaration of a class declares to its data members or friends."""
+    text = without_templates(declaration).strip()
+    if re.match(r"friend\b", text):
+        block.friends += 1
+    elif text and not re.match(r"(using|typedef|static|static_assert|enum|class|struct|union|template)\b", text):
+        if not function_name(declaration):
+            block.members += 1 + len(re.findall(r",", re.sub(r"[({\[].*?[)}\]]", "", text)))
 
 
 def measure(source):
-    """Yields (line, name, lines) of each function, and (line, name, functions) of each class, as
-    ("function", …) and ("class", …)."""
+    """Yields ("function", line, name, lines) of each function, and ("class", line, name, (members, friends)) of each
+    class."""
     text = without_texts(source)
     blocks = [Block("namespace", "", 1)]
     begin = 0  # of the present declaration
@@ -118,23 +125,24 @@ def measure(source):
                               and re.search(r"\)\s*:[^:]", declaration))
             if is_initialiser:
                 kind = "other"  # of a member, before the body of a constructor
-            if kind == "function" and outer.kind == "class" and is_counted(name, declaration):
-                outer.functions += 1
-            blocks.append(Block(kind, name, begin_line))
+            if outer.kind == "class" and re.match(r"\s*friend\b", declaration):
+                outer.friends += 1
+            is_plain = kind == "class" and not re.search(r"\bclass\b", without_templates(declaration))
+            blocks.append(Block(kind, name, begin_line, is_plain=is_plain))
             if kind != "other":
                 begin = at + 1
         elif character == "}" and len(blocks) > 1:
             block = blocks.pop()
             if block.kind == "function":
                 yield "function", block.line, block.name, line - block.line + 1
-            elif block.kind == "class":
-                yield "class", block.line, block.name, block.functions
-            if block.kind in ("function", "namespace"):
+            elif block.kind == "class" and not block.is_plain:
+                yield "class", block.line, block.name, (block.members, block.friends)
+            if block.kind != "other":
                 begin = at + 1
         elif character == ";" and parentheses == 0 and outer.kind in ("class", "namespace"):
             declaration = re.sub(r"^\s*(public|private|protected)\s*:", "", text[begin:at])
-            if outer.kind == "class" and is_counted(function_name(declaration), declaration):
-                outer.functions += 1
+            if outer.kind == "class":
+                count(declaration, outer)
             begin = at + 1
 
 
@@ -143,8 +151,10 @@ def violations(source):
     for kind, line, name, size in measure(source):
         if kind == "function" and size > LONGEST_FUNCTION:
             yield line, f"{name}() has {size} lines; {LONGEST_FUNCTION} are allowed, divide it"
-        if kind == "class" and size > MOST_FUNCTIONS:
-            yield line, f"{name} has {size} functions; {MOST_FUNCTIONS} are allowed, divide it"
+        if kind == "class":
+            for number, most, what in zip(size, (MOST_MEMBERS, MOST_FRIENDS), ("data members", "friends")):
+                if number > most:
+                    yield line, f"{name} has {number} {what}; {most} are allowed, divide it"
 
 
 def main():

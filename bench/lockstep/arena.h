@@ -1,6 +1,6 @@
 #pragma once
-// Two ways to run the same lock-step ticks with messages of the same sizes: with our server, and with
-// bare ZeroMQ. Each owns its controller processes.
+// Two ways to run the same lock-step ticks with messages of the same sizes: with our server, and
+// with bare ZeroMQ. Each owns its controller processes.
 
 #include <sys/types.h>
 

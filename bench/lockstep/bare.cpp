@@ -1,4 +1,5 @@
-// ROUTER/DEALER with the same order of work as our server: send to all peers, then receive all answers.
+// ROUTER/DEALER with the same order of work as our server: send to all peers, then receive all
+// answers.
 
 #include <unistd.h>
 #include <zmq.h>

@@ -1,11 +1,12 @@
 // Time of a lock-step tick compared with bare ZeroMQ with the same message sizes and processes.
 //
 // usage: bench_lockstep [PAIRS [TRANSPORT]]     9 pairs over ipc by default
-//        bench_lockstep [PAIRS] curve           our server with CURVE compared with it without, over tcp
+//        bench_lockstep [PAIRS] curve           our server with CURVE compared with it without,
+//        over tcp
 //
-// In each pair both run alternately, burst by burst; this is repeated with new processes several times,
-// because single figures depend on where the scheduler places the processes. Rely on the median ratio of
-// all pairs, which the table contains.
+// In each pair both run alternately, burst by burst; this is repeated with new processes several
+// times, because single figures depend on where the scheduler places the processes. Rely on the
+// median ratio of all pairs, which the table contains.
 
 #include <algorithm>
 #include <chrono>

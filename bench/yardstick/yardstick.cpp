@@ -1,4 +1,4 @@
-// Errors of solver="newton" and of MuJoCo against closed forms, and what a substep costs in each.
+// Our errors and those of MuJoCo against closed forms, and what a substep costs in each.
 //
 // usage: bench_yardstick          errors, a table per check
 //        bench_yardstick cost     microseconds of CPU time per substep
@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "mujoco_models.h"
-#include "unit/dynamics/touching.h"
-#include "unit/physics/newton/newton_scene.h"
+#include "unit/physics/newton_scene.h"
+#include "unit/physics/stepping/touching.h"
 
 namespace {
 

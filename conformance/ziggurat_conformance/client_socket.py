@@ -1,10 +1,8 @@
 """The server's socket in client mode."""
 
-import os
-import secrets
+import math
 import select
 import socket
-import tempfile
 import time
 from dataclasses import dataclass
 from typing import Optional
@@ -14,9 +12,9 @@ import zmq.auth.thread
 import zmq.utils.monitor
 
 from .case import Failed
-from .relay import MOST_FRAMES, ClientRelay
 from .server_process import free_port
 
+_LONGEST = 128 << 20  # [bytes]: twice a controller's limit; above, the connection is closed (T4)
 _REBINDING = 5.0  # [s] until a port is free again
 # Messages that wait to be sent over a connection, beside one that is being sent. Whatever they are, short ones are in
 # buffers of the system.
@@ -36,10 +34,10 @@ class Arrival:
 
 
 class ServerSocket:
-    """A ROUTER behind a relay that listens at a port of its own. It may be closed and opened again there."""
+    """A ROUTER at a port of its own. It may be closed and opened again there."""
 
-    def __init__(self, secret_key: Optional[bytes] = None, is_open: bool = True, is_local: bool = False):
-        """is_open: every key may connect; otherwise none. is_local: at a socket of this machine, ipc://."""
+    def __init__(self, secret_key: Optional[bytes] = None, is_open: bool = True):
+        """is_open: every key may connect; otherwise none."""
         self._context = zmq.Context()
         self._secret_key = secret_key
         self._authenticator = None
@@ -47,41 +45,32 @@ class ServerSocket:
             self._authenticator = zmq.auth.thread.ThreadAuthenticator(self._context)
             self._authenticator.start()
             self._authenticator.configure_curve_callback(credentials_provider=_Doorkeeper(is_open))
-        self._folder = tempfile.TemporaryDirectory(prefix="ziggurat-kit-") if is_local else None
-        self._address = f"{self._folder.name}/server" if is_local else ("127.0.0.1", free_port())
-        self.endpoint = f"ipc://{self._address}" if is_local else "tcp://{}:{}".format(*self._address)
-        self._relay: Optional[ClientRelay] = None
+        self.endpoint = f"tcp://127.0.0.1:{free_port()}"
         self._socket: Optional[zmq.Socket] = None
         self._monitor: Optional[zmq.Socket] = None
         self._connected: set[int] = set()  # descriptors
+        self._is_reached = False
         self.open()
 
     def open(self) -> None:
-        """Raises Failed for what a client sent before it was closed."""
-        if self._relay is not None:
-            self._relay.check()
-        name = f"ziggurat-kit-{secrets.token_hex(16)}"
         self._socket = self._context.socket(zmq.ROUTER)
         self._socket.setsockopt(zmq.LINGER, 0)
-        self._socket.setsockopt(zmq.RCVHWM, MOST_FRAMES)  # never reached: ZeroMQ would lose the rest when the client closes
+        self._socket.setsockopt(zmq.MAXMSGSIZE, _LONGEST)
+        self._socket.setsockopt(zmq.RCVHWM, 0)  # unbounded: ZeroMQ would lose the rest when the client closes
         self._socket.setsockopt(zmq.SNDHWM, _MOST_TO_SEND)
         self._socket.setsockopt(zmq.SNDTIMEO, int(1000 * LONGEST_SEND))
         self._socket.setsockopt(zmq.ROUTER_MANDATORY, 1)  # waits for room, and tells if there is none
-        self._socket.setsockopt(zmq.IPC_FILTER_PID, os.getpid())  # the relay alone may connect
         if self._secret_key is not None:
             self._socket.curve_secretkey = self._secret_key
             self._socket.curve_server = True
-        self._connected = set()
+        self._connected, self._is_reached = set(), False
         self._monitor = self._socket.get_monitor_socket(zmq.EVENT_ACCEPTED | zmq.EVENT_DISCONNECTED)
-        self._socket.bind(f"ipc://@{name}")
-        self._relay = self._listen(name)
-
-    def _listen(self, name: str) -> ClientRelay:
         deadline = time.monotonic() + _REBINDING
         while True:
             try:
-                return ClientRelay(self._address, name)
-            except OSError:
+                self._socket.bind(self.endpoint)
+                return
+            except zmq.ZMQError:
                 if time.monotonic() > deadline:
                     raise
                 time.sleep(0.005)
@@ -93,27 +82,20 @@ class ServerSocket:
             self._monitor.close(linger=0)
             self._socket.close()
             self._socket = None
-        if self._relay is not None:
-            self._relay.close()
-
-    def hold(self, is_held: bool) -> None:
-        """is_held: nothing more is read of the client, until it is not."""
-        self._relay.hold(is_held)
-
-    def unread(self) -> int:
-        """[bytes] of the client that wait at a local socket."""
-        return self._relay.unread()
 
     def is_reached(self) -> bool:
         """A client has connected since it was opened."""
-        return self._relay.has_client()
+        if self._socket is not None:
+            self.connections()
+        return self._is_reached
 
     def connections(self) -> int:
         """How many there are now."""
         while self._monitor.poll(0):
             event = zmq.utils.monitor.recv_monitor_message(self._monitor)
-            change = self._connected.add if event["event"] == zmq.EVENT_ACCEPTED else self._connected.discard
-            change(event["value"])
+            is_new = event["event"] == zmq.EVENT_ACCEPTED
+            self._is_reached = self._is_reached or is_new
+            (self._connected.add if is_new else self._connected.discard)(event["value"])
         return len(self._connected)
 
     def destroy(self) -> None:
@@ -121,19 +103,15 @@ class ServerSocket:
         if self._authenticator is not None:
             self._authenticator.stop()
         self._context.term()
-        if self._folder is not None:
-            self._folder.cleanup()
 
     def receive(self, seconds: float) -> Optional[Arrival]:
-        """Raises Failed for what is more than the kit takes."""
         if self._socket is None:
             time.sleep(max(0.0, seconds))
             return None
         self.connections()  # no more events wait than those of one call
-        if not self._relay.wait(self._socket, seconds):
+        if not self._socket.poll(max(0, math.ceil(1000 * seconds))):
             return None
         first, *frames = self._socket.recv_multipart(copy=False)
-        self._relay.take(frames, self._secret_key is not None)
         facts = {name: _fact(frames[-1] if frames else first, name) for name in _PEER_NAMES}
         return Arrival(first.bytes, tuple(frames), facts["Socket-Type"], facts["User-Id"])
 

@@ -3,7 +3,7 @@
 from typing import Optional, Union
 
 from .client_socket import PlainGreeter, ServerSocket
-from .keys import LOCAL, MISLED, PLAIN_SERVER, RESTARTED, SPACED_FILE, UNLISTED, VARIANT, WRONG_FILE, Keys
+from .keys import MISLED, PLAIN_SERVER, RESTARTED, SPACED_FILE, UNLISTED, VARIANT, WRONG_FILE, Keys
 
 TOKEN = b"token of the kit"  # of the session
 _PROTECTED = (VARIANT, MISLED, UNLISTED, SPACED_FILE, WRONG_FILE)
@@ -18,7 +18,7 @@ def socket_for(variant: str, keys: Optional[Keys]) -> Union[PlainGreeter, Server
         return PlainGreeter()
     if keys is not None:
         return ServerSocket(keys.server[1], is_open=variant != UNLISTED)
-    return ServerSocket(is_local=variant == LOCAL)
+    return ServerSocket()
 
 
 def environment_for(variant: str, keys: Optional[Keys], endpoint: str, controller: str) -> dict:

@@ -13,7 +13,6 @@ VARIANT = "curve"
 SPACED_FILE = "spaced-file"
 WRONG_FILE = "wrong-file"
 RESTARTED = "restarted"  # the program finds the token of its session in its environment
-LOCAL = "local"  # the server listens at a socket of this machine, ipc://
 PLAIN_SERVER = "plain-server"  # of cases for clients: a server without keys is where one with keys should be
 
 # Peers of a case by name. A peer that is not here has the key of "controller".

@@ -7,40 +7,12 @@ import time
 from pathlib import Path
 from typing import Callable, Optional, TextIO
 
-_KINDS = {  # what a file begins with → what it is worth more than a report as
-    b"\x89MCAP0": "a recording",
-    b"SQLite format 3": "a database",
-    b"<argos-configuration": "a scene",
-}
-_SPACE = b" \t\r\n"
 _READER_STARTS = 10.0  # [s] that a reader which was started beside this program may take
 _READER_TAKES = 0.3  # [s] for the last words
 
 
 class WrongOutput(Exception):
     """A sentence that names the option and what to write instead."""
-
-
-def _without_prologue(head: bytes) -> bytes:
-    """What follows the mark of UTF-8, the declaration and the comments of XML."""
-    head = head.removeprefix(b"\xef\xbb\xbf").lstrip(_SPACE)
-    while head.startswith((b"<?", b"<!--")):
-        _, separator, rest = head.partition(b"?>" if head.startswith(b"<?") else b"-->")
-        if not separator:
-            break
-        head = rest.lstrip(_SPACE)
-    return head
-
-
-def _kind_of(path: Path) -> str:
-    """ "" if there is no file, or it may be replaced."""
-    if path.is_block_device():
-        return "a disk"
-    if not path.is_file():
-        return ""
-    with path.open("rb") as file:
-        head = _without_prologue(file.read(16384))
-    return next((kind for begin, kind in _KINDS.items() if head.startswith(begin)), "")
 
 
 def _check_one(option: str, path: Path, ending: str) -> None:
@@ -51,9 +23,6 @@ def _check_one(option: str, path: Path, ending: str) -> None:
     if path.suffix != ending and not (path.exists() and not path.is_file()):  # pipes and devices need none
         raise WrongOutput(f"{option} is '{path}'; its name must end with {ending}, because that is the format "
                           "of its content")
-    kind = _kind_of(path)
-    if kind:
-        raise WrongOutput(f"{option} is '{path}', {kind}, which it would replace; name another file")
 
 
 def _opened_pipe(option: str, path: Path) -> int:

@@ -1,5 +1,6 @@
 """One connection to the server under test."""
 
+import math
 import time
 from typing import Callable, Optional
 
@@ -9,15 +10,14 @@ from . import wire
 from .case import Failed
 from .keys import MISLED, PLAIN, UNLISTED
 from .printable import printable
-from .relay import ServerRelay
 from .rules.answers import Answers
 from .rules.fault import musts
 from .rules.session import Session
 from .rules.text_form import server_text_faults
 from .wire import protocol
-from .zmtp_frames import SERVER
 
 
+_LONGEST_MESSAGE = (1 << 30) + (1 << 20)  # [bytes]: more than a server sends; above, the connection is closed
 # [s] that a message waits for room in the queue; ZeroMQ has no queue for a connection that was refused.
 _LONGEST_SEND, _LONGEST_SEND_IF_REFUSED = 60.0, 2.0
 _LOOKS_EVERY = 0.2  # [s] whether the server has ended; what it said last has come by then
@@ -66,17 +66,15 @@ class Peer:
         self._answers = Answers()
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
         self.socket.setsockopt(zmq.LINGER, 0)
-        self.socket.setsockopt(zmq.MAXMSGSIZE, SERVER.longest)
+        self.socket.setsockopt(zmq.MAXMSGSIZE, _LONGEST_MESSAGE)
         self._may_be_refused = name in (PLAIN, MISLED, UNLISTED)
         longest = _LONGEST_SEND_IF_REFUSED if self._may_be_refused else _LONGEST_SEND
         self.socket.setsockopt(zmq.SNDTIMEO, int(1000 * longest))
-        self._is_encrypted = bool(keys)
         if keys:
             self.socket.curve_serverkey, self.socket.curve_publickey, self.socket.curve_secretkey = (
                 keys
             )
-        self._relay = ServerRelay(endpoint)
-        self.socket.connect(self._relay.endpoint)
+        self.socket.connect(endpoint)
 
     def send(self, message: protocol.ClientMessage) -> None:
         self.transcript.add(self.name, "──▶", wire.text_of(message))
@@ -100,7 +98,7 @@ class Peer:
         while True:
             is_last = not self._server_runs()
             left = max(0.0, deadline - time.monotonic())
-            if not self._relay.wait(self.socket, min(left, _LOOKS_EVERY) + 0.001):
+            if not self.socket.poll(math.ceil(1000 * min(left, _LOOKS_EVERY)) + 1):
                 if is_last or left <= _LOOKS_EVERY:
                     return None
                 continue
@@ -128,7 +126,6 @@ class Peer:
     def release(self) -> None:
         """Ends the connection without a line in the transcript."""
         self.socket.close()
-        self._relay.close()
 
     def _send(self, frames: tuple[bytes, ...]) -> None:
         try:
@@ -140,7 +137,6 @@ class Peer:
 
     def _receive(self) -> protocol.ServerMessage:
         frames = self.socket.recv_multipart()
-        self._relay.take(frames, self._is_encrypted)
         if len(frames) != 1:
             raise ValueError(f"the server sent {len(frames)} frames; expected one")
         message = wire.decode(protocol.ServerMessage, frames[0], self.form)

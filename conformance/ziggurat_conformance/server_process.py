@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Optional
 
 from .process_group import ProcessGroup
-from .relay import connect
 
 
 class ServerProcess:
@@ -96,12 +95,30 @@ def _awaits_listener(program: ProcessGroup, endpoint: str, seconds: float) -> bo
 def check_listens(endpoint: str) -> None:
     """Raises RuntimeError with a sentence unless a server does."""
     try:
-        connect(endpoint, 5).close()
+        _connect(endpoint, 5).close()
     except ValueError:
         raise RuntimeError(f"{endpoint!r} is no endpoint; tcp://127.0.0.1:5770 or ipc:///tmp/arena "
                            "would do") from None
     except OSError as error:
         raise RuntimeError(f"no server listens at {endpoint}: {error.strerror or error}") from None
+
+
+def _connect(endpoint: str, seconds: float) -> socket.socket:
+    """Raises OSError, and ValueError for what is no endpoint."""
+    kind, _, address = endpoint.partition("://")
+    if kind == "tcp":
+        host, _, port = address.rpartition(":")
+        return socket.create_connection((host.strip("[]"), int(port)), seconds)
+    if kind != "ipc":
+        raise ValueError(endpoint)
+    server = socket.socket(socket.AF_UNIX)
+    try:
+        server.settimeout(seconds)
+        server.connect("\0" + address[1:] if address.startswith("@") else address)
+    except BaseException:
+        server.close()
+        raise
+    return server
 
 
 def _filled(word: str, values: dict) -> str:

@@ -1,6 +1,6 @@
 #pragma once
-// ZMTP, ZeroMQ's wire protocol (RFC 37), as both of its ends need it: a greeting of 64 bytes, then frames: a byte
-// of flags, the size in one byte or eight, the body. Bytes only: no socket, no state.
+// ZMTP, ZeroMQ's wire protocol (RFC 37), as a server needs it: a greeting of 64 bytes, then frames:
+// a byte of flags, the size in one byte or eight, the body. Bytes only: no socket, no state.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,17 +15,19 @@ using Bytes = std::span<const std::uint8_t>;
 
 // [bytes]
 inline constexpr std::size_t greeting_size = 64;
-/// Of its first part, the signature and the major version. Each end sends the rest when it has that part of the
-/// other's: libzmq closes a connection of another mechanism before it sends a greeting if it knows that at once.
+/// Length of the greeting's first part, the signature and the major version. Each end sends the
+/// rest when it has the first part of the other end. For libzmq closes a connection of another
+/// mechanism before it sends a greeting if it knows that at once.
 inline constexpr std::size_t first_of_greeting = 11;
 inline constexpr std::size_t longest_header = 9;
 inline constexpr std::size_t longest_command = 2048;  // that either end takes
 
-/// What each end sends first. @param mechanism  "NULL" or "CURVE"
+/// Greeting that each end sends first. @param mechanism  "NULL" or "CURVE"
 std::string greeting(std::string_view mechanism, bool is_server);
 enum class Greeting {
   incomplete,
-  wrong,  ///< of something else, such as HTTP, or of a version before 3; found before all of it is there
+  wrong,  ///< of something else, such as HTTP, or of a version before 3; found before all of it is
+          ///< there
   whole,
 };
 Greeting check_greeting(Bytes input);
@@ -53,7 +55,7 @@ void write_header(std::size_t body, std::uint8_t* to);
 /// Appends a command with its frame.
 /// @param name  of the command, at most 255 bytes; @param data  what follows the name
 void append_command(std::string& to, std::string_view name, std::string_view data);
-/// What follows the name if the body is that of this command.
+/// Data behind the name if the body is that of this command.
 std::optional<Bytes> command_data(Bytes body, std::string_view name);
 
 /// Properties of a connection, as commands carry them.
@@ -64,10 +66,10 @@ struct Metadata {
 Metadata read_metadata(Bytes data);
 /// Whether they are those of a client that can talk with a ROUTER.
 bool is_of_client(const Metadata& metadata);
-/// Those of an end of ours. @param socket_type  "ROUTER" or "DEALER"
+/// Metadata of our end. @param socket_type  "ROUTER" or "DEALER"
 std::string metadata_of(std::string_view socket_type);
 
-/// What a PONG has to send back if the body is that of a PING.
+/// Context that a PONG has to send back if the body is that of a PING.
 std::optional<Bytes> ping_context(Bytes body);
 
 std::string_view text_of(Bytes bytes);

@@ -68,7 +68,7 @@ void detect_directional_leds(const View& view, const LineOfSight& clear,
 void detect_tags(const View& view, const LineOfSight& clear, std::vector<std::size_t>& found,
                  std::vector<world::TagReading>& readings) {
   if (!view.lens().tags) return;
-  // Where all corners are in view, the centre is in the frustum's box.
+  // Tags with all corners in view have their centre in the frustum's box.
   view.index.find(view.index.tags, view.bounds.low, view.bounds.high, found);
   for (const std::size_t i : found) {
     const world::TagLayout& tag = view.layout.tags[i];

@@ -31,7 +31,7 @@ struct View {
        std::size_t camera);
 
   const world::CameraLayout& lens() const { return layout.cameras[camera]; }
-  /// Where a point of W [m] is seen; the line of sight is not checked.
+  /// Pixel of a point in W [m]; the line of sight is not checked.
   std::optional<math::Vector2> find(const math::Vector3& point) const {
     return in_view(lens(), from_world * point);
   }

@@ -10,8 +10,8 @@
 
 namespace ziggurat::camera {
 
-/// A point closer than this to an edge of the image [px], of the range [m] or of an observable
-/// angle [rad] counts as inside, so that the rounding of poses does not decide there.
+/// Tolerance at an edge of the image [px], of the range [m] or of an observable angle [rad]. Points
+/// closer than this count as inside, so that the rounding of poses does not decide there.
 constexpr double edge = 1e-9;
 
 /// A point in pixels from the image's top left corner, u to the right, v down: real numbers.

@@ -1,5 +1,5 @@
 #pragma once
-// What can be shown: a topic with messages of one type.
+// Channel for viewers: a topic with messages of one type.
 
 #include <bitset>
 #include <cstddef>

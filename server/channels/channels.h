@@ -25,7 +25,7 @@ namespace ziggurat::channels {
 
 enum class Severity { info, warning, error };
 
-/// How long a controller's answers took.
+/// Histogram of a controller's response times.
 struct Histogram {
   std::string controller;        ///< id
   double least = 0, growth = 1;  ///< bin i begins at least * growth^i [s]
@@ -78,7 +78,7 @@ class Channels {
   v1::Poses poses_;
   PoseSource pose_source_;
   foxglove::FrameTransforms frames_;
-  // Of the last tick: their memory is used again.
+  // Messages of the last tick: their memory is used again.
   v1::Rays rays_;
   v1::Detections detections_;
   v1::RadioTraffic traffic_;

@@ -49,7 +49,7 @@ struct TickCopy {
 /// @param to  keeps its memory
 void copy(const Moment& from, bool with_images, TickCopy& to);
 
-/// How much memory it takes, about [bytes].
+/// Memory of a copy, about [bytes].
 std::size_t size_of(const TickCopy& copy);
 
 }  // namespace ziggurat::channels

@@ -1,5 +1,6 @@
 #pragma once
-// What passes between entities at a tick: rays, what cameras see, radio messages, contacts.
+// Messages about exchange between entities at a tick: rays, detections of cameras, radio messages,
+// contacts.
 
 #include "channels/moment.h"
 #include "ziggurat/v1/channels.pb.h"

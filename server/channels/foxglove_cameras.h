@@ -12,7 +12,7 @@ namespace ziggurat::channels {
 foxglove::CameraCalibration calibration_of(const v1::World& world, std::size_t camera,
                                            std::int64_t time_ns);
 
-/// What the camera detects: outlines of tags with their payloads, circles about LEDs.
+/// Detections of the camera: outlines of tags with their payloads, circles about LEDs.
 foxglove::ImageAnnotations annotations_of(std::size_t camera, const Moment& moment);
 
 /// The picture that a camera took, encoded when it is asked for; null: it has taken none.

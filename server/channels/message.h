@@ -29,7 +29,7 @@ class Content {
     });
     return bytes_;
   }
-  /// How much memory it takes, about [bytes].
+  /// Memory of a message, about [bytes].
   std::size_t held() const { return held_; }
 
  private:

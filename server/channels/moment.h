@@ -1,5 +1,5 @@
 #pragma once
-// What channels are made of: views of a running world.
+// Sources of channels: views of a running world.
 
 #include <array>
 #include <cstdint>
@@ -39,11 +39,11 @@ struct Moment {
   const world::Observations& observations;
   const world::Commands& commands;  ///< that led to the state, until the tick is answered
   std::span<const world::Contact> contacts;
-  PhaseTimes phases;  ///< of the tick before
+  PhaseTimes phases;                                     ///< of the tick before
   std::optional<std::span<const world::Ray>> rays = {};  ///< of all devices; nothing: State::rays
 };
 
-/// What `/scene` contains besides the shapes of links.
+/// Layers of `/scene` besides the shapes of links.
 struct Layers {
   bool labels = false;  ///< ids of entities
   bool frusta = true;   ///< of cameras

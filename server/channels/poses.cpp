@@ -1,9 +1,9 @@
 #include "channels/poses.h"
 
-#include "scene/joint_coordinates.h"
 #include "channels/world_message.h"
 #include "magnetism/dipole.h"
 #include "magnetism/shape.h"
+#include "scene/joint_coordinates.h"
 
 namespace ziggurat::channels {
 namespace {

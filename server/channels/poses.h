@@ -9,7 +9,7 @@
 
 namespace ziggurat::channels {
 
-/// What is needed of a population to write its poses.
+/// Parts of a population that its poses are written from.
 struct PoseSource {
   struct Joint {
     const scene::Joint* joint;  ///< of Population::entities

@@ -1,5 +1,5 @@
 #pragma once
-// What a robot senses and wants, as in a session of its own.
+// Readings and commands of a robot, as in a session of its own.
 
 #include "channels/moment.h"
 #include "wire/roster.h"

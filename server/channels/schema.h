@@ -11,8 +11,8 @@ namespace ziggurat::channels {
 
 struct Schema {
   std::string name;  ///< of the type, with its package
-  /// A serialized FileDescriptorSet: the type and all that it uses. Fields of repeated bytes are left
-  /// out, and decoders skip them: viewers of Foxglove's family refuse a type that has one.
+  /// A serialized FileDescriptorSet: the type and all that it uses. Fields of repeated bytes are
+  /// left out, and decoders skip them: viewers of Foxglove's family refuse a type that has one.
   std::string descriptors;
 };
 

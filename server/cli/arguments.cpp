@@ -32,10 +32,11 @@ void check_is_scene(const std::string& word) {
   std::error_code error;
   const bool looks_like_one = word.starts_with('-') || word.find_first_of("./") != word.npos;
   if (looks_like_one || std::filesystem::exists(word, error)) return;
-  throw text::UsageError(fmt::format(
-      "--real-time takes a number, the factor of real time (1 if it is left out); '{}' is none, and "
-      "no file has that name; write --real-time 2, for example, or --real-time=1 SCENE",
-      word));
+  throw text::UsageError(
+      fmt::format("--real-time takes a number, the factor of real time (1 if it is left out); '{}' "
+                  "is none, and "
+                  "no file has that name; write --real-time 2, for example, or --real-time=1 SCENE",
+                  word));
 }
 
 // An option with an optional value takes the next word only if it is a number. Boost would take any
@@ -62,7 +63,8 @@ Arguments join_optional_values(const Arguments& arguments) {
 // A number, or several with commas: a value and no option, though it begins with `-`.
 std::vector<po::option> take_negative_number(Arguments& rest) {
   const std::string& word = rest.front();
-  const bool is_number = word.size() > 1 && word[0] == '-' && (word[1] == '.' || (word[1] >= '0' && word[1] <= '9'));
+  const bool is_number =
+      word.size() > 1 && word[0] == '-' && (word[1] == '.' || (word[1] >= '0' && word[1] <= '9'));
   if (!is_number) return {};
   po::option value;
   value.value = value.original_tokens = {word};
@@ -74,7 +76,8 @@ std::vector<po::option> take_negative_number(Arguments& rest) {
 std::string_view without_typographic_dashes(std::string_view word) {
   constexpr std::string_view dashes[] = {"‐", "‑", "‒", "–", "—", "―", "−"};
   const auto begins_word = [&](std::string_view dash) { return word.starts_with(dash); };
-  while (std::ranges::any_of(dashes, begins_word)) word.remove_prefix(std::ranges::find_if(dashes, begins_word)->size());
+  while (std::ranges::any_of(dashes, begins_word))
+    word.remove_prefix(std::ranges::find_if(dashes, begins_word)->size());
   return word;
 }
 
@@ -84,21 +87,27 @@ void check_hyphens(const Arguments& arguments, const po::options_description& kn
     if (word == "--") return;
     const std::string_view rest = without_typographic_dashes(word);
     const std::string name(rest.substr(0, rest.find('=')));
-    if (rest.size() == word.size() || name.empty() || known.find_nothrow(name, false) == nullptr) continue;
-    throw text::UsageError(fmt::format("'{}' begins with a dash that is no hyphen; write --{}", word, rest));
+    if (rest.size() == word.size() || name.empty() || known.find_nothrow(name, false) == nullptr)
+      continue;
+    throw text::UsageError(
+        fmt::format("'{}' begins with a dash that is no hyphen; write --{}", word, rest));
   }
 }
 
-/// A value that is empty is that of a variable of a shell that is not set: without this an output would not be
-/// written, or an endpoint not be protected, without a word.
+/// A value that is empty is that of a variable of a shell that is not set: without this an output
+/// would not be written, or an endpoint not be protected, without a word.
 void check_values(const po::variables_map& values, const po::options_description& known) {
   for (const auto& [name, value] : values) {
     const po::option_description* option = known.find_nothrow(name, false);
-    if (option == nullptr || option->semantic()->min_tokens() == 0) continue;  // a file, or the value may be left out
+    if (option == nullptr || option->semantic()->min_tokens() == 0)
+      continue;  // a file, or the value may be left out
     const auto* text = boost::any_cast<std::string>(&value.value());
     const auto* texts = boost::any_cast<std::vector<std::string>>(&value.value());
-    const bool is_empty = (text && text->empty()) || (texts && std::ranges::find(*texts, "") != texts->end());
-    if (is_empty) throw text::UsageError(fmt::format("the value of --{0} is empty; write --{0} VALUE, or leave it out", name));
+    const bool is_empty =
+        (text && text->empty()) || (texts && std::ranges::find(*texts, "") != texts->end());
+    if (is_empty)
+      throw text::UsageError(
+          fmt::format("the value of --{0} is empty; write --{0} VALUE, or leave it out", name));
   }
 }
 
@@ -128,8 +137,8 @@ Parsed parse(const Arguments& arguments, const po::options_description& known) {
         fmt::format("option '{}' is given more than once", error.get_option_name()));
   } catch (const po::invalid_command_line_syntax& error) {
     if (error.kind() != error.missing_parameter) throw text::UsageError(error.what());
-    throw text::UsageError(fmt::format("option '{0}' needs a value; write {0} VALUE",
-                                       error.get_option_name()));
+    throw text::UsageError(
+        fmt::format("option '{0}' needs a value; write {0} VALUE", error.get_option_name()));
   } catch (const po::error& error) {
     throw text::UsageError(error.what());
   }
@@ -139,17 +148,21 @@ Parsed parse(const Arguments& arguments, const po::options_description& known) {
   return parsed;
 }
 
-void check_needs(const Values& values, std::initializer_list<const char*> options, const char* other) {
+void check_needs(const Values& values, std::initializer_list<const char*> options,
+                 const char* other) {
   for (const char* option : options) {
     if (!values.has(option) || values.has(other)) continue;
-    throw text::UsageError(fmt::format("--{0} has no effect without --{1}; write --{1} too, or leave it out", option, other));
+    throw text::UsageError(fmt::format(
+        "--{0} has no effect without --{1}; write --{1} too, or leave it out", option, other));
   }
 }
 
-void check_apart(const Values& values, const char* other, std::initializer_list<const char*> options) {
+void check_apart(const Values& values, const char* other,
+                 std::initializer_list<const char*> options) {
   for (const char* option : options) {
     if (!values.has(option) || !values.has(other)) continue;
-    throw text::UsageError(fmt::format("--{} has no effect with --{}; leave out one of them", option, other));
+    throw text::UsageError(
+        fmt::format("--{} has no effect with --{}; leave out one of them", option, other));
   }
 }
 
@@ -163,8 +176,9 @@ void check_once(const char* option, std::vector<std::string> subjects) {
   std::ranges::sort(subjects);
   const auto twice = std::ranges::adjacent_find(subjects);
   if (twice == subjects.end()) return;
-  throw text::UsageError(fmt::format("{} is given twice for {}, and only one of them would have an effect; leave out one",
-                                     option, twice->empty() ? "all" : "'" + text::shortened(*twice) + "'"));
+  throw text::UsageError(fmt::format(
+      "{} is given twice for {}, and only one of them would have an effect; leave out one", option,
+      twice->empty() ? "all" : "'" + text::shortened(*twice) + "'"));
 }
 
 const std::string& only_recording(std::string_view command,

@@ -41,9 +41,11 @@ class Values {
 Parsed parse(const Arguments& arguments, const boost::program_options::options_description& known);
 
 /// Refuses options that have no effect without another one. @throws text::UsageError
-void check_needs(const Values& values, std::initializer_list<const char*> options, const char* other);
+void check_needs(const Values& values, std::initializer_list<const char*> options,
+                 const char* other);
 /// Refuses options that have no effect beside another one. @throws text::UsageError
-void check_apart(const Values& values, const char* other, std::initializer_list<const char*> options);
+void check_apart(const Values& values, const char* other,
+                 std::initializer_list<const char*> options);
 
 /// The names of NAME=VALUE.
 std::vector<std::string> first_of(const std::vector<std::pair<std::string, std::string>>& pairs);

@@ -41,7 +41,6 @@ struct Finding {
   std::vector<ControllerDeadline> deadlines;
   std::size_t entities = 0;  ///< in the world; 0 if it could not be built
   std::size_t robots = 0;
-  scene::Solver solver = {};
 
   std::size_t count(Severity severity) const {
     return static_cast<std::size_t>(
@@ -135,7 +134,6 @@ std::vector<ControllerDeadline> deadlines_of(const scene::Scene& scene) {
 Finding examine(const std::string& path, const run::Options& options) {
   auto read = scene::read_file(path, options.scene_file);
   Finding finding{std::move(read.problems), uses_of_models(read.scene), deadlines_of(read.scene)};
-  finding.solver = read.scene.physics.solver;
   const auto add = [&](const std::vector<scene::Problem>& more) {
     finding.problems.insert(finding.problems.end(), more.begin(), more.end());
   };
@@ -181,7 +179,6 @@ nlohmann::ordered_json to_json(const std::string& path, const Finding& finding) 
           {"robots", finding.robots},
           {"models", models},
           {"deadlines", deadlines},
-          {"solver", scene::to_text(finding.solver)},
           {"problems", problems}};
 }
 
@@ -209,9 +206,9 @@ std::string verdict(const std::string& path, const Finding& finding) {
   }
   if (!deadlines.empty()) deadlines += ")";
   return fmt::format(
-      "{}: good; {}{}, {} with a controller{}; solver {}{}; {}", path,
+      "{}: good; {}{}, {} with a controller{}{}; {}", path,
       finding.entities == 1 ? "1 entity" : fmt::format("{} entities", finding.entities), models,
-      finding.robots, deadlines, scene::to_text(finding.solver), warned, counted(notices, "notice"));
+      finding.robots, deadlines, warned, counted(notices, "notice"));
 }
 
 }  // namespace

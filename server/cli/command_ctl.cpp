@@ -43,7 +43,7 @@ po::options_description ctl_options() {
   return options;
 }
 
-/// What the command line says.
+/// Words and values of the command line.
 struct Given {
   std::vector<std::string> words;  ///< after the verb
   Values values;
@@ -55,7 +55,8 @@ struct Call {
   bool as_json;
 };
 
-/// What is asked of the server. Its words were checked before: a wrong one is told also if no server is there.
+/// Request to the server. Its words were checked before: a wrong one is told also if no server is
+/// there.
 using Request = std::function<void(const Call&)>;
 
 void print_result(const Call& call, std::string_view done, std::uint64_t tick) {
@@ -105,7 +106,9 @@ std::string snapshot_name(const Given& given) {
 }
 
 Request snapshot(const Given& given) {
-  return [name = snapshot_name(given)](const Call& call) { print_result(call, "kept", call.server.snapshot(name)); };
+  return [name = snapshot_name(given)](const Call& call) {
+    print_result(call, "kept", call.server.snapshot(name));
+  };
 }
 
 Request restore(const Given& given) {
@@ -120,9 +123,10 @@ std::string element_of(std::istream& from, std::string_view name) {
   for (char block[65536]; from.read(block, sizeof block) || from.gcount() > 0;) {
     text.append(block, static_cast<std::size_t>(from.gcount()));
     if (text.size() <= simulation::longest_spawned) continue;
-    throw text::UsageError(fmt::format("{} has more than {} bytes, the most that an element may have; write one entity, and spawn "
-                                       "others by further requests",
-                                       name, simulation::longest_spawned));
+    throw text::UsageError(fmt::format(
+        "{} has more than {} bytes, the most that an element may have; write one entity, and spawn "
+        "others by further requests",
+        name, simulation::longest_spawned));
   }
   return text;
 }
@@ -143,37 +147,41 @@ Request spawn(const Given& given) {
 }
 
 Request remove(const Given& given) {
-  return [entity = given.words[0]](const Call& call) { print_result(call, "removed", call.server.remove(entity)); };
+  return [entity = given.words[0]](const Call& call) {
+    print_result(call, "removed", call.server.remove(entity));
+  };
 }
 
 /// Words 1 and 2, which may be missing.
-struct Place {
+struct TargetPose {
   std::array<double, 3> position{};
   std::optional<std::array<double, 4>> orientation;
 };
 
-Place place_of(const Given& given) {
-  Place place;
-  text::to_numbers("position", given.words[1], "x,y,z in metres, as 1,-1,0.5", place.position);
+TargetPose pose_of(const Given& given) {
+  TargetPose pose;
+  text::to_numbers("position", given.words[1], "x,y,z in metres, as 1,-1,0.5", pose.position);
   if (given.words.size() == 3) {
     math::Vector3 angles;
-    text::to_numbers("orientation", given.words[2], "turns about z,y,x in degrees, as 90,0,0", {angles.data(), 3});
+    text::to_numbers("orientation", given.words[2], "turns about z,y,x in degrees, as 90,0,0",
+                     {angles.data(), 3});
     const math::Quaternion turned = scene::orientation_from_degrees(angles);
-    place.orientation = {turned.w(), turned.x(), turned.y(), turned.z()};
+    pose.orientation = {turned.w(), turned.x(), turned.y(), turned.z()};
   }
-  return place;
+  return pose;
 }
 
 Request move(const Given& given) {
   const Onto onto = given.values.has("may-overlap") ? Onto::others : Onto::free_place;
-  return [entity = given.words[0], place = place_of(given), onto](const Call& call) {
-    print_result(call, "moved", call.server.move(entity, place.position, place.orientation, onto));
+  return [entity = given.words[0], pose = pose_of(given), onto](const Call& call) {
+    print_result(call, "moved", call.server.move(entity, pose.position, pose.orientation, onto));
   };
 }
 
 Request set_joint(const Given& given) {
   double position = 0, velocity = 0;
-  text::to_numbers("position", given.words[2], "a number in metres or radians, as 0.5", {&position, 1});
+  text::to_numbers("position", given.words[2], "a number in metres or radians, as 0.5",
+                   {&position, 1});
   if (given.words.size() == 4) {
     text::to_numbers("velocity", given.words[3], "a number in m/s or rad/s, as -1", {&velocity, 1});
   }
@@ -183,12 +191,15 @@ Request set_joint(const Given& given) {
 }
 
 Request is_free(const Given& given) {
-  return [what = given.words[0], place = place_of(given)](const Call& call) {
-    const auto overlapped = call.server.overlapped(what, place.position, place.orientation);
+  return [what = given.words[0], pose = pose_of(given)](const Call& call) {
+    const auto overlapped = call.server.overlapped(what, pose.position, pose.orientation);
     if (call.as_json) {
-      call.console.result(nlohmann::ordered_json{{"free", !overlapped}, {"overlapped", overlapped.value_or("")}}.dump());
+      call.console.result(
+          nlohmann::ordered_json{{"free", !overlapped}, {"overlapped", overlapped.value_or("")}}
+              .dump());
     } else {
-      call.console.result(overlapped ? fmt::format("not free: '{}' is there", *overlapped) : "free");
+      call.console.result(overlapped ? fmt::format("not free: '{}' is there", *overlapped)
+                                     : "free");
     }
   };
 }
@@ -204,15 +215,16 @@ void print_states(const Call& call, const WorldStates& states) {
   for (const EntityState& entity : states.entities) {
     const auto& p = entity.position;
     const auto& q = entity.orientation;
-    call.console.result(
-        fmt::format("{:<20} {:9.4f} {:9.4f} {:9.4f} m   {:7.4f} {:7.4f} {:7.4f} {:7.4f}", entity.id,
-                    shown(p[0]), shown(p[1]), shown(p[2]), shown(q[0]), shown(q[1]), shown(q[2]),
-                    shown(q[3])));
+    call.console.result(fmt::format(
+        "{:<20} {:9.4f} {:9.4f} {:9.4f} m   {:7.4f} {:7.4f} {:7.4f} {:7.4f}", entity.id,
+        shown(p[0]), shown(p[1]), shown(p[2]), shown(q[0]), shown(q[1]), shown(q[2]), shown(q[3])));
   }
 }
 
 Request read(const Given& given) {
-  return [patterns = given.words](const Call& call) { print_states(call, call.server.read(patterns)); };
+  return [patterns = given.words](const Call& call) {
+    print_states(call, call.server.read(patterns));
+  };
 }
 
 Request shutdown(const Given& given) {
@@ -240,11 +252,16 @@ constexpr Verb verbs[] = {
     {"spawn", "FILE|-", 1, 1, "add an entity: one element, as in <arena>", spawn},
     {"remove", "ENTITY", 1, 1, "remove it from the world", remove},
     {"move", "ENTITY x,y,z [z,y,x]", 2, 3,
-     "put it at rest there [m], with this orientation [degrees], if the place is free; --may-overlap: also if not", move},
+     "put it at rest there [m], with this orientation [degrees], if the place is free; "
+     "--may-overlap: also if not",
+     move},
     {"set-joint", "ENTITY JOINT POSITION [VELOCITY]", 3, 4,
-     "put a revolute or prismatic joint there [rad, m], with this velocity [rad/s, m/s]; what hangs on it follows", set_joint},
+     "put a revolute or prismatic joint there [rad, m], with this velocity [rad/s, m/s]; what "
+     "hangs on it follows",
+     set_joint},
     {"is-free", "ENTITY|XML x,y,z [z,y,x]", 2, 3,
-     "whether it would overlap nothing there; XML is one element, as '<box size=\"1,1,1\"/>'", is_free},
+     "whether it would overlap nothing there; XML is one element, as '<box size=\"1,1,1\"/>'",
+     is_free},
     {"read", "[ID|GLOB]...", 0, any_number, "poses of entities: x y z, and the quaternion w x y z",
      read},
     {"shutdown", "[--reason TEXT]", 0, 0, "end the run, as Ctrl-C does; with a reason as planned",
@@ -305,15 +322,16 @@ int execute_ctl(const Arguments& arguments) {
                                        verb.words.empty() ? "" : " ", verb.words));
   }
   const Given given{std::move(words), Values(parsed.values)};
-  for (const auto& [option, of] :
-       {std::pair{"seed", "reset"}, std::pair{"reason", "shutdown"}, std::pair{"may-overlap", "move"}}) {
+  for (const auto& [option, of] : {std::pair{"seed", "reset"}, std::pair{"reason", "shutdown"},
+                                   std::pair{"may-overlap", "move"}}) {
     if (!given.values.has(option) || verb.name == of) continue;
     throw text::UsageError(fmt::format("--{} is for {}; remove it from {}", option, of, verb.name));
   }
   const Request request = verb.read(given);
   const std::string endpoint = take_endpoint(where);
   reports::Console console;
-  const auto server = connect(supervisor_options(endpoint, parsed.values, false, "ziggurat ctl"), console);
+  const auto server =
+      connect(supervisor_options(endpoint, parsed.values, false, "ziggurat ctl"), console);
   request({*server, console, given.values.has("json")});
   console.flush();
   return reports::exit_code::finished;

@@ -19,14 +19,15 @@ namespace po = boost::program_options;
 po::options_description diff_options() {
   po::options_description options("Options", 96);
   options.add_options()  //
-      ("plot", po::value<std::string>()->value_name("FILE.svg"), "distances over time as a picture")(
-          "json", "the result as a JSON object");
+      ("plot", po::value<std::string>()->value_name("FILE.svg"),
+       "distances over time as a picture")("json", "the result as a JSON object");
   return options;
 }
 
 void check_plot(const std::string& out, const std::vector<std::string>& recordings, bool as_json) {
   std::vector<recording::TakenFile> taken;
-  for (const std::string& path : recordings) taken.push_back({path, "a recording that is compared"});
+  for (const std::string& path : recordings)
+    taken.push_back({path, "a recording that is compared"});
   recording::check_output({"--plot", out, {".svg"}}, taken);
   if (out == "-" && as_json) {
     throw text::UsageError("--plot is '-', and stdout is for the object of --json; name a file");

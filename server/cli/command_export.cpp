@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "cli/arguments.h"
+#include "cli/atomic_file.h"
 #include "cli/commands.h"
 #include "cli/html_export.h"
-#include "cli/whole_file.h"
 #include "network/glob.h"
 #include "recording/output_name.h"
 #include "replay/export.h"
@@ -34,16 +34,16 @@ bool is_wanted(const Order& order, const std::string& topic) {
 }
 
 std::string to_csv(const Order& order) {
-  WholeFile out(order.out);
+  AtomicFile out(order.out);
   const auto states = replay::export_csv(order.file, out.path());
-  out.keep();
+  out.commit();
   return fmt::format("{} states", states);
 }
 std::string to_jsonl(const Order& order) {
   const auto wanted = [&](const std::string& topic) { return is_wanted(order, topic); };
-  WholeFile out(order.out);
+  AtomicFile out(order.out);
   const auto messages = replay::export_jsonl(order.file, wanted, out.path());
-  out.keep();
+  out.commit();
   return fmt::format("{} messages", messages);
 }
 std::string to_html(const Order& order) {
@@ -60,8 +60,10 @@ struct Format {
   std::string (*write)(const Order&);
 };
 constexpr Format formats[] = {
-    {"csv", "FILE.csv", ".csv", "poses of all entities at every tick, with the columns of --trace", to_csv},
-    {"jsonl", "FILE.jsonl", ".jsonl", "each message as a line of JSON: topic, time_s, message", to_jsonl},
+    {"csv", "FILE.csv", ".csv", "poses of all entities at every tick, with the columns of --trace",
+     to_csv},
+    {"jsonl", "FILE.jsonl", ".jsonl", "each message as a line of JSON: topic, time_s, message",
+     to_jsonl},
     {"html", "FILE.html", ".html",
      "one page that plays the recording in a browser, without a server or a network", to_html},
 };
@@ -80,10 +82,11 @@ po::options_description export_options() {
 }
 
 bool has_format(const po::variables_map& values) {
-  return std::ranges::any_of(formats, [&](const Format& format) { return values.count(format.option) > 0; });
+  return std::ranges::any_of(formats,
+                             [&](const Format& format) { return values.count(format.option) > 0; });
 }
 
-/// Those of all formats, before the first one is written.
+/// Checks the outputs of all formats, before the first one is written.
 void check_outputs(const po::variables_map& values, const std::string& recording) {
   std::vector<recording::TakenFile> taken{{recording, "the recording itself"}};
   for (const Format& format : formats) {

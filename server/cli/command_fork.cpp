@@ -53,8 +53,7 @@ Controllers are first given what robots sensed in the recorded run, from its beg
 state is right then. What they answer is compared with the recorded commands and has no effect. With --fresh
 they begin at that tick.
 
-Other values and another seed need solver="newton", which is the default. Entities, links and
-ticks_per_second must stay as they are.
+With other values and another seed, entities, links and ticks_per_second must stay as they are.
 
 Embedded Lua scripts run sandboxed. Commands that the recording names are started only with
 --trust-recorded-commands. Outputs begin at that tick. --ticks and --duration count from tick 0; without them

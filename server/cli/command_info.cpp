@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "cli/arguments.h"
+#include "cli/atomic_file.h"
 #include "cli/commands.h"
-#include "cli/whole_file.h"
 #include "mcap/repair.h"
 #include "mcap/scan.h"
 #include "recorder/disk.h"
@@ -31,7 +31,7 @@ po::options_description info_options() {
   return options;
 }
 
-/// What is known of a file.
+/// Content of a file, as far as it could be read.
 struct Examined {
   std::string path;
   std::uint64_t size = 0;  // [bytes]
@@ -46,7 +46,8 @@ struct Examined {
 /// Texts of a file that may be anyone's, on one line of a terminal.
 std::string shown(const std::string& from) {
   std::string line = text::printable(from);
-  std::ranges::replace_if(line, [](char c) { return c == '\n' || c == '\t'; }, ' ');
+  std::ranges::replace_if(
+      line, [](char c) { return c == '\n' || c == '\t'; }, ' ');
   return line;
 }
 
@@ -76,7 +77,7 @@ std::string to_text(const recorder::Start& start) {
                       shown(build.cpu_path));
   std::string arguments;
   for (const std::string& argument : start.arguments) arguments += " " + shown(argument);
-  return text + fmt::format("  options  {}\n", arguments);
+  return arguments.empty() ? text : text + fmt::format("  options  {}\n", arguments);
 }
 
 std::string to_text(const Examined& file) {
@@ -85,12 +86,14 @@ std::string to_text(const Examined& file) {
                                  file.is_whole() ? "whole" : "damaged");
   if (all.start) {
     text += to_text(*all.start);
-    text += fmt::format("  length    {:.6g} s simulated, {} states, last tick {}{}\n", all.length,
-                        all.states, all.last_tick,
-                        all.epochs > 1 ? fmt::format(", {} resets or restores", all.epochs - 1) : "");
+    text +=
+        fmt::format("  length    {:.6g} s simulated, {} states, last tick {}{}\n", all.length,
+                    all.states, all.last_tick,
+                    all.epochs > 1 ? fmt::format(", {} resets or restores", all.epochs - 1) : "");
   } else {
-    text += fmt::format("  no recording of a run by ziggurat, but an MCAP file of the profile '{}'\n",
-                        shown(file.scan.contents.header.profile));
+    text +=
+        fmt::format("  no recording of a run by ziggurat, but an MCAP file of the profile '{}'\n",
+                    shown(file.scan.contents.header.profile));
   }
   text += fmt::format("  chunks    {}, {} before compression{}\n", file.scan.contents.chunks.size(),
                       megabytes(all.uncompressed),
@@ -176,7 +179,8 @@ std::string complaint(const Examined& file) {
       "write: ziggurat info {} --repair OUT.mcap",
       shown(file.path), faults[0].offset, shown(faults[0].text),
       faults.size() > 1 ? fmt::format(" (and {} more)", counted(faults.size() - 1, "fault")) : "",
-      counted(messages, "message"), counted(file.attachments.size(), "attachment"), file.overview.length, shown(file.path));
+      counted(messages, "message"), counted(file.attachments.size(), "attachment"),
+      file.overview.length, shown(file.path));
 }
 
 Examined examine(const std::string& path, const mcap::Source& source, const mcap::Reader& reader) {
@@ -188,18 +192,19 @@ Examined examine(const std::string& path, const mcap::Source& source, const mcap
 
 void write_repaired(const std::string& path, const mcap::Reader& reader, const std::string& out,
                     reports::Console& console) {
-  WholeFile whole(out);
+  AtomicFile whole(out);
   recorder::Disk disk(whole.path());
   const mcap::Repaired repaired =
       mcap::repair(reader, [&](std::string_view bytes) { disk.write(bytes); });
   disk.close();
-  whole.keep();
+  whole.commit();
   for (const auto& fault : repaired.lost) {
     console.warning(fmt::format("{}: byte {}: {}; it is left out", shown(path), fault.offset,
                                 shown(fault.text)));
   }
   console.report(fmt::format("{}: {} in {}, {}", shown(out), counted(repaired.messages, "message"),
-                             counted(repaired.chunks, "chunk"), counted(repaired.attachments, "attachment")));
+                             counted(repaired.chunks, "chunk"),
+                             counted(repaired.attachments, "attachment")));
 }
 
 }  // namespace

@@ -57,8 +57,9 @@ int execute_keygen(const Arguments& arguments) {
       parsed.values.count("out") > 0 ? parsed.values["out"].as<std::string>() : "ziggurat";
   const std::string name = prefix.substr(prefix.rfind('/') + 1);
   if (name.empty() || name == "." || name == "..") {
-    throw text::UsageError(fmt::format("--out is '{0}', a folder; write the beginning of two names in it, as {0}{1}server", prefix,
-                                       name.empty() ? "" : "/"));
+    throw text::UsageError(fmt::format(
+        "--out is '{0}', a folder; write the beginning of two names in it, as {0}{1}server", prefix,
+        name.empty() ? "" : "/"));
   }
   reports::Console console;
   console.result(network::write_key_pair(prefix));

@@ -251,7 +251,8 @@ int execute_magnetism(const Arguments& arguments) {
   if (!read.ok()) throw scene::SceneError(read.problems);
   const std::string path =
       parsed.values.count("out") ? parsed.values["out"].as<std::string>() : "magnetism.svg";
-  recording::check_output({"--out", path, {".svg"}}, run::taken_by_scene(run::files_of(read.scene, scene)));
+  recording::check_output({"--out", path, {".svg"}},
+                          run::taken_by_scene(run::files_of(read.scene, scene)));
   const auto settings = read.scene.physics.magnetism.value_or(scene::Magnetism{});
   const auto pair = choose_pair(read.scene, settings, parsed.values);
   const auto panels = plot(pair, settings, parsed.values);

@@ -63,10 +63,10 @@ render::Layers to_layers(const std::string& text) {
   for (const std::string& part : text::split(text, ',')) {
     const auto found = known.find(part);
     if (found == known.end()) {
-      throw text::UsageError(
-          fmt::format("--layers: there is no layer '{}'; the layers are rays, frusta and labels, as "
-                      "--layers rays,labels",
-                      part));
+      throw text::UsageError(fmt::format(
+          "--layers: there is no layer '{}'; the layers are rays, frusta and labels, as "
+          "--layers rays,labels",
+          part));
     }
     layers.*found->second = true;
   }
@@ -97,7 +97,8 @@ std::optional<run::FilmOptions> film_options(const po::variables_map& values) {
   }
   if (values.count("speed")) film.speed = number("speed");
   if (!(film.speed >= 0.001 && film.speed <= 1000)) {
-    throw text::UsageError("--speed must be 0.001 to 1000; 2 is twice as fast as in the simulation");
+    throw text::UsageError(
+        "--speed must be 0.001 to 1000; 2 is twice as fast as in the simulation");
   }
   if (values.count("from")) film.from = number("from");
   if (values.count("to")) film.to = number("to");
@@ -130,13 +131,16 @@ std::optional<run::PictureOptions> to_pictures(const po::variables_map& values) 
   if (values.count("at")) pictures.times = to_times(text("at"));
   if (values.count("follow")) pictures.view.follow = text("follow");
   if (values.count("follow") && values.count("look-at")) {
-    throw text::UsageError("--follow and --look-at both say what is in the middle; write one of them");
+    throw text::UsageError(
+        "--follow and --look-at both say what is in the middle; write one of them");
   }
   if (values.count("layers")) pictures.view.layers = to_layers(text("layers"));
   if (values.count("eye")) pictures.view.eye = to_point("--eye", text("eye"));
   if (values.count("look-at")) pictures.view.look_at = to_point("--look-at", text("look-at"));
   if (pictures.view.eye && pictures.view.eye == pictures.view.look_at) {
-    throw text::UsageError("--eye and --look-at are the same point, which gives no direction; write two different points");
+    throw text::UsageError(
+        "--eye and --look-at are the same point, which gives no direction; write two different "
+        "points");
   }
   if (values.count("size")) read_size(text("size"), pictures);
   if (values.count("fov")) {

@@ -3,7 +3,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "run/replaying.h"
+#include "run/replay_run.h"
 #include "text/numbers.h"
 
 namespace ziggurat::cli {
@@ -46,7 +46,7 @@ int execute_replay(const Arguments& arguments, processes::Signals& signals) {
     options.until = text::to_integer("--until", values["until"].as<std::string>());
   }
   options.run.pictures = to_pictures(values);
-  return run::Replaying(options, signals).execute();
+  return run::ReplayRun(options, signals).execute();
 }
 
 }  // namespace ziggurat::cli

@@ -7,7 +7,6 @@
 #include "cli/sweep_cluster.h"
 #include "cli/sweep_options.h"
 #include "cli/sweep_results.h"
-#include "recording/output_name.h"
 #include "reports/console.h"
 #include "sweep/folder.h"
 #include "sweep/slurm.h"
@@ -54,10 +53,10 @@ int report(const SweepOptions& options, const sweep::Folder& folder, bool is_int
                                total, resume_command(options)));
     return exit_code::interrupted;
   }
-  console.report(fmt::format(
-      "{} runs: {} finished, {} failed{}; results: {}, {}", results.size(), results.size() - failed,
-      failed, failed > 0 ? " (to run these again: --retry-failed)" : "", folder.csv().string(),
-      folder.ledger().string()));
+  console.report(fmt::format("{} runs: {} finished, {} failed{}; results: {}, {}", results.size(),
+                             results.size() - failed, failed,
+                             failed > 0 ? " (to run these again: --retry-failed)" : "",
+                             folder.csv().string(), folder.ledger().string()));
   return failed > 0 ? exit_code::controller_failed : exit_code::finished;
 }
 
@@ -70,7 +69,6 @@ int execute_local(const SweepOptions& options, processes::Signals& signals) {
   const sweep::Experiment& experiment = options.definition.experiment;
   reports::Console console({options.quiet, false});
   const sweep::Folder folder(options.out);
-  recording::check_output_folder("--out", folder.path().string());
   folder.check(options.definition);  // before anything is written there
   std::filesystem::create_directories(folder.path());
   const sweep::Lock lock(folder.path() / "lock");
@@ -82,8 +80,8 @@ int execute_local(const SweepOptions& options, processes::Signals& signals) {
   std::iota(runs.begin(), runs.end(), std::size_t{1});
   const auto left = sweep::runs_to_do(runs, known, options.retries_failed);
   if (left.size() < runs.size()) {
-    console.notice(fmt::format("{} of {} runs are done already", runs.size() - left.size(),
-                               runs.size()));
+    console.notice(
+        fmt::format("{} of {} runs are done already", runs.size() - left.size(), runs.size()));
   }
   sweep::Sweep sweep(experiment, folder, options.settings, ledger, console, signals);
   const auto counts = sweep.execute(left);

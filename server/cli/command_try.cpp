@@ -6,7 +6,7 @@
 #include "cli/commands.h"
 #include "processes/commands.h"
 #include "processes/scripts.h"
-#include "run/rehearsal.h"
+#include "run/controller_check.h"
 #include "text/numbers.h"
 #include "text/quoting.h"
 
@@ -18,11 +18,11 @@ namespace po = boost::program_options;
 po::options_description try_options() {
   const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
   po::options_description options("Options", 96);
-  options.add_options()                                                           //
-      ("robot", text("ID"), "the robot whose controller is tried; required")      //
+  options.add_options()                                                                 //
+      ("robot", text("ID"), "the robot whose controller is tried; required")            //
       ("script", text("FILE.lua"), "of a Lua robot: the script, instead of a command")  //
-      ("until", text("TICK"), "end after this tick")                              //
-      ("differences", text("N"), "print the first N ticks that differ; default 1")  //
+      ("until", text("TICK"), "end after this tick")                                    //
+      ("differences", text("N"), "print the first N ticks that differ; default 1")      //
       ("quiet", "no progress and no notices");
   return options;
 }
@@ -54,7 +54,7 @@ arguments or recording; 130 interrupted.
 int execute_try(const Arguments& arguments, processes::Signals& signals) {
   const auto end = std::ranges::find(arguments, "--");
   const Parsed parsed = parse({arguments.begin(), end}, try_options());
-  run::RehearsalOptions options;
+  run::ControllerCheckOptions options;
   options.recording = only_recording("try", parsed.positional);
   const auto text = [&](const char* name) {
     return parsed.values.count(name) ? parsed.values[name].as<std::string>() : std::string();
@@ -69,7 +69,8 @@ int execute_try(const Arguments& arguments, processes::Signals& signals) {
   if (command.empty() == options.script.empty()) {
     throw text::UsageError("write either -- COMMAND at the end, or --script FILE.lua");
   }
-  if (const auto fault = command.empty() ? processes::compile_error(options.script) : std::nullopt) {
+  if (const auto fault =
+          command.empty() ? processes::compile_error(options.script) : std::nullopt) {
     throw text::UsageError("--script: " + *fault);
   }
   const std::string wrong = command.empty() ? std::string() : processes::why_not_started(command);
@@ -81,7 +82,7 @@ int execute_try(const Arguments& arguments, processes::Signals& signals) {
     options.most_told = text::to_integer("--differences", text("differences"));
     if (options.most_told == 0) throw text::UsageError("--differences is 0; write 1 or more");
   }
-  return run::Rehearsal(options, signals).execute();
+  return run::ControllerCheck(options, signals).execute();
 }
 
 }  // namespace ziggurat::cli

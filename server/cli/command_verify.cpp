@@ -4,8 +4,8 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "run/rehearsal.h"
-#include "run/replaying.h"
+#include "run/controller_check.h"
+#include "run/replay_run.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -14,26 +14,28 @@ namespace po = boost::program_options;
 
 po::options_description verify_options() {
   po::options_description options("Options", 96);
-  options.add_options()                         //
+  options.add_options()                        //
       ("quiet", "no progress and no notices")  //
-      ("controllers", "start the controllers, too, and compare what they command: embedded Lua scripts, "
+      ("controllers",
+       "start the controllers, too, and compare what they command: embedded Lua scripts, "
        "sandboxed, and the commands of --controller")  //
       ("controller", po::value<std::vector<std::string>>()->composing()->value_name("ID=CMD"),
        "with --controllers: start CMD for the controller ID; may be repeated")  //
       ("trust-recorded-commands",
        "with --controllers: start the commands that the recording names; they can do anything that "
        "you can do")  //
-      ("json", "the verdict as a JSON object: verdict, states, text; with a difference tick and epoch");
+      ("json",
+       "the verdict as a JSON object: verdict, states, text; with a difference tick and epoch");
   return options;
 }
 
 int rehearse(const Parsed& parsed, const Arguments& arguments, processes::Signals& signals) {
-  run::RehearsalOptions options;
+  run::ControllerCheckOptions options;
   options.recording = only_recording("verify", parsed.positional);
   options.controllers = parse_options(arguments, verify_options()).controllers;
   options.trusts_commands = parsed.values.count("trust-recorded-commands") > 0;
   options.quiet = parsed.values.count("quiet") > 0;
-  return run::Rehearsal(options, signals).execute();
+  return run::ControllerCheck(options, signals).execute();
 }
 
 }  // namespace
@@ -71,7 +73,7 @@ int execute_verify(const Arguments& arguments, processes::Signals& signals) {
   options.run = parse_options(arguments, verify_options());
   options.recording = only_recording("verify", options.run.scenes);
   options.verifies = true;
-  return run::Replaying(options, signals).execute();
+  return run::ReplayRun(options, signals).execute();
 }
 
 }  // namespace ziggurat::cli

@@ -50,10 +50,13 @@ const Command& command_named(const std::string& name) {
     const std::array<std::string, 2> options{"--version", "--help"};
     throw text::UsageError(fmt::format(
         "there is no option '{}' without a command; {}", name,
-        text::advice(name, options, "write: ziggurat COMMAND [OPTION]..., where 'ziggurat help' lists the commands")));
+        text::advice(
+            name, options,
+            "write: ziggurat COMMAND [OPTION]..., where 'ziggurat help' lists the commands")));
   }
   if (name == "version" || name == "-v" || name == "-V") {
-    throw text::UsageError(fmt::format("there is no command '{}'; write: ziggurat --version", name));
+    throw text::UsageError(
+        fmt::format("there is no command '{}'; write: ziggurat --version", name));
   }
   std::vector<std::string> names;
   for (const auto& command : table) names.emplace_back(command.name);

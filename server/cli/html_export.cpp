@@ -11,7 +11,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "cli/whole_file.h"
+#include "cli/atomic_file.h"
 #include "text/printable.h"
 
 namespace ziggurat::cli {
@@ -81,7 +81,8 @@ std::uint64_t copy_as_base64(std::ifstream& from, std::ostream& to) {
 }
 
 /// @return what was written [bytes]
-std::uint64_t write_page(const Template& page, const std::string& name, std::ifstream& recording, std::ostream& to) {
+std::uint64_t write_page(const Template& page, const std::string& name, std::ifstream& recording,
+                         std::ostream& to) {
   const std::string begin = page.before_name + escaped(name) + page.before_recording;
   to << begin;
   const std::uint64_t size = copy_as_base64(recording, to);
@@ -140,12 +141,12 @@ std::uint64_t export_html(const std::string& player, const std::string& recordin
     if (!std::cout.flush()) fail(fmt::format("stdout can't be written: {}", std::strerror(errno)));
     return size;
   }
-  WholeFile whole(out);
+  AtomicFile whole(out);
   std::ofstream file(whole.path(), std::ios::binary | std::ios::trunc);
   const std::uint64_t size = write_page(page, name, bytes, file);
   file.close();
   if (!file || bytes.bad()) fail(fmt::format("{} can't be written: {}", out, std::strerror(errno)));
-  whole.keep();
+  whole.commit();
   return size;
 }
 

@@ -34,7 +34,8 @@ bool asks_for_help(const Arguments& arguments) {
                      [](const auto& each) { return each == "--help" || each == "-h"; });
 }
 
-/// Over a console of its own, as commands do: that of main() then can tell that stdout takes nothing.
+/// Over a console of its own, as commands do: that of main() then can tell that stdout takes
+/// nothing.
 int tell_version() {
   reports::Console console;
   console.result(std::string("ziggurat ") + run::version);
@@ -65,7 +66,8 @@ int dispatch(Arguments arguments, std::span<char*> texts, reports::Console& cons
   const std::string name = arguments.front();
   arguments.erase(arguments.begin());
   if (name == "--version" && !arguments.empty()) {
-    throw text::UsageError(fmt::format("--version takes no '{}'; write: ziggurat --version", arguments.front()));
+    throw text::UsageError(
+        fmt::format("--version takes no '{}'; write: ziggurat --version", arguments.front()));
   }
   if (name == "--version") return tell_version();
   if (name == "--help" || name == "-h") return execute_help(arguments);
@@ -94,9 +96,12 @@ int main(int count, char** texts) {
   } catch (const std::filesystem::filesystem_error& error) {
     console.fault(fmt::format("{}: {}", error.path1().string(), error.code().message()));
   } catch (const std::system_error& error) {
-    const bool is_crowded = error.code() == std::errc::resource_unavailable_try_again;  // fork() and threads
+    const bool is_crowded =
+        error.code() == std::errc::resource_unavailable_try_again;  // fork() and threads
     console.fault(text::shortened_message(error.what()) +
-                  (is_crowded ? "; the system allows this user no more processes and threads (ulimit -u)" : ""));
+                  (is_crowded
+                       ? "; the system allows this user no more processes and threads (ulimit -u)"
+                       : ""));
   } catch (const ProtocolError& error) {
     console.fault(text::indented(text::shortened_message(error.what())));
   } catch (const std::exception& error) {

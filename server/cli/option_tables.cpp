@@ -10,7 +10,7 @@ auto texts(const char* name) {
   return po::value<std::vector<std::string>>()->composing()->value_name(name);
 }
 
-constexpr unsigned width = 96;         // of the help [characters]
+constexpr unsigned width = 96;  // of the help [characters]
 
 void add_variation(po::options_description& options) {
   options.add_options()  //
@@ -26,14 +26,17 @@ void add_lua_limits(po::options_description& options) {
       ("lua-memory", text("MIB"), "largest memory of a robot's Lua script; default 256")  //
       ("lua-instructions", text("MILLIONS"),
        "most Lua instructions of a robot at one tick, in millions; default 1000")  //
-      ("lua-time", text("SECONDS"), "most processor time of a robot's Lua script at one tick; default 20");
+      ("lua-time", text("SECONDS"),
+       "most processor time of a robot's Lua script at one tick; default 20");
 }
 
 po::options_description scene_options() {
   po::options_description options("Reading the scene", width);
   add_variation(options);
-  options.add_options()                                          //
-      ("lenient", "unknown attributes, libraries of <loop_functions> and floors that they draw are notices, not faults")  //
+  options.add_options()  //
+      ("lenient",
+       "unknown attributes, libraries of <loop_functions> and floors that they draw are notices, "
+       "not faults")  //
       ("max-scene-size", text("SIZE"), "largest scene file, as 64M (the default)");
   return options;
 }
@@ -65,16 +68,17 @@ po::options_description world_options() {
       ("curve-secret", text("FILE"), "protect endpoints with this key ('ziggurat keygen')")  //
       ("curve-clients", text("FILE"),
        "the allowed clients: lines KEY ROLE[,ROLE] [robots=GLOB,..] [controllers=GLOB,..] "
-       "[takeover=yes|no] [NAME]; a ROLE is controller, director, supervisor or observer")            //
+       "[takeover=yes|no] [NAME]; a ROLE is controller, director, supervisor or observer")  //
       ("paused", "stand at tick 0 until a supervisor resumes ('ziggurat ctl URL resume')")  //
       ("end-with-input",
-       "end, as with Ctrl-C, when standard input ends: a program that starts this one with a pipe does not leave it "
-       "behind, however it ends itself")  //
-      ("fail-fast", "end when the first controller fails or the first robot is dropped")    //
-      ("allow-drops", "robots that a deadline dropped do not make the exit code 3")         //
+       "end, as with Ctrl-C, when standard input ends: a program that starts this one with a pipe "
+       "does not leave it "
+       "behind, however it ends itself")                                                  //
+      ("fail-fast", "end when the first controller fails or the first robot is dropped")  //
+      ("allow-drops", "robots that a deadline dropped do not make the exit code 3")       //
       ("allow-director",
-       "clients may direct the world although the scene has no <director> for them")          //
-      ("insecure", "allow endpoints that other machines can reach")                         //
+       "clients may direct the world although the scene has no <director> for them")  //
+      ("insecure", "allow endpoints that other machines can reach")                   //
       ("allow-spawned-scripts", texts("DIR"),
        "robots that a supervisor spawns may use the scripts and files below DIR, too; otherwise "
        "only "
@@ -105,7 +109,8 @@ po::options_description hil_options() {
        "exit with 4 unless every controller meets them: p99<2ms,misses<0.1% (p50, p90, "
        "p99, p99.9, max, jitter, misses, run: of misses in a row, late)")  //
       ("report-card", text("FILE"),
-       "how controllers kept up, as JSON, as a picture if FILE ends with .svg, or tick by tick if it "
+       "how controllers kept up, as JSON, as a picture if FILE ends with .svg, or tick by tick if "
+       "it "
        "ends with .csv")  //
       ("warm-up", text("N"), "the first N ticks do not count for the gate and the report card");
   return options;
@@ -130,12 +135,16 @@ po::options_description record_options() {
   po::options_description options("Recording", width);
   options.add_options()  //
       ("record", text("FILE.mcap"),
-       "everything: to replay the run to the bit, to look at it again (MCAP, as Foxglove reads it)")  //
+       "everything: to replay the run to the bit, to look at it again (MCAP, as Foxglove reads "
+       "it)")  //
       ("record-topics", texts("PATTERN"),
-       "only topics that match, as '/poses' or '/robots/r1*/*'; may be repeated; what a replay needs "
-       "is always there")  //
-      ("record-every", text("N"), "pictures of every Nth tick only")  //
+       "only topics that match, as '/poses' or '/robots/r1*/*'; may be repeated; what a replay "
+       "needs "
+       "is always there")                                                                      //
+      ("record-every", text("N"), "pictures of every Nth tick only")                           //
       ("record-compression", text("zstd|lz4|none"), "default zstd; lz4 is faster and larger")  //
+      ("record-paths",
+       "record paths and the command line as they were written, not below the scene's folder")  //
       ("record-strict", "end the run if the recording can't be written, as when the disk is full");
   return options;
 }
@@ -150,10 +159,11 @@ po::options_description controller_options() {
        "Lua scripts may start programs and use all of Lua and all files; otherwise they use only "
        "files below the folders of the scene, its includes and its scripts");
   add_lua_limits(options);
-  options.add_options()  //
+  options.add_options()                                                           //
       ("controller", texts("ID=CMD"), "start CMD for the scene's controller ID")  //
       ("restart", texts("[ID=]N"),
-       "a process of the scene's controller ID (of any, without ID) that dies is started again, up to N "
+       "a process of the scene's controller ID (of any, without ID) that dies is started again, up "
+       "to N "
        "times: it resumes its session at the present tick; may be repeated");
   return options;
 }
@@ -193,10 +203,16 @@ po::options_description run_options() {
 
 po::options_description serve_options() {
   po::options_description directors("Directors", width);
-  directors.add_options()("start-directors", "start the scene's directors, as 'ziggurat run' does; controllers connect from outside");
+  directors.add_options()(
+      "start-directors",
+      "start the scene's directors, as 'ziggurat run' does; controllers connect from outside");
   po::options_description options("", width);
-  options.add(world_options()).add(hil_options()).add(directors).add(output_options()).add(record_options()).add(
-      scene_options());
+  options.add(world_options())
+      .add(hil_options())
+      .add(directors)
+      .add(output_options())
+      .add(record_options())
+      .add(scene_options());
   return options;
 }
 
@@ -224,10 +240,11 @@ po::options_description render_options() {
 
 po::options_description replay_options() {
   po::options_description replay("The replay", width);
-  replay.add_options()                                                         //
+  replay.add_options()                                                  //
       ("until", text("TICK"), "end at the first state with this tick")  //
       ("from-poses",
-       "show the recorded poses and simulate nothing: with --view and --trace; what robots sense is "
+       "show the recorded poses and simulate nothing: with --view and --trace; what robots sense "
+       "is "
        "not shown, and nothing is compared")  //
       ("real-time", po::value<std::string>()->implicit_value("1")->value_name("FACTOR"),
        "pace to the wall clock, FACTOR times as fast (default 1)")  //
@@ -246,15 +263,17 @@ po::options_description fork_options() {
   po::options_description fork("The fork", width);
   add_variation(fork);
   fork.add_options()  //
-      ("at", text("TICK"), "the recorded state from which it goes on: the first with this tick; required")  //
+      ("at", text("TICK"),
+       "the recorded state from which it goes on: the first with this tick; required")  //
       ("fresh",
-       "controllers begin at that tick; otherwise they are first given what robots sensed before, tick by tick")  //
+       "controllers begin at that tick; otherwise they are first given what robots sensed before, "
+       "tick by tick")                                                                     //
       ("controller", texts("ID=CMD"), "start CMD for the controller ID; may be repeated")  //
       ("script", texts("NAME=FILE.lua"),
        "FILE instead of the embedded script NAME ('ziggurat info' lists them); may be repeated")  //
       ("trust-recorded-commands",
        "start the commands that the recording names; they can do anything that you can do")  //
-      ("without-controllers", "start no controllers; the robots do nothing")             //
+      ("without-controllers", "start no controllers; the robots do nothing")                 //
       ("lua-processes", text("N"),
        "share the Lua robots among N processes; default 1, 0 is one for each robot");
   add_lua_limits(fork);

@@ -68,7 +68,7 @@ std::vector<std::string> controllers_of(const std::vector<Option>& options) {
   return names;
 }
 
-/// Of both directions, if an injection is for both.
+/// Directions of several injections; an injection for both counts for each.
 std::vector<std::string> directions_of(const std::vector<run::InjectOption>& options) {
   using network::Direction;
   std::vector<std::string> subjects;
@@ -88,17 +88,18 @@ void check_subjects(const run::Options& options) {
   check_once("--inject", directions_of(options.injections));
   check_once("--param", first_of(options.scene_file.variation.parameters));
   std::vector<std::string> paths;
-  for (const scene::Setting& setting : options.scene_file.variation.settings) paths.push_back(setting.path);
+  for (const scene::Setting& setting : options.scene_file.variation.settings)
+    paths.push_back(setting.path);
   check_once("--set", std::move(paths));
 }
 
-/// What is passed to ziggurat-lua.
+/// Arguments for ziggurat-lua.
 std::vector<std::string> lua_arguments(const Values& values) {
   std::vector<std::string> arguments;
   if (values.has("trust-scripts")) arguments.emplace_back("--trust-scripts");
-  for (const auto& [option, passed] : {std::pair{"lua-memory", "--max-memory"},
-                                       std::pair{"lua-instructions", "--max-instructions"},
-                                       std::pair{"lua-time", "--max-time"}}) {
+  for (const auto& [option, passed] :
+       {std::pair{"lua-memory", "--max-memory"},
+        std::pair{"lua-instructions", "--max-instructions"}, std::pair{"lua-time", "--max-time"}}) {
     if (!values.has(option)) continue;
     constexpr std::uint64_t most = std::uint64_t{1} << 20;
     const auto number = text::to_integer(std::string("--") + option, values.text(option));
@@ -166,7 +167,8 @@ void read_network(const Values& values, run::Options& options) {
 
 void read_outputs(const Values& values, run::Options& options) {
   options.report_card = values.text("report-card");
-  if (values.has("warm-up")) options.warm_up = text::to_integer("--warm-up", values.text("warm-up"));
+  if (values.has("warm-up"))
+    options.warm_up = text::to_integer("--warm-up", values.text("warm-up"));
   options.quiet = values.has("quiet");
   options.json = values.has("json");
   options.hash = values.has("hash");
@@ -178,19 +180,23 @@ void read_outputs(const Values& values, run::Options& options) {
   options.summary = values.text("summary");
 }
 
-/// What an option would do nothing without, and what it would do nothing beside.
-void check_effects(const Values& values, const po::options_description& known, const run::Options& options) {
+/// Refuses options that have no effect without, or beside, another one.
+void check_effects(const Values& values, const po::options_description& known,
+                   const run::Options& options) {
   check_apart(values, "without-controllers",
-              {"controller", "script", "restart", "trust-scripts", "trust-recorded-commands", "lua-processes",
-               "lua-memory", "lua-instructions", "lua-time"});
+              {"controller", "script", "restart", "trust-scripts", "trust-recorded-commands",
+               "lua-processes", "lua-memory", "lua-instructions", "lua-time"});
   const auto is_tcp = [](const std::string& endpoint) { return endpoint.starts_with("tcp://"); };
-  const bool has_address = std::ranges::any_of(options.endpoints, is_tcp) || options.view || !options.metrics.empty();
+  const bool has_address =
+      std::ranges::any_of(options.endpoints, is_tcp) || options.view || !options.metrics.empty();
   if (!options.insecure || has_address) return;
   const bool has_endpoint = known.find_nothrow("endpoint", false) != nullptr;
   throw text::UsageError(fmt::format(
-      "--insecure has no effect: it is for addresses that other machines can reach, and none is given; write {} too, or "
+      "--insecure has no effect: it is for addresses that other machines can reach, and none is "
+      "given; write {} too, or "
       "leave it out",
-      has_endpoint ? "--endpoint tcp://HOST:PORT, --view=HOST:PORT or --metrics HOST:PORT" : "--view=HOST:PORT"));
+      has_endpoint ? "--endpoint tcp://HOST:PORT, --view=HOST:PORT or --metrics HOST:PORT"
+                   : "--view=HOST:PORT"));
 }
 
 mcap::Compression to_compression(const std::string& value) {
@@ -203,13 +209,15 @@ mcap::Compression to_compression(const std::string& value) {
 
 void read_recording(const Values& values, run::Options& options) {
   options.record = values.text("record");
-  for (const char* name : {"record-topics", "record-every", "record-compression", "record-strict"}) {
+  for (const char* name :
+       {"record-topics", "record-every", "record-compression", "record-paths", "record-strict"}) {
     if (values.has(name) && options.record.empty()) {
       throw text::UsageError(fmt::format("--{} needs --record FILE.mcap", name));
     }
   }
   options.record_topics = values.texts("record-topics");
   options.record_strict = values.has("record-strict");
+  options.record_paths = values.has("record-paths");
   if (values.has("record-compression")) {
     options.record_compression = to_compression(values.text("record-compression"));
   }
@@ -240,8 +248,8 @@ Arguments without_secrets(const Arguments& arguments) {
 void check_time(const char* option, double seconds) {
   constexpr double longest = 9e9;  // [s], as in scenes: nanoseconds fit 64 bits
   if (seconds > longest) {
-    throw text::UsageError(
-        fmt::format("{} is {:g} s; write at most {:g} simulated seconds", option, seconds, longest));
+    throw text::UsageError(fmt::format("{} is {:g} s; write at most {:g} simulated seconds", option,
+                                       seconds, longest));
   }
 }
 

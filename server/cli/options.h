@@ -1,5 +1,6 @@
 #pragma once
-// The options of `run`, `serve`, `check`, `render`, `replay` and `fork`: their help, and what they ask for.
+// The options of `run`, `serve`, `check`, `render`, `replay` and `fork`: their help, and what they
+// ask for.
 
 #include <boost/program_options/options_description.hpp>
 #include <boost/program_options/variables_map.hpp>
@@ -10,7 +11,7 @@
 
 namespace ziggurat::cli {
 
-/// What each command understands, in groups with headings as its help prints them.
+/// Options of each command, in groups with headings as its help prints them.
 boost::program_options::options_description run_options();
 boost::program_options::options_description serve_options();
 boost::program_options::options_description check_options();
@@ -22,7 +23,8 @@ boost::program_options::options_description picture_options();
 /// The pictures and the film that are asked for; nothing: none. @throws UsageError
 std::optional<run::PictureOptions> to_pictures(const boost::program_options::variables_map& values);
 
-/// @param seconds  simulated ones that this option has. @throws UsageError if they are more than a run can have
+/// @param seconds  simulated ones that this option has. @throws UsageError if they are more than a
+/// run can have
 void check_time(const char* option, double seconds);
 
 /// @throws UsageError

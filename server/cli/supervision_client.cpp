@@ -31,7 +31,7 @@ std::string duration(double seconds) {
   return fmt::format("{:.0f} min", seconds / 60);
 }
 
-/// What it drives.
+/// Robots or director of a session.
 std::string part_of(const SessionStatus& session) {
   return session.director.empty() ? some_of(session.robots)
                                   : fmt::format("director '{}'", session.director);
@@ -88,13 +88,16 @@ SupervisorOptions supervisor_options(const std::string& endpoint,
 }
 
 std::unique_ptr<Supervisor> connect(SupervisorOptions options, reports::Console& console) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds noticeable{500};
   const auto says_more = std::make_shared<bool>(true);
+  const auto begin = Clock::now();
   const std::string text =
       fmt::format("nothing answers at {} yet; trying for {:.0f} s", options.endpoint,
                   std::chrono::duration<double>(options.connect_timeout).count());
   options.is_interrupted = [=, &console, is_interrupted = std::move(options.is_interrupted)] {
     if (is_interrupted && is_interrupted()) return true;
-    if (std::exchange(*says_more, false)) {
+    if (Clock::now() - begin > noticeable && std::exchange(*says_more, false)) {
       console.notice(text);
       console.offer();
     }

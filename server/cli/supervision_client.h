@@ -1,5 +1,5 @@
 #pragma once
-// What ctl and top share: how they connect, and how they print a status.
+// Common parts of ctl and top: the connection, and the printed status.
 
 #include <boost/program_options/options_description.hpp>
 #include <boost/program_options/variables_map.hpp>

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What containers read and write must be in what they mount.
+/// Checks that a path which containers read or write is in the folder that they mount.
 void check_is_mounted(const std::string& mount, const fs::path& path) {
   const fs::path relative = path.lexically_relative(fs::path(mount).lexically_normal());
   if (!relative.empty() && *relative.begin() != "..") return;
@@ -32,8 +32,9 @@ int write_manifest(const SweepOptions& options, const sweep::Folder& folder, std
   auto settings = options.settings;
   settings.program = "ziggurat";
   const std::size_t tasks = task_count(options.definition.experiment, chunk);
-  const std::string manifest = kubernetes_manifest(
-      tasks, task_command(folder, settings, options.retries_failed), settings.jobs, options.kubernetes);
+  const std::string manifest =
+      kubernetes_manifest(tasks, task_command(folder, settings, options.retries_failed),
+                          settings.jobs, options.kubernetes);
   if (options.kubernetes_file == "-") {
     recording::OutputFile file("-");
     file.buffer().append(manifest);
@@ -60,8 +61,8 @@ int submit(const SweepOptions& options, const sweep::Folder& folder, std::size_t
       slurm_script(folder, tasks, command, options.settings.jobs, options.slurm);
   const std::string id = submit_to_slurm(folder, script);
   console.report(fmt::format(
-      "submitted job {} with {} tasks of at most {} runs; how far it is: ziggurat sweep status {}", id,
-      tasks.size(), chunk, text::shell_word(options.out)));
+      "submitted job {} with {} tasks of at most {} runs; how far it is: ziggurat sweep status {}",
+      id, tasks.size(), chunk, text::shell_word(options.out)));
   return exit_code::finished;
 }
 
@@ -76,7 +77,6 @@ int submit_sweep(const SweepOptions& options) {
     check_is_mounted(options.kubernetes.mount, folder.path());
     check_is_mounted(options.kubernetes.mount, options.definition.experiment.scene);
   }
-  recording::check_output_folder("--out", folder.path().string());
   folder.check(options.definition);
   fs::create_directories(folder.path());
   const sweep::Lock lock(folder.path() / "lock");
@@ -104,7 +104,8 @@ int sweep_task(const Arguments& arguments, processes::Signals& signals) {
   const auto left = runs_to_do(runs_of_task(definition.experiment, chunk, task),
                                folder.results_for_task(task), options.sweep.retries_failed);
   reports::Console console({options.sweep.quiet, false});
-  sweep::Sweep sweep(definition.experiment, folder, options.sweep.settings, ledger, console, signals);
+  sweep::Sweep sweep(definition.experiment, folder, options.sweep.settings, ledger, console,
+                     signals);
   const auto counts = sweep.execute(left);
   console.report(fmt::format("task {}: {} runs finished, {} failed{}", task, counts.finished,
                              counts.failed, counts.is_interrupted ? ", then interrupted" : ""));

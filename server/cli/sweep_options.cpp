@@ -29,8 +29,8 @@ constexpr std::size_t most_run_arguments = 1000;
 // Options of `run` that the sweep sets itself.
 constexpr const char* own_options[] = {"seed", "set", "param", "summary", "record"};
 // Options of `run` that two runs at a time can't both have.
-constexpr const char* exclusive_options[] = {"endpoint", "metrics", "view",   "hash-file",
-                                             "trace",    "readings", "rays",  "images",
+constexpr const char* exclusive_options[] = {"endpoint",    "metrics",        "view", "hash-file",
+                                             "trace",       "readings",       "rays", "images",
                                              "report-card", "snapshot-folder"};
 
 auto text_value(const char* name) { return po::value<std::string>()->value_name(name); }
@@ -38,7 +38,7 @@ auto text_values(const char* name) {
   return po::value<std::vector<std::string>>()->composing()->value_name(name);
 }
 
-/// What stands behind `--` is for `run`.
+/// Splits the arguments at `--`; the second part is for `run`.
 std::pair<Arguments, Arguments> split(const Arguments& arguments) {
   const auto end = std::ranges::find(arguments, "--");
   return {{arguments.begin(), end},
@@ -47,35 +47,37 @@ std::pair<Arguments, Arguments> split(const Arguments& arguments) {
 
 void check_run_arguments(const std::vector<std::string>& arguments) {
   if (arguments.size() > most_run_arguments) {
-    throw text::UsageError(fmt::format("there are {} options for runs; at most {} are taken", arguments.size(),
-                                       most_run_arguments));
+    throw text::UsageError(fmt::format("there are {} options for runs; at most {} are taken",
+                                       arguments.size(), most_run_arguments));
   }
   const Parsed parsed = parse(arguments, run_options());
   const Values values(parsed.values);
   for (const char* name : own_options) {
     if (!values.has(name)) continue;
-    throw text::UsageError(fmt::format("--{} is set by the sweep; write --seeds, --param, --axis or "
-                                       "--record before the '--' instead",
-                                       name));
+    throw text::UsageError(
+        fmt::format("--{} is set by the sweep; write --seeds, --param, --axis or "
+                    "--record before the '--' instead",
+                    name));
   }
   if (!parsed.positional.empty()) {
-    throw text::UsageError(fmt::format("'{}' behind '--' is no option of 'ziggurat run'",
-                                       parsed.positional.front()));
+    throw text::UsageError(
+        fmt::format("'{}' behind '--' is no option of 'ziggurat run'", parsed.positional.front()));
   }
   for (const char* name : exclusive_options) {
     if (!values.has(name)) continue;
     const auto* one = boost::any_cast<std::string>(&parsed.values[name].value());
     for (const std::string& value : one ? std::vector{*one} : values.texts(name)) {
       if (value.find("{run}") != value.npos) continue;
-      throw text::UsageError(fmt::format(
-          "--{0} '{1}' would be the same for all runs; write {{run}} in it, which becomes the number "
-          "of the run",
-          name, value));
+      throw text::UsageError(
+          fmt::format("--{0} '{1}' would be the same for all runs; write {{run}} in it, which "
+                      "becomes the number "
+                      "of the run",
+                      name, value));
     }
   }
 }
 
-/// What the first run is asked for: its arguments are read as `ziggurat run` reads them.
+/// Options of the first run: its arguments are read as `ziggurat run` reads them.
 /// @throws text::UsageError
 run::Options options_of_first_run(const sweep::Experiment& experiment,
                                   const sweep::Settings& settings) {
@@ -110,7 +112,8 @@ void read_settings(const Values& values, const sweep::ExperimentFile& file, Swee
   sweep::Settings& settings = options.settings;
   settings.program = fs::read_symlink("/proc/self/exe").string();
   settings.version = run::version;
-  settings.jobs = file.jobs.value_or(std::clamp(std::thread::hardware_concurrency(), 1u, most_jobs));
+  settings.jobs =
+      file.jobs.value_or(std::clamp(std::thread::hardware_concurrency(), 1u, most_jobs));
   settings.timeout = file.timeout;
   settings.record = to_record(file.record);
   if (values.has("jobs")) settings.jobs = to_jobs(values.text("jobs"));
@@ -122,8 +125,9 @@ void read_settings(const Values& values, const sweep::ExperimentFile& file, Swee
   options.quiet = values.has("quiet");
 }
 
-/// What the options say of the experiment.
-void read_experiment(const Values& values, const Arguments& for_run, sweep::Experiment& experiment) {
+/// Reads the experiment from the options.
+void read_experiment(const Values& values, const Arguments& for_run,
+                     sweep::Experiment& experiment) {
   for (const std::string& each : values.texts("param")) {
     experiment.axes.push_back(sweep::to_axis(sweep::Axis::Kind::parameter, each));
   }
@@ -152,9 +156,10 @@ void complete(SweepOptions& options) {
   options.warnings = std::move(files.warnings);
   if (experiment.seeds.empty()) {
     if (files.seed == 0) {
-      throw text::UsageError(fmt::format("{} has no random_seed, so that each run would draw its own; "
-                                         "write seeds, as in --seeds 1..10",
-                                         experiment.scene));
+      throw text::UsageError(
+          fmt::format("{} has no random_seed, so that each run would draw its own; "
+                      "write seeds, as in --seeds 1..10",
+                      experiment.scene));
     }
     experiment.seeds = {files.seed};
     check(experiment);
@@ -162,9 +167,10 @@ void complete(SweepOptions& options) {
   const run::Options first = options_of_first_run(experiment, options.settings);
   const bool may_never_end = !first.ticks && first.duration.value_or(files.length) == 0;
   if (may_never_end && !options.settings.timeout) {
-    throw text::UsageError(fmt::format("{} has no length, so that a run may never end; write "
-                                       "--duration S or --timeout S",
-                                       experiment.scene));
+    throw text::UsageError(
+        fmt::format("{} has no length, so that a run may never end; write "
+                    "--duration S or --timeout S",
+                    experiment.scene));
   }
 }
 
@@ -173,8 +179,7 @@ void read_cluster(const Values& values, SweepOptions& options) {
   options.for_slurm = values.has("slurm");
   options.slurm = {values.text("partition"), values.texts("slurm-option")};
   options.kubernetes_file = values.text("kubernetes");
-  options.kubernetes = {values.text("image"), values.text("claim"),
-                        values.text("mount")};
+  options.kubernetes = {values.text("image"), values.text("claim"), values.text("mount")};
   const bool for_kubernetes = !options.kubernetes_file.empty();
   if (values.has("chunk")) {
     options.chunk = text::to_integer("--chunk", values.text("chunk"));
@@ -202,9 +207,10 @@ void read_cluster(const Values& values, SweepOptions& options) {
 const std::string& only_word(const Parsed& parsed, const char* missing) {
   if (parsed.positional.empty()) throw text::UsageError(missing);
   if (parsed.positional.size() > 1) {
-    throw text::UsageError(fmt::format("only one scene, experiment or folder is allowed, which is "
-                                       "'{}'; remove '{}'",
-                                       parsed.positional[0], parsed.positional[1]));
+    throw text::UsageError(
+        fmt::format("only one scene, experiment or folder is allowed, which is "
+                    "'{}'; remove '{}'",
+                    parsed.positional[0], parsed.positional[1]));
   }
   return parsed.positional.front();
 }
@@ -232,8 +238,10 @@ SweepOptions resumed(const Parsed& parsed, const char* verb) {
 po::options_description sweep_options() {
   po::options_description grid("The runs", help_width);
   grid.add_options()  //
-      ("seeds", text_value("LIST"), "random seeds: 1..100, or 1,2,7..9; default: the scene's own")  //
-      ("param", text_values("NAME=A|B|C"), "values of a parameter of the scene; may be repeated")  //
+      ("seeds", text_value("LIST"),
+       "random seeds: 1..100, or 1,2,7..9; default: the scene's own")  //
+      ("param", text_values("NAME=A|B|C"),
+       "values of a parameter of the scene; may be repeated")  //
       ("axis", text_values("PATH=A|B|C"),
        "values of the attributes that an XPath from the root element names; may be repeated")  //
       ("ticks", text_value("N"), "length of each run in ticks")                                //
@@ -241,23 +249,30 @@ po::options_description sweep_options() {
   po::options_description execution("How they are run", help_width);
   execution.add_options()                                                                    //
       ("out", text_value("DIR"), "folder of the results: a new one, or that of this sweep")  //
-      ("jobs", text_value("N"), "runs at a time; default: the number of processors")        //
-      ("timeout", text_value("S"), "end a run that takes more wall time, and count it as failed")  //
-      ("retry-failed", "run again what failed or took too long")                             //
+      ("jobs", text_value("N"), "runs at a time; default: the number of processors")         //
+      ("timeout", text_value("S"),
+       "end a run that takes more wall time, and count it as failed")                         //
+      ("retry-failed", "run again what failed or took too long")                              //
       ("record", text_value("failed|all"), "keep recordings of these runs: runs/N/run.mcap")  //
-      ("dry-run", "print the runs as CSV, and start none")                                   //
+      ("dry-run", "print the runs as CSV, and start none")                                    //
       ("quiet", "no progress and no summary on stderr");
   po::options_description cluster("On a cluster", help_width);
   cluster.add_options()  //
-      ("slurm", "submit a job array of Slurm instead of running here; --jobs is for each task, default 1")  //
-      ("partition", text_value("NAME"), "of Slurm")                                                //
-      ("slurm-option", text_values("OPTION"), "a further option of sbatch, as --slurm-option=--mem=2G; "
+      ("slurm",
+       "submit a job array of Slurm instead of running here; --jobs is for each task, default 1")  //
+      ("partition", text_value("NAME"), "of Slurm")  //
+      ("slurm-option", text_values("OPTION"),
+       "a further option of sbatch, as --slurm-option=--mem=2G; "
        "may be repeated")  //
-      ("chunk", text_value("N"), "runs of a task, one after the other; default: so many that 100 "
+      ("chunk", text_value("N"),
+       "runs of a task, one after the other; default: so many that 100 "
        "tasks are enough")  //
-      ("kubernetes", text_value("FILE.yaml"), "write the manifest of an indexed Job there instead")  //
-      ("image", text_value("NAME"), "with --kubernetes: of containers, which have ziggurat in their PATH")  //
-      ("claim", text_value("NAME"), "with --kubernetes: the PersistentVolumeClaim with scene and results")  //
+      ("kubernetes", text_value("FILE.yaml"),
+       "write the manifest of an indexed Job there instead")  //
+      ("image", text_value("NAME"),
+       "with --kubernetes: of containers, which have ziggurat in their PATH")  //
+      ("claim", text_value("NAME"),
+       "with --kubernetes: the PersistentVolumeClaim with scene and results")  //
       ("mount", text_value("PATH"), "with --kubernetes: where it is, here and in the containers");
   po::options_description options("", help_width);
   options.add(grid).add(execution).add(cluster);
@@ -269,8 +284,9 @@ SweepOptions parse_sweep(const Arguments& arguments) {
   const Parsed parsed = parse(own, sweep_options());
   const Values values(parsed.values);
   const std::string& word =
-      only_word(parsed, "no scene is given; write: ziggurat sweep SCENE --out DIR, or: ziggurat sweep "
-                        "EXPERIMENT.toml");
+      only_word(parsed,
+                "no scene is given; write: ziggurat sweep SCENE --out DIR, or: ziggurat sweep "
+                "EXPERIMENT.toml");
   sweep::ExperimentFile file;
   if (word.ends_with(".toml")) {
     for (const char* name : {"param", "axis", "seeds", "ticks", "duration"}) {

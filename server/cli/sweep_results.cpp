@@ -31,14 +31,14 @@ namespace {
 namespace po = boost::program_options;
 
 /// A folder's sweep, as far as it got.
-struct Sofar {
+struct SweepState {
   sweep::Folder folder;
   sweep::Experiment experiment;
   std::vector<sweep::Result> results;
   std::map<std::string, std::string> scene_files;  ///< hashes by path
 };
 
-Sofar look(const char* verb, const Parsed& parsed) {
+SweepState look(const char* verb, const Parsed& parsed) {
   if (parsed.positional.size() != 1) {
     throw text::UsageError(
         fmt::format("one folder of a sweep is expected; write: ziggurat sweep {} DIR", verb));
@@ -46,23 +46,24 @@ Sofar look(const char* verb, const Parsed& parsed) {
   sweep::Folder folder(parsed.positional.front());
   sweep::Definition definition = folder.definition();
   auto results = folder.results();
-  return {std::move(folder), std::move(definition.experiment), std::move(results), std::move(definition.files)};
+  return {std::move(folder), std::move(definition.experiment), std::move(results),
+          std::move(definition.files)};
 }
 
 double confidence_of(const Values& values) {
   if (!values.has("confidence")) return 0.95;
   const double value = text::to_number("--confidence", values.text("confidence"));
   if (value > 0 && value < 1) return value;
-  throw text::UsageError(
-      fmt::format("--confidence is {}; it must be between 0 and 1: 0.95", values.text("confidence")));
+  throw text::UsageError(fmt::format("--confidence is {}; it must be between 0 and 1: 0.95",
+                                     values.text("confidence")));
 }
 
 /// @throws text::UsageError if no run has it
 std::string check_measure(const std::string& name, const std::vector<std::string>& known) {
   if (std::ranges::find(known, name) != known.end()) return name;
-  throw text::UsageError(
-      fmt::format("no run has a metric {}; {}", scene::in_quotes(name),
-                  text::advice(name, known, fmt::format("known here: {}", fmt::join(known, ", ")))));
+  throw text::UsageError(fmt::format(
+      "no run has a metric {}; {}", scene::in_quotes(name),
+      text::advice(name, known, fmt::format("known here: {}", fmt::join(known, ", ")))));
 }
 
 /// Metrics, and without any of those what every run has.
@@ -73,7 +74,9 @@ std::vector<std::string> usual_measures(const std::vector<sweep::Result>& result
   return names;
 }
 
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-"; }
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "-";
+}
 
 using Rows = std::vector<std::vector<std::string>>;
 
@@ -105,7 +108,7 @@ std::string as_csv(const Rows& rows) {
 }
 
 /// A row for each combination of the axes, with means and halves of their intervals.
-Rows table_of_means(const Sofar& sofar, const std::vector<std::size_t>& axes,
+Rows table_of_means(const SweepState& sofar, const std::vector<std::size_t>& axes,
                     const std::vector<std::string>& measures, double confidence) {
   Rows rows(1);
   for (const std::size_t axis : axes) rows[0].push_back(sofar.experiment.axes[axis].name);
@@ -119,7 +122,8 @@ Rows table_of_means(const Sofar& sofar, const std::vector<std::size_t>& axes,
     row.push_back(fmt::format("{}", group.finished));
     row.push_back(fmt::format("{}", group.failed));
     for (const auto& estimate : group.estimates) {
-      const std::string count = fmt::format("n={}", estimate.count);  // where there are too few for a number
+      const std::string count =
+          fmt::format("n={}", estimate.count);  // where there are too few for a number
       row.insert(row.end(), {estimate.count == 0 ? count : number(estimate.mean),
                              estimate.count < 2 ? count : number(estimate.half_width)});
     }
@@ -128,7 +132,7 @@ Rows table_of_means(const Sofar& sofar, const std::vector<std::size_t>& axes,
 }
 
 /// Writes what tasks of a cluster found into the one table, unless a sweep works on it now.
-void gather(const Sofar& sofar) {
+void gather(const SweepState& sofar) {
   if (!std::filesystem::exists(sofar.folder.of_tasks())) return;
   if (sweep::Lock::is_held(sofar.folder.path() / "lock")) return;
   const sweep::Lock lock(sofar.folder.path() / "lock");
@@ -144,7 +148,8 @@ void gather(const Sofar& sofar) {
 
 /// The values of an option, several of which may stand in one text with commas between.
 /// @param known  names that may have commas themselves
-std::vector<std::string> split_names(const std::vector<std::string>& texts, const std::vector<std::string>& known) {
+std::vector<std::string> split_names(const std::vector<std::string>& texts,
+                                     const std::vector<std::string>& known) {
   std::vector<std::string> names;
   for (const std::string& text : texts) {
     if (std::ranges::find(known, text) != known.end()) {
@@ -161,27 +166,28 @@ std::vector<std::string> split_names(const std::vector<std::string>& texts, cons
 
 po::options_description results_options() {
   po::options_description options("Options", 96);
-  options.add_options()  //
+  options.add_options()                            //
       ("runs", "a row per run as CSV, not means")  //
       ("csv", "the means as CSV")                  //
       ("by", po::value<std::vector<std::string>>()->composing()->value_name("AXIS"),
-       "means over all runs with the same value of this axis, or of several: a,b; default: all axes")  //
+       "means over all runs with the same value of this axis, or of several: a,b; default: all "
+       "axes")  //
       ("metric", po::value<std::vector<std::string>>()->composing()->value_name("NAME"),
        "this metric only, or another number of runs as ticks or wall_s; may be repeated")  //
-      ("confidence", po::value<std::string>()->value_name("P"),
-       "of the intervals; default 0.95");
+      ("confidence", po::value<std::string>()->value_name("P"), "of the intervals; default 0.95");
   return options;
 }
 
 po::options_description plot_options() {
   po::options_description options("Options", 96);
   const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
-  options.add_options()                                                                     //
-      ("y", text("METRIC"), "what is averaged: a metric, or ticks, wall_s, …")              //
+  options.add_options()                                                                           //
+      ("y", text("METRIC"), "what is averaged: a metric, or ticks, wall_s, …")                    //
       ("x", text("AXIS"), "from left to right; default: the first axis with two values or more")  //
-      ("by", text("AXIS"), "a curve for each value of this axis")                           //
-      ("confidence", text("P"), "of the error bars; default 0.95")                          //
-      ("file", text("FILE.svg"), "the picture; default: METRIC.svg in the folder; -: that one, and on stdout");
+      ("by", text("AXIS"), "a curve for each value of this axis")                                 //
+      ("confidence", text("P"), "of the error bars; default 0.95")                                //
+      ("file", text("FILE.svg"),
+       "the picture; default: METRIC.svg in the folder; -: that one, and on stdout");
   return options;
 }
 
@@ -191,16 +197,20 @@ std::size_t usual_abscissa(const sweep::Experiment& experiment) {
   if (found != experiment.axes.end()) {
     return static_cast<std::size_t>(found - experiment.axes.begin());
   }
-  throw text::UsageError("the sweep has no axis with two values or more, so no axis can go "
-                         "from left to right");
+  throw text::UsageError(
+      "the sweep has no axis with two values or more, so no axis can go "
+      "from left to right");
 }
 
-/// What the sweep is kept in and was made of. A picture in its folder, and the program that drew it, may be replaced.
-std::vector<recording::TakenFile> taken_by(const Sofar& sofar) {
+/// Files that belong to the sweep or that it was made of. A picture in its folder, and the program
+/// that drew it, may be replaced.
+std::vector<recording::TakenFile> taken_by(const SweepState& sofar) {
   std::vector<recording::TakenFile> taken;
-  for (const auto& [path, hash] : sofar.scene_files) taken.push_back({path, "a file of the sweep's scene"});
+  for (const auto& [path, hash] : sofar.scene_files)
+    taken.push_back({path, "a file of the sweep's scene"});
   std::error_code error;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(sofar.folder.path(), error)) {
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(sofar.folder.path(), error)) {
     const auto ending = entry.path().extension();
     if (!entry.is_regular_file(error) || ending == ".svg" || ending == ".gnuplot") continue;
     taken.push_back({entry.path().string(), "a file that the sweep is kept in"});
@@ -218,13 +228,12 @@ void print(const std::filesystem::path& file) {
 
 int sweep_status(const Arguments& arguments) {
   const Parsed parsed = parse(arguments, po::options_description());
-  const Sofar sofar = look("status", parsed);
+  const SweepState sofar = look("status", parsed);
   reports::Console console;
   const std::size_t total = run_count(sofar.experiment);
   std::vector<sweep::Result> failed;
-  std::ranges::copy_if(sofar.results, std::back_inserter(failed), [](const auto& each) {
-    return each.outcome != sweep::Outcome::finished;
-  });
+  std::ranges::copy_if(sofar.results, std::back_inserter(failed),
+                       [](const auto& each) { return each.outcome != sweep::Outcome::finished; });
   const bool works = sweep::Lock::is_held(sofar.folder.path() / "lock");
   console.result(fmt::format("{} of {} runs are done, {} of them failed{}", sofar.results.size(),
                              total, failed.size(), works ? "; a sweep works on the others" : ""));
@@ -238,7 +247,8 @@ int sweep_status(const Arguments& arguments) {
   const auto queued = sweep::slurm_status(sofar.folder);
   if (queued) console.result(*queued);
   if (sofar.results.size() < total && !works && !queued) {
-    console.result(fmt::format("to go on: ziggurat sweep resume {}", text::shell_word(parsed.positional.front())));
+    console.result(fmt::format("to go on: ziggurat sweep resume {}",
+                               text::shell_word(parsed.positional.front())));
   }
   console.flush();
   return exit_code::finished;
@@ -248,7 +258,7 @@ int sweep_results(const Arguments& arguments) {
   const Parsed parsed = parse(arguments, results_options());
   const Values values(parsed.values);
   check_apart(values, "runs", {"by", "metric", "confidence", "csv"});
-  const Sofar sofar = look("results", parsed);
+  const SweepState sofar = look("results", parsed);
   sofar.folder.write_csv(sofar.experiment, sofar.results);
   gather(sofar);
   reports::Console console;
@@ -285,11 +295,11 @@ int sweep_results(const Arguments& arguments) {
 int sweep_plot(const Arguments& arguments) {
   const Parsed parsed = parse(arguments, plot_options());
   const Values values(parsed.values);
-  const Sofar sofar = look("plot", parsed);
+  const SweepState sofar = look("plot", parsed);
   sweep::Plot plot;
   plot.confidence = confidence_of(values);
   plot.x = values.has("x") ? axis_named(sofar.experiment, values.text("x"))
-                                    : usual_abscissa(sofar.experiment);
+                           : usual_abscissa(sofar.experiment);
   if (values.has("by")) plot.series = axis_named(sofar.experiment, values.text("by"));
   const auto usual = usual_measures(sofar.results);
   if (values.has("y")) {
@@ -297,9 +307,9 @@ int sweep_plot(const Arguments& arguments) {
   } else if (usual.size() == 1) {
     plot.measure = usual.front();
   } else {
-    throw text::UsageError(
-        fmt::format("what to plot? Write --y METRIC, as --y {}; known here: {}", usual.front(),
-                    fmt::join(sweep::measures_of(sofar.results), ", ")));
+    throw text::UsageError(fmt::format("what to plot? Write --y METRIC, as --y {}; known here: {}",
+                                       usual.front(),
+                                       fmt::join(sweep::measures_of(sofar.results), ", ")));
   }
   std::string name = plot.measure;
   std::ranges::replace(name, '/', '_');

@@ -14,10 +14,12 @@
 
 namespace ziggurat::devices {
 
-bool Sight::clear(const math::Vector3& eye, const math::Vector3& target) const {
+bool OcclusionTest::clear(const math::Vector3& eye, const math::Vector3& target) const {
   if (left == 0) {
-    throw std::runtime_error("cameras look for LEDs and tags along more than " + std::to_string(world::most_lines_of_sight) +
-                             " lines of sight at a tick; write a smaller range on <camera>, or fewer cameras");
+    throw std::runtime_error(
+        "cameras look for LEDs and tags along more than " +
+        std::to_string(world::most_lines_of_sight) +
+        " lines of sight at a tick; write a smaller range on <camera>, or fewer cameras");
   }
   --left;
   constexpr double at_target = 1e-4;  // devices may be mounted flush [m]
@@ -111,7 +113,7 @@ class Cameras final : public Kind {
     // All rays of a camera lie in the box of its eye and its frustum.
     tick.rays.find(view.bounds.low.cwiseMin(view.pose.position),
                    view.bounds.high.cwiseMax(view.pose.position), {}, candidates_);
-    Sight sight{tick.rays, robot, nullptr, tick.all_rays, candidates_, lines_left_};
+    OcclusionTest sight{tick.rays, robot, nullptr, tick.all_rays, candidates_, lines_left_};
     // One reference: a function that holds more would allocate.
     const camera::LineOfSight clear = [&sight](const math::Vector3& eye,
                                                const math::Vector3& target) {
@@ -129,7 +131,7 @@ class Cameras final : public Kind {
   }
 
   bool detects_ = false;
-  std::size_t lines_left_ = 0;  // as Sight has it
+  std::size_t lines_left_ = 0;  // as OcclusionTest has it
   std::vector<std::size_t> found_;
   physics::Candidates candidates_;  // of one camera
 };

@@ -1,11 +1,11 @@
 #pragma once
-// What stands between a camera and what it looks for.
+// Line of sight between a camera and the things that it detects.
 
 #include <cstddef>
 #include <span>
 #include <vector>
 
-#include "physics/ray.h"
+#include "physics/collision/ray.h"
 #include "world/state.h"
 
 namespace ziggurat::devices {
@@ -13,14 +13,14 @@ namespace ziggurat::devices {
 /// Whether nothing stands between a camera and a point, both in W [m]: anything but the floor is in
 /// the way, the camera's robot and the carrier of what is at the point included; not what is met
 /// within 0.1 mm of the point, nor a body that the camera is inside of.
-struct Sight {
+struct OcclusionTest {
   const physics::Rays& rays;
-  std::size_t robot;               ///< into Layout::robots: the one with the camera
-  std::vector<world::Ray>* shown;  ///< gets the tested rays; may be null
-  std::vector<world::Ray>* all;    ///< the same
+  std::size_t robot;                      ///< into Layout::robots: the one with the camera
+  std::vector<world::Ray>* shown;         ///< gets the tested rays; may be null
+  std::vector<world::Ray>* all;           ///< the same
   const physics::Candidates& candidates;  ///< what can be in the way
 
-  std::size_t& left;                      ///< lines of sight that may still be tested at this tick
+  std::size_t& left;  ///< lines of sight that may still be tested at this tick
 
   /// @throws std::runtime_error if none is left
   bool clear(const math::Vector3& eye, const math::Vector3& target) const;

@@ -17,12 +17,14 @@ struct Carrier {
   std::size_t index;                        ///< into Layout::entities, where it stands already
   const scene::ControllerDevices& enabled;  ///< by its controller; nothing without one
   double substep;                           ///< [s]
-  mutable std::unordered_map<std::string_view, int> links = {};  ///< of the entity, by id, once one was looked for
+  mutable std::unordered_map<std::string_view, int> links =
+      {};  ///< of the entity, by id, once one was looked for
 
   /// @param id  of a link, or "origin"; the reader has checked that it exists
   scene::Anchor anchor(const std::string& id) const {
     if (links.empty()) {
-      for (std::size_t i = 0; i < entity.links.size(); ++i) links.emplace(entity.links[i].id, static_cast<int>(i));
+      for (std::size_t i = 0; i < entity.links.size(); ++i)
+        links.emplace(entity.links[i].id, static_cast<int>(i));
     }
     const auto found = links.find(id);
     return found == links.end() ? scene::Anchor{} : scene::Anchor{found->second};

@@ -1,8 +1,9 @@
 #include "devices/devices.h"
-#include "math/archive.h"
 
 #include <algorithm>
 #include <array>
+
+#include "math/archive.h"
 
 namespace ziggurat::devices {
 

@@ -13,8 +13,8 @@
 namespace ziggurat::devices {
 namespace {
 
-/// How the frame of a sensor moves.
-struct Motion {
+/// Velocity and orientation of a sensor's frame.
+struct SensorMotion {
   math::Vector3 velocity = math::Vector3::Zero();               // of its origin, in W [m/s]
   math::Vector3 angular_velocity = math::Vector3::Zero();       // in W [rad/s]
   math::Quaternion orientation = math::Quaternion::Identity();  // sensor to W
@@ -60,7 +60,7 @@ class Imus final : public Kind {
   /// New ones read what they feel at rest, without noise.
   void start(Tick& tick) override {
     for (std::size_t i = tick.observations.imus.size(); i < sensors_.size(); ++i) {
-      const Motion motion = motion_of(tick.state, sensors_[i], tick.layout.imus[i].mount);
+      const SensorMotion motion = motion_of(tick.state, sensors_[i], tick.layout.imus[i].mount);
       tick.observations.imus.push_back(
           {array_of(motion.orientation.conjugate() * -gravity_), {0, 0, 0}});
     }
@@ -88,7 +88,7 @@ class Imus final : public Kind {
       if (tick.state.is_absent(mount.entity)) continue;
       if (read != mount.entity) tick.physics.read(mount.entity, now_);
       read = mount.entity;
-      const Motion before = sensor.motion;
+      const SensorMotion before = sensor.motion;
       sensor.motion = motion_of(now_, sensor, mount);
       const math::Quaternion middle = before.orientation.slerp(0.5, sensor.motion.orientation);
       sensor.force +=
@@ -127,15 +127,15 @@ class Imus final : public Kind {
     scene::Imu settings;
     std::size_t link = 0;  // that it moves with, into State::links
     math::RandomStream random;
-    Motion motion = {};                                  // at the last sample
+    SensorMotion motion = {};                            // at the last sample
     math::Vector3 force = math::Vector3::Zero();         // sum of all samples [m/s^2]
     math::Vector3 turning = math::Vector3::Zero();       // likewise [rad/s]
     math::Vector3 force_bias = math::Vector3::Zero();    // [m/s^2]
     math::Vector3 turning_bias = math::Vector3::Zero();  // [rad/s]
   };
 
-  static Motion motion_of(const world::State& state, const Sensor& sensor,
-                          const world::Mount& mount) {
+  static SensorMotion motion_of(const world::State& state, const Sensor& sensor,
+                                const world::Mount& mount) {
     const world::LinkState& link = state.links[sensor.link];
     const math::Pose pose = world::pose_of(state, mount);
     const math::Vector3 arm = pose.position - link.pose.position;

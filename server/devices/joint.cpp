@@ -17,8 +17,7 @@ std::unordered_map<std::string_view, std::size_t> joints_of(const scene::Entity&
   return joints;
 }
 
-/// What a motor may give in a substep [N s] or [N m s].
-/// @param substep  [s]
+/// Greatest impulse of a motor in a substep [N s] or [N m s]. @param substep  [s]
 double impulse_of(const scene::JointActuator& actuator, double substep) {
   return actuator.max_force ? *actuator.max_force * substep : actuator.max_impulse;
 }
@@ -51,8 +50,7 @@ class Joints final : public Kind {
       if (joints.actuators.empty() && joints.sensors.empty()) continue;
       const auto by_id = joints_of(entity);
       for (const scene::JointActuator& actuator : joints.actuators) {
-        actuators_.push_back(
-            setting.physics.joint(robot.entity, by_id.at(actuator.joint)));
+        actuators_.push_back(setting.physics.joint(robot.entity, by_id.at(actuator.joint)));
         setting.physics.add_motor(actuators_.back(), actuator.mode,
                                   impulse_of(actuator, setting.substep));
       }

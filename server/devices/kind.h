@@ -43,7 +43,7 @@ class Kind {
   /// After physics, with rays and index at the new poses.
   virtual void sense(Tick& /*tick*/) {}
 
-  /// What the next tick reads beyond the world: charges, random streams.
+  /// Archives the state that the next tick reads beyond the world: charges, random streams.
   virtual void archive(math::Archive& /*archive*/) {}
 
   virtual bool casts_rays() const { return false; }   ///< then Tick::rays has the current poses

@@ -149,10 +149,10 @@ class Proximity final : public Kind {
     math::Vector3 start, way, end;  // the way is of unit length
   };
 
-  std::vector<Sensor> sensors_;         // parallel to Layout::proximity
-  std::vector<Robot> robots_;           // that have sensors
-  std::vector<Segment> segments_;       // of the robot under way
-  physics::Candidates candidates_;      // of these
+  std::vector<Sensor> sensors_;     // parallel to Layout::proximity
+  std::vector<Robot> robots_;       // that have sensors
+  std::vector<Segment> segments_;   // of the robot under way
+  physics::Candidates candidates_;  // of these
 };
 
 }  // namespace

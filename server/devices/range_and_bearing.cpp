@@ -92,9 +92,8 @@ class RangeAndBearing final : public Kind {
         const math::Vector3 way = own.position - other;
         const math::Vector3 end =
             hit ? math::Vector3(other + way.normalized() * hit->distance) : own.position;
-        tick.add(
-            {world::Ray::Kind::range_and_bearing, receiver.robot, other, end, hit.has_value()},
-            receiver.shows_rays);
+        tick.add({world::Ray::Kind::range_and_bearing, receiver.robot, other, end, hit.has_value()},
+                 receiver.shows_rays);
       }
       if (hit) return;
     } else if (tick.wants_rays(receiver.shows_rays)) {
@@ -107,8 +106,8 @@ class RangeAndBearing final : public Kind {
       for (double& coordinate : seen) coordinate += receiver.random.gaussian(0, receiver.noise);
     }
     const media::Bearing bearing = media::bearing_of(seen);
-    tick.observations.range_and_bearing.push_back(
-        {pair.receiver, bearing.range, bearing.horizontal, bearing.vertical, from.data, pair.sender});
+    tick.observations.range_and_bearing.push_back({pair.receiver, bearing.range, bearing.horizontal,
+                                                   bearing.vertical, from.data, pair.sender});
   }
 
   media::RangeAndBearingMedium medium_;

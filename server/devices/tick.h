@@ -1,5 +1,5 @@
 #pragma once
-// What devices are built from, and what they work on in a tick.
+// Context that devices are built from, and the data that they work on in a tick.
 
 #include <cstdint>
 #include <functional>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "media/devices_index.h"
-#include "physics/ray.h"
+#include "physics/collision/ray.h"
 #include "physics/world.h"
 #include "scene/scene.h"
 #include "world/commands.h"

@@ -1,4 +1,4 @@
-// What a robot shows and others perceive: LEDs, directional LEDs, tags, magnets, and the data that
+// Visible state of robots: LEDs, directional LEDs, tags, magnets, and the data that
 // range-and-bearing devices send. Commands of tick k are in State k + 1.
 
 #include "devices/kind.h"

@@ -1,5 +1,5 @@
 #pragma once
-// Where a port listens, and what clients may call it.
+// Address of a port, and the host names that clients may call it.
 
 #include <cstdint>
 #include <string>

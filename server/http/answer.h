@@ -1,5 +1,5 @@
 #pragma once
-// What is answered to a request.
+// Answer to a request.
 
 #include <string>
 

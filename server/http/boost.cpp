@@ -1,3 +1,3 @@
-// What is no template in Boost.Asio and Boost.Beast, compiled once for all that include them.
+// Non-template code of Boost.Asio and Boost.Beast, compiled once for all that include them.
 #include <boost/asio/impl/src.hpp>
 #include <boost/beast/src.hpp>

@@ -33,7 +33,7 @@ Answer refusal(unsigned status, const std::string& why) {
   return {status, Answer().type, {}, std::to_string(status) + ": " + why + ".\n"};
 }
 
-/// Of what is no request, or too long for one.
+/// Refusal of bytes that are no request, or are too long for one.
 Answer refusal(Error error) {
   return error == beast::http::error::header_limit || error == beast::http::error::buffer_overflow
              ? refusal(431, "the request is too long")
@@ -44,11 +44,12 @@ bool has_body(const Request& request) {
   return request.count(Field::content_length) > 0 || request.count(Field::transfer_encoding) > 0;
 }
 
-/// Whether another program, such as a proxy, could read it as another request: who is called, who asks and where
-/// it ends are told once, and as is known here.
+/// Whether another program, such as a proxy, could read it as another request: who is called, who
+/// asks and where it ends are told once, and as is known here.
 bool is_ambiguous(const Request& request) {
   const bool is_upgrade = beast::websocket::is_upgrade(request);
-  return request.count(Field::host) > 1 || request.count(Field::origin) > 1 || (is_upgrade && has_body(request)) ||
+  return request.count(Field::host) > 1 || request.count(Field::origin) > 1 ||
+         (is_upgrade && has_body(request)) ||
          (request.count(Field::transfer_encoding) > 0 && !request.chunked());
 }
 
@@ -97,7 +98,8 @@ void Exchange::read() {
   parse();
 }
 
-/// What has arrived; then more, until the request's header is complete. A body is never read.
+/// Parses the bytes that have arrived, and reads more until the request's header is complete. A
+/// body is never read.
 void Exchange::parse() {
   Error error;
   buffer_.consume(parser_->put(buffer_.cdata(), error));
@@ -118,8 +120,9 @@ void Exchange::parse() {
 }
 
 void Exchange::handle(Request request) {
-  const bool is_allowed = !is_ambiguous(request) && (service_.any_host ||
-                          allows_host(service_.host, view_of(request[Field::host])));
+  const bool is_allowed =
+      !is_ambiguous(request) &&
+      (service_.any_host || allows_host(service_.host, view_of(request[Field::host])));
   if (is_allowed && service_.upgrade && beast::websocket::is_upgrade(request)) {
     if (auto refused = service_.refuse_upgrade(request)) {
       return write(make_response(request, false, *std::move(refused)));
@@ -133,12 +136,12 @@ void Exchange::handle(Request request) {
 void Exchange::write(Response response) {
   auto held = std::make_shared<Response>(std::move(response));
   if (service_.keeps_open) stream_.expires_after(service_.time);
-  beast::http::async_write(
-      stream_, *held, [self = shared_from_this(), held](Error error, std::size_t) {
-        if (!error && held->keep_alive()) return self->start();
-        Error ignored;
-        self->stream_.socket().shutdown(Tcp::socket::shutdown_send, ignored);
-      });
+  beast::http::async_write(stream_, *held,
+                           [self = shared_from_this(), held](Error error, std::size_t) {
+                             if (!error && held->keep_alive()) return self->start();
+                             Error ignored;
+                             self->stream_.socket().shutdown(Tcp::socket::shutdown_send, ignored);
+                           });
 }
 
 std::string answer_to(std::string_view request, const Service& service) {

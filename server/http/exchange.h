@@ -1,6 +1,6 @@
 #pragma once
-// Requests over HTTP and their answers on one connection, with Boost.Beast; GET and HEAD without a body.
-// Only sources of ports include this: Beast takes the compiler long.
+// Requests over HTTP and their answers on one connection, with Boost.Beast; GET and HEAD without a
+// body. Only sources of ports include this: Beast takes the compiler long.
 
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core.hpp>
@@ -22,19 +22,21 @@ using Stream = boost::beast::tcp_stream;
 using Request = boost::beast::http::request<boost::beast::http::empty_body>;
 using Response = boost::beast::http::response<boost::beast::http::string_body>;
 
-inline std::string_view view_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
+inline std::string_view view_of(boost::beast::string_view text) {
+  return {text.data(), text.size()};
+}
 
-/// What a port serves, and how long it waits.
+/// Service of a port, and its timeouts.
 struct Service {
-  std::string host;       ///< what clients may call it, see allows_host()
-  bool any_host = false;  ///< any name
+  std::string host;                        ///< what clients may call it, see allows_host()
+  bool any_host = false;                   ///< any name
   std::chrono::milliseconds time{10'000};  ///< for a request, and for its answer
   bool keeps_open = true;  ///< false: one request per connection, and the time is for all of it
   /// @param etag  of `If-None-Match`; empty: none
   std::function<Answer(std::string_view target, std::string_view etag)> get;
   std::function<void(const Request&, Response&)> decorate = {};  ///< adds fields; may be empty
 
-  // Of WebSocket handshakes; both may be empty: then they are requests as others.
+  // Handlers of WebSocket handshakes; if both are empty, handshakes are requests as others.
   std::function<std::optional<Answer>(const Request&)> refuse_upgrade = {};
   std::function<void(Stream, const Request&)> upgrade = {};
 };
@@ -67,8 +69,8 @@ class Exchange : public std::enable_shared_from_this<Exchange> {
   std::optional<boost::beast::http::request_parser<boost::beast::http::empty_body>> parser_;
 };
 
-/// The bytes of the answer to the bytes of a request, as a connection gives it; one that is not complete
-/// is a bad one.
+/// The bytes of the answer to the bytes of a request, as a connection gives it; one that is not
+/// complete is a bad one.
 std::string answer_to(std::string_view request, const Service& service);
 
 }  // namespace ziggurat::http

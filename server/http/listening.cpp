@@ -16,7 +16,8 @@ namespace asio = boost::asio;
 using Tcp = asio::ip::tcp;
 using Error = boost::system::error_code;
 
-constexpr int less_important = 5;  // a third of the weight of the run's threads, where processors are scarce
+constexpr int less_important =
+    5;  // a third of the weight of the run's threads, where processors are scarce
 
 Tcp::acceptor listen(asio::io_context& io, std::string_view option, const Address& address) {
   Error error;
@@ -26,10 +27,10 @@ Tcp::acceptor listen(asio::io_context& io, std::string_view option, const Addres
   const auto found =
       Tcp::resolver(io).resolve(host, std::to_string(address.port), Tcp::resolver::passive, error);
   const auto fail = [&](const std::string& what) {
-    return std::runtime_error(
-        fmt::format("{}: {}:{} can't be opened: {}; the port must be free (0 takes any free one), and "
-                    "the host one of this machine",
-                    option, address.host, address.port, what));
+    return std::runtime_error(fmt::format(
+        "{}: {}:{} can't be opened: {}; the port must be free (0 takes any free one), and "
+        "the host one of this machine",
+        option, address.host, address.port, what));
   };
   if (error || found.empty()) throw fail(error.message());
   const Tcp::endpoint endpoint = found.begin()->endpoint();
@@ -44,7 +45,8 @@ Tcp::acceptor listen(asio::io_context& io, std::string_view option, const Addres
 
 }  // namespace
 
-Listening::Listening(asio::io_context& io, std::string_view option, const Address& address, Take take)
+Listening::Listening(asio::io_context& io, std::string_view option, const Address& address,
+                     Take take)
     : acceptor_(listen(io, option, address)), pause_(io), take_(std::move(take)) {
   accept();
 }

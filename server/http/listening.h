@@ -14,8 +14,8 @@
 
 namespace ziggurat::http {
 
-/// Takes connections as they come up to a number in a period; those beyond it wait in the system until the next one.
-/// Who connects without end takes little of the processors.
+/// Takes connections as they come up to a number in a period; those beyond it wait in the system
+/// until the next one. Who connects without end takes little of the processors.
 class Listening {
  public:
   static constexpr int most_in_period = 20;
@@ -25,7 +25,8 @@ class Listening {
 
   /// @param option  of the program, for messages
   /// @throws std::runtime_error if it can't listen there
-  Listening(boost::asio::io_context& io, std::string_view option, const Address& address, Take take);
+  Listening(boost::asio::io_context& io, std::string_view option, const Address& address,
+            Take take);
 
   Listening(const Listening&) = delete;
   Listening& operator=(const Listening&) = delete;
@@ -46,8 +47,8 @@ class Listening {
   int taken_ = 0;  // in this period
 };
 
-/// A thread that serves, at a lower priority than the others: clients that keep it busy leave the processors to
-/// the run. Signals are for the main thread: it gets none.
+/// A thread that serves, at a lower priority than the others: clients that keep it busy leave the
+/// processors to the run. Signals are for the main thread: it gets none.
 std::thread serve(boost::asio::io_context& io);
 
 }  // namespace ziggurat::http

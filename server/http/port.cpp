@@ -31,8 +31,7 @@ struct Port::State {
         const Limits& limits)
       : service(service_of(address.host, any_host, read, limits)),
         most_clients(limits.clients),
-        listening(io, option, address,
-                  [this](Tcp::socket socket) { take(std::move(socket)); }),
+        listening(io, option, address, [this](Tcp::socket socket) { take(std::move(socket)); }),
         thread(serve(io)) {}
 
   void take(Tcp::socket socket) {

@@ -1,6 +1,7 @@
 #pragma once
-// Serves a few short texts over HTTP, on a thread of its own: one request per connection. Clients can be
-// slow, many and rude: each has a time and a number of bytes, and of too many the oldest ends.
+// Serves a few short texts over HTTP, on a thread of its own: one request per connection. Clients
+// can be slow, many and rude: each has a time and a number of bytes, and of too many the oldest
+// ends.
 
 #include <chrono>
 #include <cstddef>
@@ -18,7 +19,7 @@ namespace ziggurat::http {
 
 class Port {
  public:
-  /// What is at a path. It is called on the port's thread.
+  /// Answer for a path. It is called on the port's thread.
   using Read = std::function<Answer(std::string_view path)>;
 
   struct Limits {

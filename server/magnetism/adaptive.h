@@ -11,7 +11,7 @@
 
 namespace ziggurat::magnetism {
 
-/// How a pair is represented, in the order of distance and cost.
+/// Representation of a pair, in the order of distance and cost.
 enum class Level {
   point,    ///< one dipole each
   coarse,   ///< coarse rule against coarse rule
@@ -47,8 +47,8 @@ class ShapedMagnets {
 
   Level level(std::size_t first, std::size_t second, double distance) const;
 
-  /// What the two do to each other less what their dipoles do; positions and moments are the
-  /// kernel's rows.
+  /// Wrench between the two, less that of their dipoles; positions and moments are the kernel's
+  /// rows.
   /// @param rotations         of the two bodies
   /// @param minimum_distance  of the dipoles [m]
   Interaction beyond_dipoles(const Kernel& kernel, const Dipoles& dipoles, std::size_t first,

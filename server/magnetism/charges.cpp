@@ -12,8 +12,8 @@ namespace {
 
 constexpr int most_panel_nodes = 6;
 constexpr int deepest = 40;  // halvings of a patch, both directions together
-/// Of a cylinder's field: gaps below this share of its longest side are resolved like this one. It
-/// bounds the cost of magnets that touch or overlap.
+/// Smallest resolved gap of a cylinder's field, as a share of its longest side; smaller gaps count
+/// as this one. It bounds the cost of magnets that touch or overlap.
 constexpr double closest_share = 0.03;
 /// The same for a box, as distances from its edges, where they are along a side of the patch. Where
 /// they are oblique, patches must be small in both directions, and the second counts.
@@ -104,12 +104,12 @@ struct Integration {
 
   Vector3 place(const Charge& charge) const { return offset + rotation * charge.position; }
 
-  /// A charge inside the source, where magnets overlap, counts as one on its nearest face: the field
-  /// jumps there, and the force is to have no jump where magnets touch.
+  /// A charge inside the source, where magnets overlap, counts as one on its nearest face: the
+  /// field jumps there, and the force is to have no jump where magnets touch.
   void add(const Charge& charge, double weight) {
     const Vector3 lever = rotation * charge.position;
-    const Vector3 field = shape_field(*source, source_moment, outside(*source, offset + lever),
-                                      1e-2 * tolerance);
+    const Vector3 field =
+        shape_field(*source, source_moment, outside(*source, offset + lever), 1e-2 * tolerance);
     const Vector3 push = (charge.density * weight) * field;
     force += push;
     torque += lever.cross(push);
@@ -152,11 +152,10 @@ void approach(const Integration& integration, const Vector3& point, const Vector
     const double oblique = across_u * across_v / (length_u * length_v);
     const double closest =
         integration.width * std::max(closest_aligned_share, closest_oblique_share * oblique);
-    closeness.widen(across_u / std::max(distance, closest),
-                    across_v / std::max(distance, closest));
-    const double end = std::max(std::min(from_start.norm(),
-                                         (from_start - edge.length * edge.tangent).norm()),
-                                closest_oblique_share * integration.width);
+    closeness.widen(across_u / std::max(distance, closest), across_v / std::max(distance, closest));
+    const double end =
+        std::max(std::min(from_start.norm(), (from_start - edge.length * edge.tangent).norm()),
+                 closest_oblique_share * integration.width);
     closeness.widen(length_u / end, length_v / end);
   }
 }
@@ -173,8 +172,7 @@ int nodes_for(double closeness, double goal) {
 
 /// @param surface  Charge(u, v)
 template <class Surface>
-Closeness closeness_of(const Integration& integration, const Surface& surface,
-                       const Patch& patch) {
+Closeness closeness_of(const Integration& integration, const Surface& surface, const Patch& patch) {
   Vector3 points[3][3];
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
@@ -294,7 +292,8 @@ double flatness(const Vector3& size) { return size.minCoeff() / size.maxCoeff();
 double cancellation(const Shape& source, const Shape& carrier) {
   const auto* box = std::get_if<Box>(&source);
   if (box == nullptr) return 1;
-  if (const auto* other = std::get_if<Box>(&carrier)) return flatness(box->size) * flatness(other->size);
+  if (const auto* other = std::get_if<Box>(&carrier))
+    return flatness(box->size) * flatness(other->size);
   if (const auto* other = std::get_if<Cylinder>(&carrier)) {
     const double width = 2 * other->radius;
     return flatness(box->size) * flatness({width, width, other->height});
@@ -311,7 +310,8 @@ bool better_source(const Shape& a, const Shape& b) {
 /// @returns force on the carrier and torque about its centre, in the world
 Wrench push(const PlacedShape& source, const PlacedShape& carrier, double tolerance) {
   const Eigen::Matrix3d to_source = source.rotation.transpose();
-  Integration integration{source.shape, cleaned(to_source * source.moment),
+  Integration integration{source.shape,
+                          cleaned(to_source * source.moment),
                           to_source * carrier.rotation,
                           to_source * (carrier.position - source.position),
                           tolerance * cancellation(*source.shape, *carrier.shape),

@@ -1,12 +1,16 @@
 #pragma once
-// Point dipoles: the closed formulas for one pair, in SI. The field of a dipole m2 at a
-// separation r = x1 - x2, n = r / d, with K = mu0 / 4 pi:
+// Point dipoles: the closed formulas for one pair, in SI. Field B1 of a dipole m2 at m1, with the
+// torque and force on m1; the separation is r = x1 - x2, n = r / d, and K = mu0 / 4 pi:
+//
 //   B1 = K / d^3 [3 (m2.n) n - m2]
+//
 //   T1 = m1 x B1
+//
 //   F1 = 3 K / d^4 [(m2.n) m1 + (m1.n) m2 + (m1.m2 - 5 (m1.n)(m2.n)) n]
+//
 // Below minimum_distance the separation counts as minimum_distance long while n = r /
-// minimum_distance, so that force and torque stay finite and continuous, vanish as they must at r =
-// 0, and T1 + T2 + r x F1 = 0 still holds exactly.
+// minimum_distance. So force and torque stay finite and continuous, and vanish as they must at r =
+// 0. T1 + T2 + r x F1 = 0 still holds exactly.
 
 #include "math/pose.h"
 
@@ -26,7 +30,7 @@ struct Wrench {
   Vector3 torque = Vector3::Zero();  ///< [N m]
 };
 
-/// What two magnets do to each other. The force on the second is the opposite of the first's;
+/// Wrench between two magnets. The force on the second is the opposite of the first's. So
 /// torque_on_first + torque_on_second + r x force_on_first = 0.
 struct Interaction {
   Vector3 force_on_first = Vector3::Zero();    ///< [N]

@@ -177,7 +177,8 @@ Vector3 outside(const Shape& shape, const Vector3& point) {
     if (axial <= radial) {
       return {point.x(), point.y(), point.z() + std::copysign(axial, point.z())};
     }
-    // From the axis half a step from one of the nodes of cylinder_field(), where its error is least.
+    // From the axis half a step from one of the nodes of cylinder_field(), where its error is
+    // least.
     if (radius == 0) return {0.9999811752826011 * radial, 0.006135884649154475 * radial, point.z()};
     const double outwards = (radius + radial) / radius;
     return {point.x() * outwards, point.y() * outwards, point.z()};

@@ -22,7 +22,7 @@ Vector3 box_field(const Vector3& size, const Vector3& magnetisation, const Vecto
 Vector3 cylinder_field(const Cylinder& cylinder, const Vector3& magnetisation, const Vector3& point,
                        double tolerance);
 
-/// Of a magnet of the given total moment [A m^2]; the shape must be a box or a cylinder.
+/// Exact field of a magnet with this total moment [A m^2]; its shape must be a box or a cylinder.
 Vector3 shape_field(const Shape& shape, const Vector3& moment, const Vector3& point,
                     double tolerance);
 

@@ -114,7 +114,7 @@ class Field {
   Vector3 moment(std::size_t magnet) const;    ///< [A m^2]
   Vector3 flux(std::size_t magnet) const;      ///< flux density of the others' dipoles at it [T]
 
-  /// How often the neighbour list was built so far.
+  /// Number of times that the neighbour list was built so far.
   std::size_t rebuilds() const { return neighbours_.rebuilds(); }
 
  private:
@@ -151,7 +151,7 @@ class Field {
   std::optional<ShapedMagnets> shapes_;
   std::optional<Neighbours> near_;  // where neighbours_ keeps no list
 
-  // Where it keeps none, for list_near().
+  // Neighbour list of list_near() where near_ keeps none.
   double close_reach_ = 0;
   std::optional<Neighbours> close_;
   std::vector<Row> torques_;

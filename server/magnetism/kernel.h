@@ -1,14 +1,14 @@
 #pragma once
 // The inner loops over pairs of dipoles, four pairs at a time. Sources are kept as a structure of
-// arrays of 32-byte rows (positions, moments, forces, fields), one row per dipole, and are
-// transposed in registers so that a register holds one coordinate of four dipoles.
+// arrays of 32-byte rows (positions, moments, forces, fields), one row per dipole. They are
+// transposed in registers, so that a register holds one coordinate of four dipoles.
 //
 // Same bits everywhere: every lane does the arithmetic of the scalar formula in the same order
-// (add, multiply, divide, square root: all correctly rounded; no fused operation), four lanes are
-// one unit whatever the register width, and every dipole receives its partners' contributions one
-// by one in ascending order of the partner's index. A pair out of range contributes a zero, which
-// changes no bit of a sum that started at +0. So the instruction set, the history of list rebuilds
-// and the choice between list and all pairs cannot be seen in the results.
+// (add, multiply, divide, square root: all correctly rounded; no fused operation). Four lanes are
+// one unit whatever the register width. Every dipole receives its partners' contributions one by
+// one in ascending order of the partner's index. A pair out of range contributes a zero, which
+// changes no bit of a sum that started at +0. So results do not depend on the instruction set, the
+// history of list rebuilds, and the choice between list and all pairs.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,6 @@
-// The loops for processors with 256-bit registers. AVX2 without fused multiply-add, which would
-// round differently. The headers come first: only our own functions may be compiled for AVX2, or
-// the linker could hand an inline function of a header to the rest of the program.
+// The loops for processors with 256-bit registers. They use AVX2 without fused multiply-add, which
+// would round differently. The headers come first: only our own functions may be compiled for AVX2.
+// Otherwise the linker could hand an inline function of a header to the rest of the program.
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif

@@ -86,7 +86,7 @@ ZIGGURAT_INLINE Lanes dot(const Columns& a, const Columns& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/// What the first four dipoles feel and the field that the second four feel.
+/// Force on the first four dipoles, and field at the second four.
 struct FourPairs {
   Columns force;         ///< on the first
   Columns first_field;   ///< of the second at the first

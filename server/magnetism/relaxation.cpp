@@ -108,7 +108,7 @@ void Partners::list(const Pairs& pairs, const std::vector<std::uint32_t>& free,
 void relax(const Kernel& kernel, const Dipoles& dipoles, Row* moments, const Row* external,
            const std::vector<std::uint32_t>& free, const Partners& partners, const Range& range,
            double dt, const RelaxationOptions& options) {
-  const double time = dt / options.sweeps;
+  const double time = dt / options.passes;
   const auto turn = [&](std::uint32_t i) {
     const Row others = kernel.field_at(dipoles, i, partners.begin(i), partners.count(i), range);
     Row& row = moments[i];
@@ -121,8 +121,8 @@ void relax(const Kernel& kernel, const Dipoles& dipoles, Row* moments, const Row
         magnitude * turned(moment / magnitude, field, magnitude / options.friction, time);
     row = {next.x(), next.y(), next.z(), row.w};
   };
-  for (unsigned sweep = 0; sweep < options.sweeps; ++sweep) {
-    if (sweep % 2 == 0) {
+  for (unsigned pass = 0; pass < options.passes; ++pass) {
+    if (pass % 2 == 0) {
       for (auto i = free.begin(); i != free.end(); ++i) turn(*i);
     } else {
       for (auto i = free.rbegin(); i != free.rend(); ++i) turn(*i);

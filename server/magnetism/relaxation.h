@@ -15,7 +15,7 @@ using math::Quaternion;
 
 struct RelaxationOptions {
   double friction = 2e-7;  ///< c of  c dtheta/dt = -m B sin(theta) [N m s]
-  unsigned sweeps = 2;     ///< per substep, alternately forwards and backwards
+  unsigned passes = 2;     ///< per substep, alternately forwards and backwards
 };
 
 /// The exact solution of c dtheta/dt = -m B sin(theta) after a time, for a direction in a field at

@@ -42,9 +42,12 @@ bool is_cube(const Box& box) {
   return box.size.maxCoeff() - box.size.minCoeff() < 1e-6 * box.size.maxCoeff();
 }
 
-/// A ring of six, two on the axis and the centre: two weights for the moments of orders 2 and 4,
+/// Rule with a ring of six, two points on the axis and the centre. Its two weights give the moments
+/// of orders 2 and 4 of the cylinder:
+///
 ///   x - y / 2 = M_2,   x a^2 + 3/8 y b^2 = M_4,   x = 2 w_axis a^2,  y = 6 w_ring b^2,
-/// with M_2 = <z^2> - <r^2>/2 and M_4 = <z^4> - 3 <z^2><r^2> + 3/8 <r^4> of the cylinder.
+///
+///   M_2 = <z^2> - <r^2>/2,   M_4 = <z^4> - 3 <z^2><r^2> + 3/8 <r^4>.
 Rule fine_cylinder(const Cylinder& cylinder) {
   const double r2 = cylinder.radius * cylinder.radius;
   const double t2 = cylinder.height * cylinder.height;
@@ -136,17 +139,19 @@ Moments difference(const MomentTable& a, const MomentTable& b) {
   return result;
 }
 
-/// How much larger the worst error over orientations, and of the torque, is than that of the
-/// coaxial force; it grows with the distance in sides, since the torque is measured by the side.
-/// Measured over random poses (docs/magnetism.md).
+/// Ratio of the worst error over orientations, and of the torque, to that of the coaxial force. It
+/// grows with the distance in sides, since the torque is measured by the side. Measured over random
+/// poses (docs/magnetism.md).
 double orientation_factor(double distance, double side) {
   return std::clamp(0.45 * distance / side, 2.3, 3.5);
 }
 /// The same where only products of errors are left: cubes, and shapes with second moments.
 constexpr double mixed_factors[] = {1.5, 2.7};
 
-/// Relative error of the coaxial force from the product of a moment of order l that is wrong and
-/// one of order m, at distance 1: C(l+m, m) (l+m+1)(l+m+2)(l+m+3) / 6.
+/// Relative error of the coaxial force at distance 1, from the product of two moments. The moment
+/// of order l is wrong; the other one has order m:
+///
+///    C(l+m, m) (l+m+1)(l+m+2)(l+m+3) / 6.
 double amplification(int l, int m) {
   const double n = l + m;
   double binomial = 1;
@@ -253,7 +258,7 @@ Reach reach(const Shape& shape, double tolerance) {
       return 2 * orientation_factor(d, longest_side(shape)) * error(wrong, body, d);
     };
   };
-  // What the mixed form misses: products of what both points get wrong.
+  // Error of the mixed form: products of the parts that both points get wrong.
   const auto mixed = [&](double d) {
     double both_wrong = 0;
     for (int l = 2; l <= 8; l += 2) {

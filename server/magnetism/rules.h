@@ -30,9 +30,9 @@ Rule fine_rule(const Shape& shape);
 /// vanish.
 using Moments = std::array<double, 5>;
 
-/// Of the body.
+/// Moments of the body.
 Moments moments(const Shape& shape);
-/// Of what the rule gets wrong.
+/// Moments of the rule's error.
 Moments residual(const Rule& rule, const Shape& shape);
 
 /// Centre distances of two equal magnets from which on the relative error of force and torque

@@ -55,9 +55,7 @@ std::string Archive::path() const {
 
 void Archive::note_place() { places_->push_back({out_ ? out_->size() : 0, path()}); }
 
-void Archive::fail(const char* what) const {
-  throw ArchiveError("'" + path() + "' " + what);
-}
+void Archive::fail(const char* what) const { throw ArchiveError("'" + path() + "' " + what); }
 
 std::string field_at(std::span<const Archive::Place> places, std::size_t offset) {
   const auto after = std::ranges::upper_bound(places, offset, {}, &Archive::Place::offset);

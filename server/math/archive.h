@@ -1,5 +1,5 @@
 #pragma once
-// State as bytes. A struct with a state lists its fields once, in a function archive(Archive&) that
+// State as bytes. A struct with a state lists its fields once, in a function archive(Archive&). It
 // writes them, reads them back, and names them, so that two states can be compared field by field.
 // Bytes that are read are checked: their number, sizes, indices, and that numbers are finite.
 
@@ -30,7 +30,7 @@ struct ArchiveError : std::runtime_error {
 
 class Archive {
  public:
-  /// Where a field begins in the bytes.
+  /// Offset of a field in the bytes.
   struct Place {
     std::size_t offset = 0;
     std::string path;  ///< as in `physics/core/system/trees/3/q`
@@ -62,7 +62,8 @@ class Archive {
       resize(values);
       any(values);
     } else {
-      list(name, values, [this](T& value) { any(value); }, most);
+      list(
+          name, values, [this](T& value) { any(value); }, most);
     }
   }
   /// The same with elements that are archived by a function.
@@ -171,12 +172,13 @@ class Archive {
     any(*value);
   }
   template <class List>
-    requires requires(List& list) { std::span(list); }
+  requires requires(List& list) { std::span(list); }
   void any(List& values) {
     using T = typename decltype(std::span(values))::element_type;
     if constexpr (std::is_same_v<T, double>) {
       numbers(values.data(), values.size());
-    } else if constexpr (std::is_same_v<T, std::byte> || (std::integral<T> && !std::is_same_v<T, bool>)) {
+    } else if constexpr (std::is_same_v<T, std::byte> ||
+                         (std::integral<T> && !std::is_same_v<T, bool>)) {
       raw(values.data(), values.size() * sizeof(T));
     } else {
       std::size_t i = 0;
@@ -193,26 +195,21 @@ class Archive {
   }
   /// A struct: its own function, or one beside it.
   template <class T>
-    requires requires(T& value, Archive& archive) { value.archive(archive); }
-  void any(T& value) {
-    value.archive(*this);
-  }
+  requires requires(T& value, Archive& archive) { value.archive(archive); }
+  void any(T& value) { value.archive(*this); }
   template <class T>
-    requires requires(T& value, Archive& archive) { archive_fields(archive, value); }
-  void any(T& value) {
-    archive_fields(*this, value);
-  }
+  requires requires(T& value, Archive& archive) { archive_fields(archive, value); }
+  void any(T& value) { archive_fields(*this, value); }
 
   std::span<const std::byte> in_;
   std::vector<std::byte>* out_ = nullptr;  // null: it reads
   std::vector<Place>* places_ = nullptr;
-  std::vector<std::string_view> names_;     // of the field under way, behind those that it is in
+  std::vector<std::string_view> names_;  // of the field under way, behind those that it is in
 };
 
 /// A value of an enumeration. @param last  the largest that is allowed
 template <class Enumeration>
-void archive_choice(Archive& archive, std::string_view name, Enumeration& value,
-                    Enumeration last) {
+void archive_choice(Archive& archive, std::string_view name, Enumeration& value, Enumeration last) {
   using Number = std::underlying_type_t<Enumeration>;
   auto number = static_cast<Number>(value);
   archive(name, number);

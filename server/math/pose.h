@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-
 #include <cmath>
 
 namespace ziggurat::math {
@@ -19,10 +18,12 @@ struct Pose {
 };
 
 /// Whether a quaternion has length 1, up to what rounding and other programs leave of it.
-inline bool is_rotation(const Quaternion& quaternion) { return std::abs(quaternion.squaredNorm() - 1) < 1e-6; }
+inline bool is_rotation(const Quaternion& quaternion) {
+  return std::abs(quaternion.squaredNorm() - 1) < 1e-6;
+}
 
-/// Of the two quaternions that stand for a rotation the one with w >= 0, which turns by 0 to pi; of half turns the one
-/// whose last component that is not 0 is positive.
+/// Canonical one of the two quaternions of a rotation. It has w >= 0 and turns by 0 to pi. For a
+/// half turn its last component that is not 0 is positive.
 inline Quaternion canonical(const Quaternion& q) {
   const double last = q.z() != 0 ? q.z() : q.y() != 0 ? q.y() : q.x();
   const bool is_other = q.w() < 0 || (q.w() == 0 && last < 0);

@@ -24,8 +24,8 @@ double RandomStream::gaussian(double mean, double standard_deviation) {
   return boost::random::normal_distribution<double>(mean, standard_deviation)(engine_);
 }
 
-// The words of the standard's engine and the place of the next, as libstdc++ keeps them. The standard
-// offers them as text only, which takes a hundred times as long.
+// The words of the standard's engine and the place of the next, as libstdc++ keeps them. The
+// standard offers them as text only, which takes a hundred times as long.
 void RandomStream::archive(Archive& archive) {
   constexpr std::size_t words = std::mt19937_64::state_size;
   using Words = std::array<std::uint64_t, words + 1>;

@@ -24,7 +24,7 @@ class RandomStream {
   /// Normal with the given mean and standard deviation (>= 0).
   double gaussian(double mean, double standard_deviation);
 
-  /// Where the stream has got to.
+  /// Archives the position in the stream.
   void archive(Archive& archive);
 
  private:

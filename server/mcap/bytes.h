@@ -1,6 +1,6 @@
 #pragma once
-// Little-endian numbers and texts with their lengths, to bytes and back. Reading checks every length
-// against what is left.
+// Little-endian numbers and texts with their lengths, to bytes and back. Reading checks every
+// length against what is left.
 
 #include <cstddef>
 #include <cstdint>

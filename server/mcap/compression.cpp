@@ -26,7 +26,8 @@ std::string decompress_lz4(std::string_view bytes, std::string& to) {
   std::size_t written = 0, hint = 1;
   while (!bytes.empty() && hint != 0) {
     std::size_t taken = bytes.size(), given = to.size() - written;
-    hint = LZ4F_decompress(context.get(), to.data() + written, &given, bytes.data(), &taken, nullptr);
+    hint =
+        LZ4F_decompress(context.get(), to.data() + written, &given, bytes.data(), &taken, nullptr);
     if (LZ4F_isError(hint)) {
       return fmt::format("can't be decompressed ({})", LZ4F_getErrorName(hint));
     }

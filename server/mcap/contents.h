@@ -1,5 +1,5 @@
 #pragma once
-// What is in an MCAP file, without messages and the data of attachments.
+// Contents of an MCAP file, without messages and the data of attachments.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +17,8 @@ struct Limits {
   std::size_t chunk = std::size_t{256} << 20;       ///< compressed, and decompressed
   std::size_t attachment = std::size_t{512} << 20;  ///< one
   std::size_t record = std::size_t{16} << 20;       ///< any other one
-  std::size_t index = std::size_t{64} << 20;  ///< the summary; all schemas and channels; all indexes
+  std::size_t index = std::size_t{64}
+                      << 20;  ///< the summary; all schemas and channels; all indexes
 };
 
 /// A damaged place of a file.
@@ -40,7 +41,7 @@ struct Contents {
   const Channel* channel_of(std::string_view topic) const;
   /// The attachment with this name; of several the last one; null: there is none.
   const AttachmentIndex* attachment_named(std::string_view name) const;
-  /// Of a channel; 0 if the statistics leave it out.
+  /// Number of messages of a channel; 0 if the statistics leave it out.
   std::uint64_t messages_of(std::uint16_t channel) const;
 };
 

@@ -44,8 +44,8 @@ std::optional<MessageIndex> to_message_index(std::string_view content);
 std::optional<ChunkIndex> to_chunk_index(std::string_view content);
 
 struct Attachment {
-  AttachmentIndex index;  ///< without offset and length
-  std::string_view data;  ///< refers to the content
+  AttachmentIndex index;   ///< without offset and length
+  std::string_view data;   ///< refers to the content
   bool is_intact = false;  ///< its CRC is right, or was not computed
 };
 std::optional<Attachment> to_attachment(std::string_view content);

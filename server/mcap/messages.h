@@ -13,8 +13,8 @@
 namespace ziggurat::mcap {
 
 struct Selection {
-  std::vector<std::uint16_t> channels = {};  ///< empty: all
-  std::uint64_t from = 0;                    ///< log time [ns]
+  std::vector<std::uint16_t> channels = {};                      ///< empty: all
+  std::uint64_t from = 0;                                        ///< log time [ns]
   std::uint64_t to = std::numeric_limits<std::uint64_t>::max();  ///< included [ns]
 };
 

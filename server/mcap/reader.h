@@ -1,7 +1,7 @@
 #pragma once
 // Reads an MCAP file, of anyone: every length is checked against what is left, memory is bounded by
-// Limits. With a summary only that is read at first; a file without a good one, as after kill -9, is
-// scanned from its start.
+// Limits. With a summary only that is read at first; a file without a good one, as after kill -9,
+// is scanned from its start.
 
 #include <cstdint>
 #include <string>
@@ -22,7 +22,7 @@ class Reader {
   const Contents& contents() const { return contents_; }
   /// The file has an end, and its summary is good. Chunks may be damaged nevertheless: check().
   bool has_summary() const { return has_summary_; }
-  /// What is wrong: with the summary, and if that was not good, with anything.
+  /// Damage of the summary, and if that is not good, any damage.
   const std::vector<Fault>& faults() const { return faults_; }
 
   /// The records of a chunk, decompressed; its CRC was right. @throws Damaged

@@ -73,7 +73,7 @@ struct Message {
   std::string_view data;
 };
 
-/// Where a chunk is, and what is in it.
+/// Offset and content of a chunk.
 struct ChunkIndex {
   std::uint64_t start_time = 0, end_time = 0;  ///< of its messages, both included [ns]
   std::uint64_t offset = 0, length = 0;        ///< of the record with its head
@@ -84,7 +84,7 @@ struct ChunkIndex {
 };
 
 struct AttachmentIndex {
-  std::uint64_t offset = 0, length = 0;  ///< of the record with its head
+  std::uint64_t offset = 0, length = 0;         ///< of the record with its head
   std::uint64_t log_time = 0, create_time = 0;  ///< [ns]
   std::uint64_t data_size = 0;                  ///< [bytes]
   std::string name, media_type;
@@ -99,7 +99,7 @@ struct Statistics {
   std::uint64_t messages = 0;
   std::uint16_t schemas = 0;
   std::uint32_t channels = 0, attachments = 0, metadata = 0, chunks = 0;
-  std::uint64_t start_time = 0, end_time = 0;  ///< of all messages [ns]
+  std::uint64_t start_time = 0, end_time = 0;                             ///< of all messages [ns]
   std::vector<std::pair<std::uint16_t, std::uint64_t>> channel_messages;  ///< number by channel
   bool operator==(const Statistics&) const = default;
 };

@@ -14,7 +14,7 @@ struct Repaired {
   std::vector<Fault> lost;                                  ///< chunks and attachments
 };
 
-/// What is in damaged chunks and attachments is left out.
+/// Damaged chunks and attachments are left out.
 Repaired repair(const Reader& reader, Sink sink, Compression compression = Compression::zstd);
 
 }  // namespace ziggurat::mcap

@@ -44,8 +44,8 @@ class Scanner {
   void add_metadata(std::string_view content);
   void end_data(std::string_view content);
   template <class Definition>
-  void define(std::optional<Definition> made, std::size_t size, std::map<std::uint16_t, Definition>& all,
-              const char* what);
+  void define(std::optional<Definition> made, std::size_t size,
+              std::map<std::uint16_t, Definition>& all, const char* what);
   bool has_room(std::size_t size);
   void fault(std::string text) {
     if (scan_.faults.size() < most_faults) scan_.faults.push_back({offset_, std::move(text)});
@@ -57,12 +57,12 @@ class Scanner {
   std::uint64_t offset_ = 0, length_ = 0;  // of the present record, with its head
   std::uint32_t crc_ = 0;                  // of all before it
   std::string record_;
-  std::size_t index_size_ = 0;  // of all definitions and indexes, about [bytes]
+  std::size_t index_size_ = 0;                     // of all definitions and indexes, about [bytes]
   std::map<std::uint16_t, std::uint64_t> counts_;  // of messages by channel
-  std::vector<Entry> entries_;       // messages of the last chunk, sorted
-  std::set<std::uint16_t> listed_;   // its channels that have a message index
-  bool has_index_ = false;       // message indexes follow the last chunk
-  bool is_last_intact_ = false;  // the last chunk
+  std::vector<Entry> entries_;                     // messages of the last chunk, sorted
+  std::set<std::uint16_t> listed_;                 // its channels that have a message index
+  bool has_index_ = false;                         // message indexes follow the last chunk
+  bool is_last_intact_ = false;                    // the last chunk
   bool is_full_ = false;
 };
 
@@ -115,7 +115,8 @@ bool Scanner::read_content(const RecordHead& head, std::size_t most) {
   for (std::uint64_t at = 0; at < head.length; at += block) {
     record_.clear();
     source_.read(offset_ + record_head + at,
-                 static_cast<std::size_t>(std::min<std::uint64_t>(block, head.length - at)), record_);
+                 static_cast<std::size_t>(std::min<std::uint64_t>(block, head.length - at)),
+                 record_);
     crc_ = crc32(record_, crc_);
   }
   return false;
@@ -128,7 +129,8 @@ void Scanner::take(const RecordHead& head) {
                                            : std::max(limits_.record, limits_.index);
   const bool is_known = head.op >= 1 && head.op <= static_cast<std::uint8_t>(Op::data_end);
   if (!read_content(head, is_known ? most : 0)) {
-    if (is_known) fault(fmt::format("the record has {} bytes; at most {} are read", head.length, most));
+    if (is_known)
+      fault(fmt::format("the record has {} bytes; at most {} are read", head.length, most));
     return;
   }
   if (!is_known) return;  // without content
@@ -155,7 +157,8 @@ void Scanner::take(const RecordHead& head) {
     case Op::message:
       return fault("a message stands outside of the chunks and is not read");
     default:
-      return fault(fmt::format("a record with the op code 0x{:02x} must stand in the summary", head.op));
+      return fault(
+          fmt::format("a record with the op code 0x{:02x} must stand in the summary", head.op));
   }
 }
 
@@ -173,8 +176,8 @@ bool Scanner::has_room(std::size_t size) {
 
 /// @param size  of its record [bytes]
 template <class Definition>
-void Scanner::define(std::optional<Definition> made, std::size_t size, std::map<std::uint16_t, Definition>& all,
-                     const char* what) {
+void Scanner::define(std::optional<Definition> made, std::size_t size,
+                     std::map<std::uint16_t, Definition>& all, const char* what) {
   if (!made) return fault(fmt::format("a {} is damaged", what));
   const auto known = all.find(made->id);
   if (known != all.end()) {
@@ -212,8 +215,10 @@ void Scanner::add_records(std::string_view records, ChunkIndex& index) {
     if (head.length > records.size() - at) throw Damaged(offset_, "the chunk is damaged");
     const std::string_view content = records.substr(at, static_cast<std::size_t>(head.length));
     at += content.size();
-    if (head.is(Op::schema)) define(to_schema(content), content.size(), scan_.contents.schemas, "schema");
-    if (head.is(Op::channel)) define(to_channel(content), content.size(), scan_.contents.channels, "channel");
+    if (head.is(Op::schema))
+      define(to_schema(content), content.size(), scan_.contents.schemas, "schema");
+    if (head.is(Op::channel))
+      define(to_channel(content), content.size(), scan_.contents.channels, "channel");
     if (!head.is(Op::message)) continue;
     const auto message = to_message(content);
     if (!message) throw Damaged(offset_, "the chunk is damaged");
@@ -249,19 +254,20 @@ void Scanner::add_index(std::string_view content) {
   chunk.message_index_length += length_;
   std::vector<Entry> listed;
   listed.reserve(index->entries.size());
-  for (const auto& [time, offset] : index->entries) listed.push_back({index->channel, time, offset});
+  for (const auto& [time, offset] : index->entries)
+    listed.push_back({index->channel, time, offset});
   std::sort(listed.begin(), listed.end());
-  const auto begin = std::lower_bound(entries_.begin(), entries_.end(), Entry{index->channel, 0, 0});
-  const auto end = std::find_if(begin, entries_.end(), [&](const Entry& entry) {
-    return entry.channel != index->channel;
-  });
+  const auto begin =
+      std::lower_bound(entries_.begin(), entries_.end(), Entry{index->channel, 0, 0});
+  const auto end = std::find_if(
+      begin, entries_.end(), [&](const Entry& entry) { return entry.channel != index->channel; });
   if (!std::equal(begin, end, listed.begin(), listed.end())) {
     fault("a message index does not list the messages of its chunk");
   }
   if (begin != end) listed_.insert(index->channel);
 }
 
-/// Of the last chunk.
+/// State of the last chunk.
 void Scanner::end_indexes() {
   std::size_t channels = 0;
   for (std::size_t i = 0; i < entries_.size() && has_index_; ++i) {
@@ -275,7 +281,8 @@ void Scanner::end_indexes() {
 
 void Scanner::add_attachment(std::string_view content) {
   auto attachment = to_attachment(content);
-  if (!attachment || !attachment->is_intact) return fault("an attachment is damaged: its CRC is wrong");
+  if (!attachment || !attachment->is_intact)
+    return fault("an attachment is damaged: its CRC is wrong");
   attachment->index.offset = offset_;
   attachment->index.length = length_;
   if (!has_room(attachment->index.name.size() + attachment->index.media_type.size())) return;
@@ -300,7 +307,9 @@ void Scanner::end_data(std::string_view content) {
 }
 
 void compare(const Scan& scanned, const Summary& summary, std::vector<Fault>& faults) {
-  const auto complain = [&](std::string text) { faults.push_back({summary.start, std::move(text)}); };
+  const auto complain = [&](std::string text) {
+    faults.push_back({summary.start, std::move(text)});
+  };
   if (summary.start != scanned.end) return complain("the summary does not follow the data section");
   const auto place = [](const auto& index) { return std::pair(index.offset, index.length); };
   const auto are_same = [&](const auto& a, const auto& b) {

@@ -12,9 +12,9 @@
 namespace ziggurat::mcap {
 
 struct Scan {
-  Contents contents;  ///< that is intact; statistics are counted
-  bool has_end = false;  ///< the data section has an end
-  std::uint64_t end = 0;  ///< offset of what is after it, then
+  Contents contents;          ///< that is intact; statistics are counted
+  bool has_end = false;       ///< the data section has an end
+  std::uint64_t end = 0;      ///< offset of what is after it, then
   std::vector<Fault> faults;  ///< most_faults at most
   std::uint64_t damaged_chunks = 0;
 };
@@ -22,8 +22,8 @@ struct Scan {
 /// @throws Damaged if the bytes do not begin as an MCAP file
 Scan scan(const Source& source, const Limits& limits);
 
-/// Everything that is wrong with a file, the summary included; nothing: it is whole, and none of its
-/// bytes has changed, if its writer has computed all CRCs.
+/// Everything that is wrong with a file, the summary included; nothing: it is whole, and none of
+/// its bytes has changed, if its writer has computed all CRCs.
 /// @throws Damaged if the bytes do not begin as an MCAP file
 Scan check(const Source& source, const Limits& limits = {});
 
@@ -32,7 +32,7 @@ Scan check(const Source& source, const Limits& limits = {});
 Header read_header(const Source& source, const Limits& limits, std::vector<Fault>& faults);
 
 struct OpenedChunk {
-  ChunkIndex index;  ///< without offset, length and message indexes
+  ChunkIndex index;     ///< without offset, length and message indexes
   std::string records;  ///< decompressed
 };
 

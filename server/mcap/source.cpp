@@ -35,8 +35,8 @@ void read_whole(int descriptor, const std::string& path, std::uint64_t offset, s
 }  // namespace
 
 Source open_file(const std::string& path) {
-  const auto file =
-      std::make_shared<const posix::Descriptor>(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  const auto file = std::make_shared<const posix::Descriptor>(
+      ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!file->is_open()) fail(path, std::strerror(errno));
   struct stat status {};
   if (::fstat(file->number(), &status) != 0) fail(path, std::strerror(errno));

@@ -1,5 +1,5 @@
 #pragma once
-// Where a reader's bytes come from.
+// Source of a reader's bytes.
 
 #include <cstdint>
 #include <functional>

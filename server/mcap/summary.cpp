@@ -49,9 +49,10 @@ Footer read_footer(const Source& source) {
   std::string bytes;
   source.read(begin, end_size, bytes);
   if (!bytes.ends_with(magic)) {
-    throw Damaged(source.size - magic.size(),
-                  "the file has no end: the program that wrote it did not complete it, or it is cut "
-                  "off or damaged there");
+    throw Damaged(
+        source.size - magic.size(),
+        "the file has no end: the program that wrote it did not complete it, or it is cut "
+        "off or damaged there");
   }
   const RecordHead head = to_head(bytes);
   const auto footer = to_footer(std::string_view(bytes).substr(record_head, 20));
@@ -88,14 +89,13 @@ Summary read_summary(const Source& source, const Limits& limits) {
     throw Damaged(end, "the footer is damaged: the summary begins outside of the file");
   }
   if (end - footer.summary_start > limits.index) {
-    throw Damaged(footer.summary_start,
-                  fmt::format("the summary has {} bytes; at most {} are read",
-                              end - footer.summary_start, limits.index));
+    throw Damaged(footer.summary_start, fmt::format("the summary has {} bytes; at most {} are read",
+                                                    end - footer.summary_start, limits.index));
   }
   std::string bytes;
   constexpr std::size_t covered = record_head + 16;  // of the footer, by the CRC
-  source.read(footer.summary_start,
-              static_cast<std::size_t>(end - footer.summary_start) + covered, bytes);
+  source.read(footer.summary_start, static_cast<std::size_t>(end - footer.summary_start) + covered,
+              bytes);
   if (footer.summary_crc != 0 && crc32(bytes) != footer.summary_crc) {
     throw Damaged(footer.summary_start, "the summary is damaged: its CRC is wrong");
   }

@@ -31,7 +31,8 @@ std::uint16_t Writer::add_schema(std::string_view name, std::string_view encodin
     throw std::length_error("an MCAP file has at most 65535 schemas");
   }
   record_.clear();
-  append(Schema{++schema_count_, std::string(name), std::string(encoding), std::string(data)}, record_);
+  append(Schema{++schema_count_, std::string(name), std::string(encoding), std::string(data)},
+         record_);
   schemas_ += record_;
   give(record_);
   return schema_count_;
@@ -110,8 +111,8 @@ void Writer::write_indexes(ChunkIndex& index, std::uint64_t chunk_end, std::stri
 
 void Writer::attach(std::string_view name, std::string_view media_type, std::string_view data,
                     std::uint64_t log_time, std::uint64_t create_time) {
-  AttachmentIndex index{size_,       0, log_time, create_time, data.size(), std::string(name),
-                        std::string(media_type)};
+  AttachmentIndex index{
+      size_, 0, log_time, create_time, data.size(), std::string(name), std::string(media_type)};
   record_.clear();
   append_attachment(index, data, record_);
   index.length = record_.size();
@@ -146,7 +147,8 @@ std::string Writer::summary(std::uint64_t begin, std::uint64_t& offsets_begin) c
   const auto add_group = [&](Op op, const auto& add) {
     const std::size_t start = bytes.size();
     add();
-    if (bytes.size() > start) append_summary_offset(op, begin + start, bytes.size() - start, offsets);
+    if (bytes.size() > start)
+      append_summary_offset(op, begin + start, bytes.size() - start, offsets);
   };
   const auto add_all = [&](const auto& records) {
     return [&] {

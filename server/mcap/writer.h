@@ -1,7 +1,7 @@
 #pragma once
-// Writes an MCAP file with any content: chunks with message indexes, attachments, metadata, and a
-// summary at the end. What stands outside of chunks is written at once, so that a file that is cut
-// off anywhere is good up to its last whole chunk.
+// Writer of an MCAP file with any content: chunks with message indexes, attachments, metadata, and
+// a summary at the end. Records outside of chunks are written at once. So a file that is cut off
+// anywhere is good up to its last whole chunk.
 
 #include <cstddef>
 #include <cstdint>
@@ -38,7 +38,7 @@ class Writer {
   /// Appends with a sequence number of its own.
   void write(const Message& message);
 
-  /// What the present chunk has, before compression [bytes].
+  /// Size of the current chunk, before compression [bytes].
   std::size_t chunk_size() const { return chunk_.size(); }
   /// Compresses the present chunk and writes it with its indexes; without messages nothing is done.
   void end_chunk();
@@ -51,7 +51,7 @@ class Writer {
   /// Ends the chunk, writes the summary and the footer.
   void close();
 
-  std::uint64_t size() const { return size_; }       ///< written so far [bytes]
+  std::uint64_t size() const { return size_; }             ///< written so far [bytes]
   std::uint64_t chunks() const { return chunks_.size(); }  ///< written so far
 
  private:
@@ -68,11 +68,12 @@ class Writer {
   Sink sink_;
   Compressor compressor_;
   std::uint64_t size_ = 0;
-  std::uint32_t crc_ = 0;  // of all bytes so far
+  std::uint32_t crc_ = 0;           // of all bytes so far
   std::string schemas_, channels_;  // records, for the summary
   std::uint16_t schema_count_ = 0, channel_count_ = 0;
   std::vector<ChannelState> states_;  // by channel id
-  std::vector<std::uint16_t> used_;   // channels in the present chunk, in the order of their first message
+  std::vector<std::uint16_t>
+      used_;  // channels in the present chunk, in the order of their first message
   std::string chunk_, record_;
   std::uint64_t chunk_start_ = 0, chunk_end_ = 0;  // times of its messages [ns]
   Statistics statistics_;

@@ -1,6 +1,6 @@
 #pragma once
-// Where the devices of all media are at one tick, found by place: one index for those that send
-// to others and one for what cameras see, built anew where something moved.
+// Spatial index of the devices of all media at one tick. One index holds devices that send to
+// others, another one those that cameras see. It is built anew where something moved.
 
 #include <cstddef>
 #include <vector>

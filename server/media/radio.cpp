@@ -48,7 +48,8 @@ void RadioMedium::deliver(const world::Layout& layout, const DevicesIndex& index
   };
 
   places_.assign(layout.radios.size() + 1, 0);
-  for (const RadioLink& link : links_) places_[link.receiver] += end_of(link.sender) - starts_[link.sender];
+  for (const RadioLink& link : links_)
+    places_[link.receiver] += end_of(link.sender) - starts_[link.sender];
   std::size_t total = 0;
   for (std::size_t& place : places_) total += std::exchange(place, total);
   received.entries.resize(total);
@@ -57,7 +58,7 @@ void RadioMedium::deliver(const world::Layout& layout, const DevicesIndex& index
     for (std::size_t i = starts_[link.sender]; i < end_of(link.sender); ++i) {
       const auto& entry = sent.entries[order_[i]];
       received.entries[places_[link.receiver]++] = {link.receiver, entry.begin, entry.size,
-                                                       link.sender};
+                                                    link.sender};
     }
   }
   std::swap(received.bytes, sent.bytes);  // the receivers share them

@@ -21,19 +21,21 @@ struct RadioLink {
 
 class RadioMedium {
  public:
-  /// @param most  messages that all receive together at a tick. Of more, each sender's last ones are left out, and as
-  ///              many of one are kept as of another: one that sends very many takes nothing from the others
+  /// @param most  messages that all receive together at a tick. Of more, each sender's last ones
+  /// are left out, and as
+  ///              many of one are kept as of another: one that sends very many takes nothing from
+  ///              the others
   explicit RadioMedium(std::size_t most = world::most_received_messages) : most_(most) {}
 
-  /// Delivers what was sent. All messages of a tick are known before the first is delivered, so the
-  /// result depends neither on the order of `sent` (between radios) nor on that of robots.
+  /// Delivers the messages of a tick. All are known before the first is delivered. So the result
+  /// depends neither on the order of `sent` (between radios) nor on that of robots.
   /// @param index     of the poses that the messages leave at
   /// @param sent      emptied
   /// @param received  replaced: ascending by receiver, then sender, then as sent
   void deliver(const world::Layout& layout, const DevicesIndex& index, world::RadioMessages& sent,
                world::RadioMessages& received);
 
-  /// Of the last delivery, one per pair, ascending by sender, then receiver.
+  /// Links of the last delivery, one per pair, ascending by sender, then receiver.
   const std::vector<RadioLink>& links() const { return links_; }
 
  private:

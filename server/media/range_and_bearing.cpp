@@ -23,9 +23,11 @@ const std::vector<Sighting>& RangeAndBearingMedium::sight(const world::Layout& l
       const double distance = (index.position(index.range_and_bearing, receiver) - place).norm();
       if (!reaches(from.range, distance)) continue;
       if (by_sender_.size() == most_) {
-        throw std::runtime_error("more than " + std::to_string(most_) + " pairs of the " + std::to_string(devices.size()) +
-                                 " devices of range and bearing reach each other; write a smaller range on "
-                                 "<range_and_bearing>, or fewer robots");
+        throw std::runtime_error(
+            "more than " + std::to_string(most_) + " pairs of the " +
+            std::to_string(devices.size()) +
+            " devices of range and bearing reach each other; write a smaller range on "
+            "<range_and_bearing>, or fewer robots");
       }
       by_sender_.push_back({sender, receiver});
       ++places_[receiver];

@@ -33,7 +33,7 @@ class RangeAndBearingMedium {
   std::vector<std::size_t> found_;
 };
 
-/// Where a point is seen from a frame.
+/// Range and bearing of a point in a frame.
 struct Bearing {
   double range = 0;       ///< [m]
   double horizontal = 0;  ///< about +z from +x, (-pi, pi] [rad]

@@ -1,5 +1,5 @@
 #pragma once
-// How long a controller's answers took, counted since the run began.
+// Histogram of a controller's response times since the run began.
 
 #include <algorithm>
 #include <array>
@@ -9,12 +9,12 @@
 
 namespace ziggurat::network {
 
-/// Of fixed size. Bin i counts times from least * growth^i on [s]; the first also has shorter ones, the
-/// last also longer ones.
+/// Histogram with a fixed number of bins. Bin i counts times from least * growth^i on [s]. The
+/// first bin also counts shorter times, the last one longer times.
 struct AnswerTimes {
-  static constexpr double least = 1e-5;               ///< [s]
+  static constexpr double least = 1e-5;                 ///< [s]
   static constexpr double growth = 1.4142135623730951;  ///< two bins double it
-  std::array<std::uint64_t, 48> counts{};             ///< up to 2 minutes
+  std::array<std::uint64_t, 48> counts{};               ///< up to 2 minutes
 
   void add(double seconds) {
     const double bin = seconds > least ? 2 * std::log2(seconds / least) : 0;

@@ -1,5 +1,5 @@
 #pragma once
-// What a server is told when it is started.
+// Configuration of a server.
 
 #include <chrono>
 #include <cstddef>
@@ -27,11 +27,11 @@ struct Config {
   unsigned max_faults = 100;  ///< bad messages in a row before a session is closed
   Rate rate;                  ///< of a connection's messages, besides expected answers
   std::chrono::milliseconds heartbeat{1000};  ///< of wall time that a session hears nothing; > 0
-  bool allows_directors = false;  ///< also those that the scene does not name
+  bool allows_directors = false;              ///< also those that the scene does not name
   bool keeps_reactions = false;               ///< each by itself, for a report card
   std::chrono::milliseconds lease{0};         ///< how long robots of a lost session are kept for it
 
-  // What depends on the scene: counts from Server::open() on.
+  // Settings that depend on the scene; they take effect at Server::open().
 
   /// One that only this user's processes can reach, without protection; empty: none.
   std::string private_endpoint;
@@ -40,10 +40,11 @@ struct Config {
     scene::DeadlinePolicy policy;
     bool is_fixed = false;  ///< no Hello may ask for another
   };
-  std::vector<Deadline> deadlines;    ///< of the scene's controllers, then of its directors; missing: as the
-                                      ///< scene says, or to wait
-  Deadline deadline_of_others;        ///< of directors that the scene does not name
-  std::vector<Injection> injections;  ///< of the scene's controllers, then of its directors; missing: none
+  std::vector<Deadline> deadlines;  ///< of the scene's controllers, then of its directors; missing:
+                                    ///< as the scene says, or to wait
+  Deadline deadline_of_others;      ///< of directors that the scene does not name
+  std::vector<Injection>
+      injections;  ///< of the scene's controllers, then of its directors; missing: none
 };
 
 }  // namespace ziggurat::network

@@ -13,7 +13,7 @@
 
 namespace ziggurat::network {
 
-/// What is done to messages in one direction; wall time.
+/// Delay and loss of messages in one direction; wall time.
 struct Disturbance {
   std::chrono::nanoseconds latency{0};  ///< each is held back for so long,
   std::chrono::nanoseconds jitter{0};   ///< more or less by up to this; at most `latency`
@@ -23,7 +23,7 @@ struct Disturbance {
   bool operator==(const Disturbance&) const = default;
 };
 
-/// What is done to the messages of a controller, to it and from it.
+/// Disturbance of a controller's messages, to it and from it.
 struct Injection {
   Disturbance observations;
   Disturbance commands;
@@ -40,7 +40,7 @@ struct Lost {
 
 enum class Direction { observations, commands };
 
-/// What is done to one message.
+/// Disturbance of one message.
 struct Effect {
   std::chrono::nanoseconds delay{0};
   bool is_lost = false;

@@ -62,7 +62,8 @@ std::vector<DisturbedLink::Path> DisturbedLink::paths_of(const v1::Welcome& welc
     });
     if (target == targets_.end() || !target->injection.any()) return;
     const auto index = static_cast<std::size_t>(target - targets_.begin());
-    if (std::ranges::find(paths, index, &Path::target) == paths.end()) paths.push_back({index, name});
+    if (std::ranges::find(paths, index, &Path::target) == paths.end())
+      paths.push_back({index, name});
   };
   for (const v1::RobotDescription& robot : welcome.robots()) {
     add(robot.controller(), false, robot.controller() + "/" + robot.id());
@@ -90,8 +91,9 @@ void DisturbedLink::begin(const std::string& connection, const v1::Welcome& welc
                   line.paths.front().name));
 }
 
-/// Of a message that belongs to several controllers: the longest delay, and lost if one loses it.
-/// Nothing is lost for a session without a deadline: the world would wait for it forever.
+/// Draws the effect on a message. A message of several controllers has the longest of their delays,
+/// and is lost if one of them loses it. Sessions without deadline lose nothing: the world would
+/// wait without end.
 Effect DisturbedLink::draw(const Line& line, Direction direction, std::uint64_t tick) {
   Effect effect;
   const bool is_observation = direction == Direction::observations;
@@ -155,7 +157,8 @@ void DisturbedLink::end(const std::string& connection, Line& line, bool is_order
 bool DisturbedLink::arrives(const Received& received, Time now) {
   Line* line = find(received.connection);
   if (line == nullptr) return true;
-  const wire::Inbox::Kind kind = received.is_single_frame ? inbox_.parse(received.bytes) : wire::Inbox::Kind::malformed;
+  const wire::Inbox::Kind kind =
+      received.is_single_frame ? inbox_.parse(received.bytes) : wire::Inbox::Kind::malformed;
   Effect effect;
   const bool is_answer = kind == wire::Inbox::Kind::command || kind == wire::Inbox::Kind::direction;
   if (is_answer) effect = draw(*line, Direction::commands, inbox_.command_tick());

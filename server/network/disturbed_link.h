@@ -25,7 +25,8 @@ namespace ziggurat::network {
 
 class DisturbedLink {
  public:
-  /// The link behind: sends bytes over a connection. Of Observations that wait there the newest wins.
+  /// The link behind: sends bytes over a connection. Of Observations that wait there the newest
+  /// wins.
   using SendBytes = std::function<Delivery(const std::string& connection, std::string_view bytes,
                                            bool is_observation)>;
 

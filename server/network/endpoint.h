@@ -1,5 +1,5 @@
 #pragma once
-// Where the server listens: `ipc://path` or `tcp://host:port`.
+// Addresses that the server listens at: `ipc://path` or `tcp://host:port`.
 
 #include <stdexcept>
 #include <string>

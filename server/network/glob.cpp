@@ -69,7 +69,8 @@ bool Glob::matches(std::string_view text) const {
     if (e < elements_.size() && elements_[e].is_star) {
       star = ++e;
       retry = t;
-    } else if (e < elements_.size() && elements_[e].characters[static_cast<unsigned char>(text[t])]) {
+    } else if (e < elements_.size() &&
+               elements_[e].characters[static_cast<unsigned char>(text[t])]) {
       ++e;
       ++t;
     } else if (star) {

@@ -8,7 +8,7 @@
 
 namespace ziggurat::network {
 
-// Of a message, wherever they stand in it: they bound the time that matching takes.
+// Limits for the patterns of a message; they bound the time of matching.
 inline constexpr std::size_t most_patterns = 64;
 inline constexpr std::size_t longest_pattern = 256;  ///< [bytes]
 

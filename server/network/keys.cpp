@@ -71,7 +71,7 @@ std::optional<Roles> to_roles(const std::string& text) {
   return roles;
 }
 
-/// What is wrong with a list of ids and globs, if anything.
+/// Fault of a list of ids and globs, if it has one.
 std::optional<std::string> fault_of(const std::vector<std::string>& globs) {
   if (globs.empty()) return "names nothing; write ids or patterns such as 'scout*'";
   if (globs.size() > most_patterns) {
@@ -115,7 +115,8 @@ bool is_scope(const std::string& word) {
   return equals != std::string::npos && equals > 0;
 }
 
-/// A limit in a name, where it would have no effect: `Alice robots=r1`, or `robots = r1`. Empty if there is none.
+/// A limit in a name, where it would have no effect: `Alice robots=r1`, or `robots = r1`. Empty if
+/// there is none.
 std::string_view limit_in(const std::string& name) {
   std::string text = " ";  // in lower case, with blanks before words only
   for (const unsigned char c : name) {
@@ -134,15 +135,18 @@ std::optional<std::string> read_rest(std::istringstream& words, ClientKey& clien
   std::set<std::string> seen;
   while (words >> word && is_scope(word)) {
     const std::string limit = word.substr(0, word.find('=') + 1);
-    if (!seen.insert(limit).second) return fmt::format("{0} stands there twice; write {0}A,B", limit);
+    if (!seen.insert(limit).second)
+      return fmt::format("{0} stands there twice; write {0}A,B", limit);
     if (auto fault = read_scope(word, client.scope)) return fault;
     word.clear();
   }
   std::getline(words, client.name);
   client.name = word + client.name;
   if (const std::string_view limit = limit_in(client.name); !limit.empty()) {
-    return fmt::format("{0} stands in the name, where it limits nothing; write it before the name, as {0}VALUE without blanks",
-                       limit);
+    return fmt::format(
+        "{0} stands in the name, where it limits nothing; write it before the name, as {0}VALUE "
+        "without blanks",
+        limit);
   }
   const Scope& scope = client.scope;
   const bool is_limited =

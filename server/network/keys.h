@@ -28,13 +28,12 @@ struct Roles {
   bool allow(wire::Role role) const {
     return (role == wire::Role::controller && controller) ||
            (role == wire::Role::supervisor && supervisor) ||
-           (role == wire::Role::observer && observer) ||
-           (role == wire::Role::director && director);
+           (role == wire::Role::observer && observer) || (role == wire::Role::director && director);
   }
 };
 inline constexpr Roles all_roles{true, true, true, true};
 
-/// What a connection may do, and by which key.
+/// Rights of a connection, and the key that gives them.
 struct Access {
   Roles roles = all_roles;
   std::optional<std::size_t> key = {};  ///< into Curve::clients; none: not encrypted
@@ -67,7 +66,7 @@ struct ClientKey {
   Scope scope = {};
 };
 
-/// How a server protects its endpoints.
+/// Protection of a server's endpoints by CURVE.
 struct Curve {
   std::string secret_key;  ///< Z85
   std::vector<ClientKey> clients;
@@ -81,7 +80,7 @@ std::string read_secret_key(const std::string& path);
 /// @throws KeyError
 std::vector<ClientKey> read_client_keys(const std::string& path);
 
-/// The same of files that have been read: what they say.
+/// Parses the text of files that have been read.
 /// @param path  for messages
 /// @throws KeyError
 std::string parse_secret_key(const std::string& text, const std::string& path);

@@ -1,5 +1,5 @@
 #pragma once
-// How long something took the last times: percentiles.
+// Percentiles of the most recent latencies.
 
 #include <array>
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace ziggurat::network {
 
-/// Of fixed size: adding allocates nothing, and asking sorts nothing.
+/// Window of fixed size: add() allocates nothing, and recent() sorts nothing.
 class Latencies {
  public:
   static constexpr std::size_t remembered = 1000;

@@ -1,5 +1,5 @@
 #pragma once
-// What connections may take of the server's memory and time (docs/protocol.md, K5).
+// Limits for the server's memory and time that connections use (docs/protocol.md, K5).
 
 #include <algorithm>
 #include <chrono>
@@ -7,7 +7,7 @@
 
 namespace ziggurat::network {
 
-/// What a connection is to the server.
+/// Standing of a connection at the server.
 enum class Standing {
   none,        ///< without session
   waiting,     ///< its Hello waits for the world
@@ -16,8 +16,8 @@ enum class Standing {
   controller,  ///< likewise, or a director: the tick path
 };
 
-/// Whether it is one of those who come behind controllers, directors and supervisors, which can hold a tick up or
-/// end the run. Each client may be one of these others.
+/// Whether a connection ranks below controllers, directors and supervisors, which can delay a tick
+/// or end the run. Any client may have such a connection.
 inline bool is_other(Standing standing) {
   return standing != Standing::controller && standing != Standing::supervisor;
 }
@@ -26,8 +26,8 @@ inline constexpr std::size_t kibibyte = std::size_t{1} << 10, mebibyte = std::si
 
 inline constexpr std::size_t longest_without_session = 64 * kibibyte;
 
-/// Of a message [bytes].
-/// @param most  of the connection's
+/// Longest message that a connection of this standing may send [bytes].
+/// @param most  limit of the configuration
 inline std::size_t longest_message(Standing standing, std::size_t most) {
   switch (standing) {
     case Standing::none:
@@ -49,34 +49,36 @@ inline constexpr std::chrono::seconds time_without_session{60};
 /// Younger ones are not disconnected to make place.
 inline constexpr std::chrono::seconds least_age{1};
 
-/// Of messages that wait for a client that does not read, its newest Observation aside [bytes].
+/// Limit for messages that wait for a client that does not read, without its newest Observation
+/// [bytes].
 inline constexpr std::size_t most_waiting = 4 * mebibyte;
 
-/// What messages of all clients together may take [bytes].
+/// Limits for the messages of all clients together [bytes].
 struct Shared {
   std::size_t unfinished = 512 * mebibyte;  ///< those that have not arrived completely
   std::size_t waiting = 256 * mebibyte;     ///< those that wait for clients, as most_waiting counts
 };
 
-/// Share of the wall time by which others may delay ticks: only while an answer is owed, and work for them counts
-/// in full only if a message of a controller or supervisor is found waiting after it. The system's work for them,
-/// and what they do themselves with the answers, costs about as much again on the same machine.
+/// Share of the wall time by which others may delay ticks. It counts only while an answer is owed.
+/// Work for others counts in full only if a message of a controller or supervisor waits after it.
+/// The system's own work for others costs about as much again on the same machine.
 inline constexpr double share_of_others = 0.01;
-/// The same where clients need keys: a handshake takes ten times as long there, and who would come in waits
-/// behind those of unknown peers.
+/// The same where clients need keys. A handshake takes ten times as long there, and legitimate
+/// clients queue behind unknown peers.
 inline constexpr double share_of_others_with_keys = 0.025;
-/// Work after which no such message waits counts so much of its time: others have a fifth of the idle time of a
-/// tick, because controllers compute in it, perhaps on the same processors.
+/// Share of its time that work is charged if no such message waits after it. Others so have a fifth
+/// of the idle time of a tick, because controllers compute in it, perhaps on the same processors.
 inline constexpr double part_of_idle_time = 0.05;
-/// So much of the share may be saved up.
+/// Greatest share that is saved up.
 inline constexpr std::chrono::microseconds saved_share{5000};
-/// What was used up begins again with so much.
+/// Share that an exhausted account begins again with.
 inline constexpr std::chrono::microseconds least_share{100};
-/// Work counts as at least that long, because it wakes a process: it delays 400 ticks a second at most.
+/// Least cost of work, because it wakes a process: it delays 400 ticks a second at most.
 inline constexpr std::chrono::microseconds least_cost{25};
-/// The same after which nothing waits: 2000 a second.
+/// Least cost of work after which no message waits: 2000 a second.
 inline constexpr std::chrono::microseconds least_idle_cost{5};
-/// More is not owed for an answer of a very large world: others would wait for longer than 10 s.
+/// Greatest cost of an answer of a very large world: beyond it others would wait for longer than 10
+/// s.
 inline constexpr std::chrono::microseconds most_cost{100'000};
 
 }  // namespace ziggurat::network

@@ -1,6 +1,6 @@
 #pragma once
-// How the barrier and its peers reach each other. A connection has a name that the server chose and
-// that no other connection ever has.
+// Interface between the barrier and its peers. The server names each connection; no other
+// connection ever has the same name.
 
 #include <chrono>
 #include <cstddef>
@@ -32,9 +32,10 @@ struct Received {
   std::string_view bytes;       ///< valid until the next message is received
   bool is_single_frame = true;  ///< a message of the protocol is one ZeroMQ frame
   Access access;                ///< that the connection has
-  /// Bytes of the message that were not kept, because a frame was too long or not its last: there are no others.
+  /// Bytes of the message that were not kept, because a frame was too long or not its last: there
+  /// are no others.
   std::size_t skipped = 0;
-  /// Of a message of several frames, by the first of them.
+  /// Encoding of a message of several frames, by its first frame.
   wire::Encoding several_frames = wire::Encoding::binary;
 };
 

@@ -56,8 +56,8 @@ posix::Descriptor open_socket(const std::string& endpoint, int family) {
   return made;
 }
 
-void bind_and_listen(const std::string& endpoint, const posix::Descriptor& socket, const sockaddr* address,
-                     socklen_t size) {
+void bind_and_listen(const std::string& endpoint, const posix::Descriptor& socket,
+                     const sockaddr* address, socklen_t size) {
   if (::bind(socket.number(), address, size) != 0) fail(endpoint, errno);
   if (::listen(socket.number(), waiting_connections) != 0) fail(endpoint, errno);
 }
@@ -66,8 +66,20 @@ void set_option(int socket, int level, int option, int value) {
   ::setsockopt(socket, level, option, &value, sizeof value);
 }
 
-/// Of servers that begin at one path at the same time only one is between its look at that path and listening there.
-/// Held while it is open. Any user of this machine may hold it, too, so no server waits for long.
+/// Name of an abstract socket that locks this path until a server listens there; empty if there is
+/// no such folder.
+std::string lock_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  struct stat status {};
+  if (::stat(folder.c_str(), &status) != 0) return {};
+  const std::size_t name = std::hash<std::string>{}(path.substr(slash + 1));  // npos + 1 is 0
+  return fmt::format("ziggurat-path-{}-{}-{:x}", status.st_dev, status.st_ino, name);
+}
+
+/// Locks a path, so that of several servers only one checks the path and then listens there. The
+/// lock is held while the descriptor is open. Any user of this machine may hold it, too, so no
+/// server waits for long.
 posix::Descriptor hold_path(const std::string& path) {
   constexpr int most_tries = 50, between_us = 10'000;
   const std::string lock = lock_of(path);
@@ -77,7 +89,8 @@ posix::Descriptor hold_path(const std::string& path) {
   address.sun_family = AF_UNIX;
   lock.copy(address.sun_path + 1, sizeof address.sun_path - 1);
   const auto* generic = reinterpret_cast<const sockaddr*>(&address);
-  for (int i = 0; ::bind(held.number(), generic, sizeof address) != 0 && i < most_tries; ++i) ::usleep(between_us);
+  for (int i = 0; ::bind(held.number(), generic, sizeof address) != 0 && i < most_tries; ++i)
+    ::usleep(between_us);
   return held;
 }
 
@@ -94,7 +107,7 @@ struct Address {
   socklen_t size = 0;
 };
 
-/// Of an address in numbers; none if the host is none.
+/// Address of a host given in numbers; none if it is a name.
 std::optional<Address> numeric_address(const char* host, const std::string& port) {
   addrinfo hints{};
   hints.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV | AI_PASSIVE;
@@ -150,15 +163,6 @@ std::string name_of(const posix::Descriptor& socket) {
 }
 
 }  // namespace
-
-std::string lock_of(const std::string& path) {
-  const std::size_t slash = path.rfind('/');
-  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
-  struct stat status {};
-  if (::stat(folder.c_str(), &status) != 0) return {};
-  const std::size_t name = std::hash<std::string>{}(path.substr(slash + 1));  // npos + 1 is 0
-  return fmt::format("ziggurat-path-{}-{}-{:x}", status.st_dev, status.st_ino, name);
-}
 
 Listener::Listener(const std::string& endpoint) {
   if (endpoint.starts_with(path_scheme)) {

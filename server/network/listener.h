@@ -7,10 +7,6 @@
 
 namespace ziggurat::network {
 
-/// Name of an abstract socket that a server holds from its look at this path until it listens there; empty if
-/// there is no such folder. Who removes a socket that is left there holds it, too.
-std::string lock_of(const std::string& path);
-
 class Listener {
  public:
   /// @param endpoint  as check_endpoint() allows it; tcp port `*` or 0 = any free one

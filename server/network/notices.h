@@ -11,7 +11,8 @@
 
 namespace ziggurat::network {
 
-/// The first 20 are told at once, then one a second, with the number of those before it that were not.
+/// The first 20 are told at once, then one a second, with the number of those before it that were
+/// not.
 class Notices {
  public:
   using Time = TokenBucket::Time;
@@ -28,7 +29,7 @@ class Notices {
   void tell_last(Time now) {
     if (untold_ > 0) tell(now);
   }
-  /// Those to be told since the last call, in order.
+  /// Sentences to print since the last call, in order.
   std::vector<std::string> take() { return std::exchange(told_, {}); }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// What waits to be sent over one connection. It is bounded, and nothing here waits.
+// Output that waits to be sent over one connection. Its size is bounded; no call blocks.
 
 #include <cstddef>
 #include <cstdint>
@@ -47,7 +47,7 @@ class OutputQueue {
     std::size_t size = 0, sent = 0;
     bool is_observation = false;
 
-    /// What keeping it takes, at least [bytes].
+    /// Memory that the frame takes, at least [bytes].
     std::size_t memory() const { return frame.capacity + 128; }
   };
   static Buffer kept(Buffer& frame, std::size_t size);
@@ -56,7 +56,8 @@ class OutputQueue {
   int descriptor_;
   std::deque<Parcel> waiting_;  // the first may be sent in part
   std::size_t waiting_bytes_ = 0;
-  std::size_t alone_ = 0;  // of these, what the first takes if nothing waited before it: it may be longer than the bound
+  std::size_t alone_ = 0;  // of these, what the first takes if nothing waited before it: it may be
+                           // longer than the bound
   bool has_failed_ = false, is_congested_ = false;
 };
 

@@ -13,11 +13,11 @@ namespace {
 
 using Step = zmtp::Taken::Step;
 
-constexpr std::size_t least_space = 8 * kibibyte;   // for one read
+constexpr std::size_t least_space = 8 * kibibyte;     // for one read
 constexpr std::size_t read_at_once = 256 * kibibyte;  // others are looked at after so much,
 constexpr int frames_at_once = 16;                    // and after so many
 
-/// How much memory an idle connection keeps.
+/// Memory that an idle connection keeps [bytes].
 std::size_t kept_when_idle(Standing standing) {
   return standing == Standing::controller ? mebibyte : least_space;
 }
@@ -119,7 +119,8 @@ bool PeerSocket::take_frame(std::size_t limit, Received& received) {
     // It is passed over and told, or the connection is over.
     if (standing_ == Standing::none || taken.size / 2 > limit) {
       has_failed_ = true;
-      too_long_ = "a message of its has about " + std::to_string(taken.size) + " bytes, and " + std::to_string(limit) + " are allowed";
+      too_long_ = "a message of its has about " + std::to_string(taken.size) + " bytes, and " +
+                  std::to_string(limit) + " are allowed";
       return false;
     }
     to_skip_ = taken.size;
@@ -140,7 +141,8 @@ bool PeerSocket::take_frame(std::size_t limit, Received& received) {
 bool PeerSocket::next(std::size_t limit, Received& received) {
   bool has_message = false;
   has_more = true;
-  for (int frame = 0; frame < frames_at_once && !has_message && has_more && !has_failed_ && !is_over_; ++frame) {
+  for (int frame = 0;
+       frame < frames_at_once && !has_message && has_more && !has_failed_ && !is_over_; ++frame) {
     has_message = take_frame(limit, received);
   }
   if (!reply_.empty()) send_reply();

@@ -1,6 +1,6 @@
 #pragma once
-// One connection: what arrives on it, cut into messages, and what waits to be sent. Nothing here
-// waits, and both directions are bounded.
+// Socket of one connection: its input, cut into messages, and its output queue. No call blocks, and
+// both directions are bounded.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace ziggurat::network {
 
 class PeerSocket {
  public:
-  /// It stands in the order in which connections are asked for messages.
+  /// Whether input is left that next() has not looked at.
   bool has_turn = false;
   /// next() has looked at a part of what has arrived only.
   bool has_more = false;
@@ -26,8 +26,8 @@ class PeerSocket {
   /// @param name  of the connection
   /// @param keys  must outlive the connection; null: it is not encrypted
   /// @param is_trusted  of this user: limits of connections without session do not hold
-  PeerSocket(std::string name, posix::Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_trusted,
-             Time now);
+  PeerSocket(std::string name, posix::Descriptor descriptor, const zmtp::CurveKeys* keys,
+             bool is_trusted, Time now);
 
   const std::string& name() const { return name_; }
   int number() const { return descriptor_.number(); }
@@ -41,19 +41,19 @@ class PeerSocket {
   bool is_open() const { return engine_.is_open(); }  ///< the handshake is over
   /// The connection is gone, or must be closed.
   bool is_over() const { return is_over_; }
-  /// What waits is not sent any more.
+  /// Drops the output that waits.
   void give_up();
   /// Why it was closed for what the client sent, for people; empty if it was not.
   std::string fault() const;
 
   /// Reads once, a part of what is there. What next() gave is not valid any more.
   void read();
-  /// The next message that has arrived completely, if there is one among the next few frames. Its access and
-  /// bytes are set.
+  /// The next message that has arrived completely, if there is one among the next few frames. Its
+  /// access and bytes are set.
   /// @param limit  of its size [bytes]
   bool next(std::size_t limit, Received& received);
 
-  /// Where its content is to stand in the frame, which has that many bytes more.
+  /// Offset of the content in its frame, which has that many bytes more.
   std::size_t content_at(std::size_t content) const { return engine_.content_at(content); }
   /// Sends a frame with its content in place, now or as soon as the client reads. The connection is
   /// over if too much waits for it. A newer Observation takes the place of one that waits.
@@ -89,9 +89,9 @@ class PeerSocket {
   wire::Encoding first_frame_ = wire::Encoding::binary;  // its form, for the answer
   std::size_t to_skip_ = 0;                              // of a frame that is too long
   std::size_t skipped_ = 0;                              // bytes of the message that were not kept
-  bool has_failed_ = false;  // the connection is over when its last reply is sent
-  std::string too_long_;  // the sentence on the message that ended the connection
-  bool more_to_skip_ = false;                            // the message goes on behind that frame
+  bool has_failed_ = false;    // the connection is over when its last reply is sent
+  std::string too_long_;       // the sentence on the message that ended the connection
+  bool more_to_skip_ = false;  // the message goes on behind that frame
   std::string reply_;
   OutputQueue output_;
 };

@@ -20,7 +20,8 @@ std::uint64_t id_of(const std::string& name) {
 
 PeerTable::PeerTable(const Shared& most) : most_(most) {}
 
-void PeerTable::add(posix::Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_trusted, Time now) {
+void PeerTable::add(posix::Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_trusted,
+                    Time now) {
   const std::uint64_t id = ++last_id_;
   auto& peer = peers_[id];
   peer = std::make_unique<PeerSocket>(name_of(id), std::move(descriptor), keys, is_trusted, now);

@@ -39,7 +39,7 @@ class PeerTable {
 
   /// Forgets connections that are over.
   void remove_ended();
-  /// What forgotten connections held goes back to the system.
+  /// Returns the memory of forgotten connections to the system.
   void give_back_memory();
   /// Names of connections that were forgotten since the last call.
   std::vector<std::string> take_gone();

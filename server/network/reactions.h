@@ -1,12 +1,12 @@
 #pragma once
-// How long controllers took for each observation, kept one by one: what report cards are made of.
+// Response time of a controller to each observation, kept one by one for report cards.
 
 #include <cstdint>
 #include <vector>
 
 namespace ziggurat::network {
 
-/// What followed an observation that a session was sent.
+/// Response to one observation of a session.
 struct Reaction {
   enum class Kind : std::uint8_t {
     in_time,     ///< a command

@@ -17,7 +17,7 @@ using wire::make_fault;
 
 enum class Fit { none, by_pattern, by_id };
 
-/// What each robot of the layout is to the ids and patterns.
+/// Match of each robot of the layout with the ids and patterns.
 std::variant<std::vector<Fit>, wire::Fault> fit_names(const std::vector<std::string>& names,
                                                       const world::Layout& layout) {
   std::vector<Fit> fits(layout.robots.size(), names.empty() ? Fit::by_pattern : Fit::none);

@@ -16,7 +16,7 @@ struct Selected {
   bool by_id = false;
 };
 
-/// In scene order, or what is wrong with the criteria.
+/// Robots of a Hello in scene order, or the fault of its criteria.
 std::variant<std::vector<Selected>, wire::Fault> select_robots(const wire::Hello& hello,
                                                                const wire::Run& run);
 

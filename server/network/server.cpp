@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "network/answers.h"
+#include "network/answer_cache.h"
 #include "network/barrier/admission.h"
 #include "network/barrier/departure.h"
 #include "network/barrier/directing.h"
@@ -13,7 +13,7 @@
 #include "network/barrier/exchange.h"
 #include "network/barrier/overview.h"
 #include "network/barrier/population.h"
-#include "network/barrier/timing.h"
+#include "network/barrier/timeouts.h"
 #include "network/disturbed_link.h"
 #include "network/socket.h"
 
@@ -23,25 +23,27 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds noticeable{1};  // to deadlines: messages are taken for that long between looks at them
+constexpr milliseconds noticeable{
+    1};  // to deadlines: messages are taken for that long between looks at them
 
 std::vector<DisturbedLink::Target> targets_of(const Config& config, const wire::Run& run) {
   std::vector<DisturbedLink::Target> targets;
   const auto add = [&](const std::string& id, bool is_director) {
     const bool is_given = targets.size() < config.injections.size();
-    targets.push_back({id, is_given ? config.injections[targets.size()] : Injection{}, is_director});
+    targets.push_back(
+        {id, is_given ? config.injections[targets.size()] : Injection{}, is_director});
   };
   for (const scene::Controller& controller : run.controllers) add(controller.id, false);
   for (const scene::Director& director : run.directors) add(director.id, true);
   return targets;
 }
 
-/// No tick goes on before a message of one that is no controller yet: the world stands, or a robot is
-/// free that the tick waits for without end.
+/// No tick goes on before a message of one that is no controller yet: the world is halted, or a
+/// robot is free that the tick waits for without end.
 bool waits_for_newcomer(const Barrier& barrier) {
-  const bool has_free = barrier.seats.is_awaited() || barrier.directors.seats.is_awaited();
+  const bool has_free = barrier.ownership.is_awaited() || barrier.directors.ownership.is_awaited();
   const bool waits_for_robot = has_free && barrier.timers.deadline == never;
-  return barrier.gate.is_standing() || waits_for_robot;
+  return barrier.gate.is_halted() || waits_for_robot;
 }
 
 /// Observers and supervisors leave most of the connections to controllers.
@@ -78,7 +80,7 @@ struct Server::State {
   Socket socket;
   std::optional<DisturbedLink> link;
   Barrier barrier;
-  Answers answers;
+  AnswerCache answers;
   // Other numbers if anything that a status tells may have changed: whether a session has answered
   // the tick, or anything else.
   std::uint64_t commands = 0, changes = 0;
@@ -115,7 +117,8 @@ bool Server::State::take_messages(Done done, world::Commands* into) {
     if (is_done) return true;
   } while (!barrier.calls.has_news() && Clock::now() < end);
   for (const std::string& connection : socket.take_gone()) {
-    // What such a link still holds back arrives first; a heartbeat then finds that it is gone.
+    // Messages that such a link still holds back arrive first; a heartbeat then finds that the
+    // connection is gone.
     if (!link || !link->holds(connection)) disconnect(barrier, connection);
     ++changes;
   }
@@ -137,12 +140,14 @@ template <class Done>
 Outcome Server::State::wait_until(Done done, const Wait& wait, world::Commands* commands) {
   const bool is_bounded = wait.timeout.count() >= 0;
   const Time end = is_bounded ? Clock::now() + wait.timeout : never;
-  // What had arrived when the server last looked is not late, however long it was kept from taking it.
+  // Messages that had arrived when the server last looked are not late, even if it takes them
+  // later.
   Time looked = barrier.now;
   socket.handled();
   for (;;) {
     barrier.now = Clock::now();
-    socket.set_ticking(commands != nullptr && barrier.gate.is_owed() && !waits_for_newcomer(barrier));
+    socket.set_ticking(commands != nullptr && barrier.gate.is_owed() &&
+                       !waits_for_newcomer(barrier));
     socket.tend();
     if (take_messages(done, commands)) return Outcome::complete;
     advance(looked);
@@ -170,11 +175,11 @@ void Server::open(const wire::Run& run, const Config& config) {
   State& state = *state_;
   if (!config.private_endpoint.empty()) state.socket.add_private(config);
   if (std::ranges::any_of(config.injections, &Injection::any)) {
-    state.link.emplace(targets_of(config, run), run.seed, 2 * config.max_message_bytes,
-                       [&state](const std::string& connection, std::string_view bytes,
-                                bool is_observation) {
-                         return state.socket.send(connection, bytes, is_observation);
-                       });
+    state.link.emplace(
+        targets_of(config, run), run.seed, 2 * config.max_message_bytes,
+        [&state](const std::string& connection, std::string_view bytes, bool is_observation) {
+          return state.socket.send(connection, bytes, is_observation);
+        });
   }
   state.barrier.now = Clock::now();
   network::open(state.barrier, run, config.deadlines, config.deadline_of_others);
@@ -184,7 +189,7 @@ void Server::open(const wire::Run& run, const Config& config) {
 Outcome Server::gather(const Wait& wait) {
   const Barrier& barrier = state_->barrier;
   const auto is_gathered = [&] {
-    return barrier.seats.all_taken() && barrier.directors.seats.all_taken();
+    return barrier.ownership.all_taken() && barrier.directors.ownership.all_taken();
   };
   return state_->wait_until(is_gathered, wait, nullptr);
 }
@@ -240,8 +245,8 @@ void Server::set_paused(bool is_paused) {
 
 Pause Server::pause() const {
   const TickGate& gate = state_->barrier.gate;
-  if (gate.is_standing()) return Pause::standing;
-  return gate.is_held(TickGate::Hold::paused) ? Pause::asked : Pause::none;
+  if (gate.is_halted()) return Pause::halted;
+  return gate.is_held(TickGate::Hold::paused) ? Pause::requested : Pause::none;
 }
 
 void keep_alive(Server& server) {
@@ -269,7 +274,7 @@ void Server::answer(const Call& call, const std::function<void(wire::Outbox&)>& 
 }
 
 void Server::answer_question(const Call& call, const std::function<void(wire::Outbox&)>& write) {
-  const Answers::Version version{state_->changes, state_->commands};
+  const AnswerCache::Version version{state_->changes, state_->commands};
   wire::Answer& answer = state_->answers.find(call.request, version, write);
   network::answer(state_->barrier, call,
                   [&](wire::Outbox& outbox) { outbox.response(call.request.id, answer); });
@@ -307,26 +312,26 @@ Report Server::take_report() {
   return report;
 }
 
-void DirectorsDesk::check_by(
+void ServerDirectors::check_by(
     std::function<std::optional<wire::Fault>(const wire::Direction&)> check) {
   state_.barrier.directors.check = std::move(check);
 }
 
-const std::vector<Directed>& DirectorsDesk::directions() const {
+const std::vector<Directed>& ServerDirectors::directions() const {
   return network::directions(state_.barrier);
 }
 
-bool DirectorsDesk::wants_contacts() const { return network::wants_contacts(state_.barrier); }
+bool ServerDirectors::wants_contacts() const { return network::wants_contacts(state_.barrier); }
 
-bool DirectorsDesk::has(const std::string& id) const {
+bool ServerDirectors::has(const std::string& id) const {
   return state_.barrier.directors.find(id).has_value();
 }
 
-void DirectorsDesk::warn(const std::string& director, wire::Fault fault) {
+void ServerDirectors::warn(const std::string& director, wire::Fault fault) {
   warn_director(state_.barrier, director, std::move(fault));
 }
 
-std::vector<DirectorStatus> DirectorsDesk::status() const {
+std::vector<DirectorStatus> ServerDirectors::status() const {
   return director_status(state_.barrier);
 }
 

@@ -37,7 +37,7 @@
 
 namespace ziggurat::network {
 
-/// How long to wait, and for what else.
+/// Timeout of a wait, and descriptors that end it.
 struct Wait {
   std::chrono::milliseconds timeout{-1};  ///< wall time; negative: forever
   std::span<const int> descriptors;       ///< return as soon as one of these is readable
@@ -47,11 +47,12 @@ enum class Outcome {
   complete,   ///< what was waited for is there
   timed_out,  ///< the time is over; call again to go on
   woken,      ///< a descriptor is readable, a signal arrived, or take_calls() has something or the
-              ///< world has come to stand; call again to go on
+              ///< world was halted; call again to go on
 };
 
-/// Whether the world is paused; once it is asked for, the world stands when the tick in hand is answered.
-enum class Pause { none, asked, standing };
+/// Whether the world is paused; once it is asked for, the world is halted when the current tick is
+/// answered.
+enum class Pause { none, requested, halted };
 
 class Server {
  public:
@@ -65,7 +66,8 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /// Where it listens, wildcards resolved: the private one first, then as in the config.
+  /// Addresses that it listens at, wildcards resolved: the private one first, then as in the
+  /// config.
   const std::vector<std::string>& endpoints() const;
 
   /// Answers clients while the world is being loaded.
@@ -96,7 +98,8 @@ class Server {
   /// Until every robot that is not gone has answered the published tick; values are written into
   /// `commands` as they arrive, those of robots that are gone become zero. On anything but
   /// `complete` some robots' values may be in already; calling again goes on.
-  /// @param metrics  gets those that were set at the tick, if it is complete: in scene order, sorted by
+  /// @param metrics  gets those that were set at the tick, if it is complete: in scene order,
+  /// sorted by
   ///                 name for each robot; null: not wanted
   Outcome collect(world::Commands& commands, const Wait& wait,
                   std::vector<world::Metric>* metrics = nullptr);
@@ -112,10 +115,10 @@ class Server {
   /// sessions that begin although the tick was complete.
   Outcome linger(world::Commands& commands, const Wait& wait);
 
-  /// Robots have come: those of the layout that the server does not know yet. The tick in hand does
+  /// Robots have come: those of the layout that the server does not know yet. The current tick does
   /// not wait for them, the next one does.
   /// @param scripts  of them, as Run::scripts
-  /// @param observations, tag_payloads  of the tick in hand, theirs included
+  /// @param observations, tag_payloads  of the current tick, theirs included
   void add_robots(std::span<const std::string> scripts, const world::Observations& observations,
                   const std::vector<std::string>& tag_payloads);
 
@@ -126,14 +129,14 @@ class Server {
   void remove_robots(std::span<const std::size_t> robots, const std::string& why = {});
 
   /// While that holds no tick is complete: collect() must still be called. Once the tick is
-  /// answered, the world stands, and sessions are told.
+  /// answered, the world is halted, and sessions are told.
   void set_paused(bool is_paused);
   Pause pause() const;
 
-  /// The world went back to its start or to a snapshot: sessions are told, what they owed is void, and
-  /// the next observation to be published is that of tick 0 or of the snapshot. Robots that the layout
-  /// has no more, or that are others now, are forgotten, and sessions that have one of them are over;
-  /// these others come by add_robots().
+  /// The world went back to its start or to a snapshot: sessions are told, what they owed is void,
+  /// and the next observation to be published is that of tick 0 or of the snapshot. Robots that the
+  /// layout has no more, or that are others now, are forgotten, and sessions that have one of them
+  /// are over; these others come by add_robots().
   /// @param restart  its epoch is the server's to know
   void restart(const wire::Restart& restart);
 
@@ -150,37 +153,38 @@ class Server {
   void answer_question(const Call& call, const std::function<void(wire::Outbox&)>& write);
   /// Adds what a server knows: sessions, and robots that are free or have left.
   void fill(wire::Status& status) const;
-  std::vector<RobotStatus> status() const;       ///< per robot of the layout
+  std::vector<RobotStatus> status() const;  ///< per robot of the layout
   Performance performance() const;
   Report take_report();
 
  private:
-  friend class DirectorsDesk;
+  friend class ServerDirectors;
   friend void keep_alive(Server& server);
   friend Need need_of(const Server& server, const std::vector<std::string>& ids);
   struct State;
   std::unique_ptr<State> state_;
 };
 
-/// While the world is put back, when its layout may be another already: sends heartbeats as usual, and takes
-/// no message.
+/// While the world is put back, when its layout may be another already: sends heartbeats as usual,
+/// and takes no message.
 void keep_alive(Server& server);
 
-/// What the world needs most of the sessions that have these robots or directors.
+/// Greatest need of the sessions that have these robots or directors.
 Need need_of(const Server& server, const std::vector<std::string>& ids);
 
 /// The directors of a server.
-class DirectorsDesk {
+class ServerDirectors {
  public:
   /// @param server  must outlive this
-  explicit DirectorsDesk(Server& server) : state_(*server.state_) {}
+  explicit ServerDirectors(Server& server) : state_(*server.state_) {}
 
-  /// Told of each Direction that arrives, before it is taken: what is wrong with it in the present world.
+  /// Told of each Direction that arrives, before it is taken: what is wrong with it in the present
+  /// world.
   void check_by(std::function<std::optional<wire::Fault>(const wire::Direction&)> check);
-  /// What directors want done between the published tick, which is complete, and the next: in the order of
-  /// their ids. Valid until the server waits again.
+  /// Directions to apply between the published tick, which is complete, and the next. They are in
+  /// the order of their directors' ids, and valid until the server waits again.
   const std::vector<Directed>& directions() const;
-  bool wants_contacts() const;             ///< a director subscribed to them
+  bool wants_contacts() const;            ///< a director subscribed to them
   bool has(const std::string& id) const;  ///< a director of that id is there, or was
   /// Tells a director, if it is connected, that one of its acts was not done.
   void warn(const std::string& director, wire::Fault fault);

@@ -20,10 +20,10 @@ using Seconds = std::chrono::duration<double>;
 
 constexpr milliseconds linger{1000};  // what waits at the end may take this long
 constexpr milliseconds tending{500};
-constexpr int looks_at_once = 64;     // at what may be no message, until the caller looks at the time
-constexpr int members_at_once = 64;   // until others have a look, if these never end
+constexpr int looks_at_once = 64;  // at what may be no message, until the caller looks at the time
+constexpr int members_at_once = 64;  // until others have a look, if these never end
 
-/// How many descriptors connections may have: an eighth is for files and processes.
+/// Number of descriptors for connections: an eighth of all stays for files and processes.
 std::size_t descriptors_for_peers() {
   constexpr std::size_t most = 65'536, least_reserved = 48;
   rlimit limit{};
@@ -40,7 +40,8 @@ Socket::Socket(const Config& config)
       most_peers_(descriptors_for_peers()),
       most_without_session_(std::clamp(most_peers_ / 2, std::size_t{1}, most_without_session)),
       next_tending_(Clock::now()),
-      share_{config.curve ? share_of_others_with_keys : share_of_others, Seconds(saved_share).count()},
+      share_{config.curve ? share_of_others_with_keys : share_of_others,
+             Seconds(saved_share).count()},
       others_time_(share_, next_tending_) {
   if (config.curve) keys_.emplace(*config.curve);
   const bool allows_any = config.insecure || config.curve;
@@ -93,8 +94,7 @@ Delivery Socket::send(const std::string& connection, std::string_view bytes, boo
               [&](std::uint8_t* to) { std::memcpy(to, bytes.data(), bytes.size()); });
 }
 
-void Socket::set_standing(const std::string& connection, Standing standing,
-                          std::size_t longest) {
+void Socket::set_standing(const std::string& connection, Standing standing, std::size_t longest) {
   peers_.set_standing(connection, standing, longest, Clock::now());
   if (!is_other(standing)) other_since_.reset();  // it is none any more
   PeerSocket* peer = peers_.find(connection);
@@ -113,8 +113,9 @@ void Socket::handled() {
   if (!is_ticking_) return;
   const Time now = Clock::now();
   const double time = std::min(used.count(), Seconds(most_cost).count());
-  const double cost = members_.is_ready() ? std::max(time, Seconds(least_cost).count())
-                                          : std::max(part_of_idle_time * time, Seconds(least_idle_cost).count());
+  const double cost = members_.is_ready()
+                          ? std::max(time, Seconds(least_cost).count())
+                          : std::max(part_of_idle_time * time, Seconds(least_idle_cost).count());
   const double left = others_time_.refill(share_, now) - cost;
   others_time_.charge(cost);
   if (left > 0) return;
@@ -134,7 +135,7 @@ bool Socket::receive(Received& received) {
   return false;
 }
 
-/// Whose turn it is; null if there is nothing to do.
+/// Group to serve next; null if there is nothing to do.
 Socket::Group* Socket::next_group() {
   const bool has_members = members_.is_ready();
   if (has_members && ++members_in_a_row_ < members_at_once) return &members_;
@@ -155,8 +156,8 @@ bool Socket::look_at(Group& group, Received& received) {
   return take_message(group, received);
 }
 
-/// The next message of the connection whose turn it is, or some of its other frames. It gets another turn after
-/// all others, so that one that sends much does not keep them waiting.
+/// The next message of the connection whose turn it is, or some of its other frames. It gets
+/// another turn after all others, so that one that sends much does not keep them waiting.
 bool Socket::take_message(Group& group, Received& received) {
   if (group.turns.empty()) return false;
   PeerSocket* peer = peers_.find(group.turns.front());
@@ -175,8 +176,8 @@ void Socket::Group::give_turn(PeerSocket& peer) {
   peer.has_turn = true;
 }
 
-/// A connection that is ready gets a turn, unless it ended within its handshake. What it sends waits in the system until it has had all
-/// messages that are here already.
+/// A connection that is ready gets a turn, unless it ended within its handshake. What it sends
+/// waits in the system until it has had all messages that are here already.
 void Socket::read_from(const ReadyList::Ready& ready) {
   if (ready.id < PeerTable::first_id) return accept(entrances_[ready.id]);
   PeerSocket* peer = peers_.find(ready.id);
@@ -193,8 +194,7 @@ void Socket::read_from(const ReadyList::Ready& ready) {
 /// Accepts one connection. Those without session take no places of those over the private entrance.
 void Socket::accept(Entrance& entrance) {
   const Time now = Clock::now();
-  const bool are_many =
-      !entrance.is_private && peers_.without_session() >= most_without_session_;
+  const bool are_many = !entrance.is_private && peers_.without_session() >= most_without_session_;
   const bool is_full = are_many || peers_.size() >= most_peers_;
   if (is_full && !peers_.make_place(now)) return entrance.set_accepting(peers_.others(), false);
   peers_.remove_ended();

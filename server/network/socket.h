@@ -1,8 +1,9 @@
 #pragma once
-// The server's end of all connections: it listens at every endpoint and speaks ZMTP as a ROUTER
-// does, but takes no routing ids from clients. It looks at one thing at a time: a connection that begins, what one
-// has sent, some frames of it. Between two looks are those who come first, controllers and supervisors. All
-// others have time in which nothing of these waits, and a small share of the rest.
+// Server's end of all connections: it listens at every endpoint and speaks ZMTP as a ROUTER does,
+// but takes no routing ids from clients. It works in small steps: it accepts one connection, reads
+// its bytes, or decodes some of its frames. Between two steps, messages of controllers and
+// supervisors have priority. All others have the time in which no such message waits, and a small
+// share of the rest.
 
 #include <poll.h>
 
@@ -40,21 +41,21 @@ class Socket {
   void add_private(const Config& config);
 
   const std::vector<std::string>& endpoints() const { return endpoints_; }
-  /// How many connections there may be, as far as the system's limits allow.
+  /// Greatest number of connections within the system's limits.
   std::size_t most_connections() const { return most_peers_; }
 
   // Neither waits.
   Delivery send(const std::string& connection, const wire::Outbox& message);
   Delivery send(const std::string& connection, std::string_view bytes, bool is_observation);
 
-  /// What a connection is from now on.
-  /// @param longest  of its messages [bytes]
+  /// Sets the standing of a connection.
+  /// @param longest  length of its longest message [bytes]
   void set_standing(const std::string& connection, Standing standing, std::size_t longest);
   /// A message that arrived, if any. Valid until the next call. It is false, too, if clients send
   /// much that is no message: the caller looks at the time and calls again.
   bool receive(Received& received);
-  /// The last message is handled, with what was to be done for it. That is charged if it was one of others: in full
-  /// if a message of a controller or supervisor waits now.
+  /// Ends the work for the last message. Work for others is charged to their share: in full if a
+  /// message of a controller or supervisor waits now.
   void handled();
   /// Connections that have ended since the last call.
   std::vector<std::string> take_gone() { return peers_.take_gone(); }
@@ -81,14 +82,14 @@ class Socket {
     bool is_private = false;
     bool is_accepting = true;
 
-    /// Those who connect while it does not accept wait in the system.
+    /// Accepts connections, or leaves new ones waiting in the system.
     void set_accepting(ReadyList& list, bool accepts);
   };
   /// Connections that are served together.
   struct Group {
     ReadyList& list;
-    std::deque<std::string> turns;   ///< those that may have messages: one each, in turn
-    std::size_t until_look = 0;      ///< so many turns until the list is asked for others
+    std::deque<std::string> turns;  ///< those that may have messages: one each, in turn
+    std::size_t until_look = 0;     ///< so many turns until the list is asked for others
 
     bool is_ready() const { return !turns.empty() || list.look(); }
     void give_turn(PeerSocket& peer);
@@ -119,7 +120,7 @@ class Socket {
   TokenBucket others_time_;
   Time others_wait_until_;
   std::optional<ThreadClock::time_point> other_since_;  // when what is done for one began
-  int members_in_a_row_ = 0;                               // looks at them
+  int members_in_a_row_ = 0;                            // looks at them
   Buffer frame_;
   std::vector<pollfd> polled_;
 };

@@ -1,6 +1,6 @@
 #pragma once
-// A bucket of tokens: full at the start, refilled by time. What is counted, such as messages, sentences or
-// time, takes tokens.
+// Token bucket: full at the start, refilled by time. Messages, sentences or time take tokens from
+// it.
 
 #include <algorithm>
 #include <chrono>
@@ -33,7 +33,7 @@ class TokenBucket {
   }
   /// Takes so many, which may be owed. @pre the bucket was refilled for this moment
   void charge(double tokens) { tokens_ -= tokens; }
-  /// What was taken a moment ago does not count.
+  /// Returns tokens that were taken a moment ago.
   void give_back(double tokens) { tokens_ += tokens; }
 
  private:

@@ -2,10 +2,9 @@
 
 #include <cmath>
 
-#include "physics/assembly.h"
-#include "physics/magnet_cores.h"
-#include "physics/shape.h"
-#include "physics/turning_magnets.h"
+#include "physics/bodies/bodies.h"
+#include "physics/collision/shape.h"
+#include "physics/magnet_source.h"
 #include "physics/welding.h"
 
 namespace ziggurat::physics {

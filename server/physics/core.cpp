@@ -1,107 +1,181 @@
 #include "physics/core.h"
 
-#include "math/archive.h"
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
-#include "physics/bullet/core.h"
-#include "physics/newton/core.h"
+#include "physics/bodies/convert.h"
+#include "physics/build.h"
+#include "physics/collision/colliders.h"
 
 namespace ziggurat::physics {
 namespace {
 
-/// Calls a function with the core that the scene chose.
-template <class Cores, class Function>
-decltype(auto) with(Cores& core, Function function) {
-  return std::visit([&](auto& chosen) -> decltype(auto) { return function(*chosen); }, core);
+/// Clears the dialect's default damping: it is meant for its own clock.
+void clear_default_damping(Body& body, const scene::Physics& physics) {
+  if (physics.clock != scene::Clock::nominal) return;
+  for (LinkBody& link : body.links) {
+    if (link.damping.usual_linear) link.damping.linear = 0;
+    if (link.damping.usual_angular) link.damping.angular = 0;
+  }
+}
+
+std::vector<CoordinateJoint> coordinate_joints_of(const scene::Entity& entity, const Body& body) {
+  std::vector<CoordinateJoint> made;
+  for (std::size_t i = 0; i < entity.joints.size(); ++i) {
+    const scene::Joint& joint = entity.joints[i];
+    if (!scene::has_coordinate(joint.type)) continue;
+    CoordinateJoint& moving = made.emplace_back();
+    moving.entity = body.entity;
+    moving.index = i;
+    moving.part = body.links[joint.child].part;
+    moving.limit = joint.limit;
+  }
+  return made;
+}
+
+/// Joints of an entity: joints stand in the order of their entities.
+std::span<CoordinateJoint> joints_of(std::size_t entity, std::vector<CoordinateJoint>& joints) {
+  return {std::ranges::lower_bound(joints, entity, {}, &CoordinateJoint::entity),
+          std::ranges::upper_bound(joints, entity, {}, &CoordinateJoint::entity)};
+}
+
+/// Shares models with recent entities: equal ones mostly follow each other, or alternate with a few
+/// others.
+void share_mechanism(dynamics::Tree& tree, const std::vector<dynamics::Tree>& trees) {
+  constexpr std::size_t most = 8;
+  for (std::size_t i = 0; i < std::min(most, trees.size()); ++i) {
+    if (tree.share_model(trees[trees.size() - 1 - i])) return;
+  }
 }
 
 }  // namespace
 
-Core::Core(const scene::Physics& physics) {
-  if (physics.solver == scene::Solver::newton) {
-    core_ = std::make_unique<NewtonCore>(physics);
-  } else {
-    core_ = std::make_unique<SweepsCore>(physics);
+NewtonCore::NewtonCore(const scene::Physics& physics) : settings_(physics) {
+  colliders_.gravity = std::abs(physics.gravity.value_or(0));
+}
+
+Body NewtonCore::add(const scene::Entity& entity, std::size_t number) {
+  Body body = make_body(entity, settings_, number);
+  clear_default_damping(body, settings_);
+  dynamics::Tree tree = make_tree(body, entity, settings_);
+  const std::vector<CoordinateJoint> joints = coordinate_joints_of(entity, body);
+  share_mechanism(tree, system_.trees);
+  make_room(system_.trees, 1);
+  make_room(joints_, joints.size());
+  make_room(ground_servos_, 1);
+  make_room(leapfrog_sync_.of_tree, 1);
+  colliders_.add(body, entity, tree);
+  system_.trees.push_back(std::move(tree));
+  leapfrog_sync_.of_tree.push_back(LeapfrogSync::unknown);
+  joints_.insert(joints_.end(), joints.begin(), joints.end());
+  if (body.ground && entity.movable) ground_servos_.push_back({number, {}});
+  body.articulation = Articulation{&system_, number};
+  return body;
+}
+
+void NewtonCore::detach(std::size_t entity) {
+  contacts_.forget(entity, system_);
+  colliders_.remove(entity);
+  ground_servos_.erase(std::ranges::lower_bound(ground_servos_, entity, {}, &GroundServo::entity),
+                       std::ranges::upper_bound(ground_servos_, entity, {}, &GroundServo::entity));
+}
+
+void NewtonCore::remove(Body& body) {
+  detach(body.entity);
+  system_.trees[body.entity].clear();
+  for (CoordinateJoint& joint : joints_of(body.entity, joints_)) {
+    joint.present = false;
+    joint.mode = scene::JointMode::disabled;
+    joint.limit.reset();
   }
+  body.articulation.reset();
 }
 
-Core::~Core() = default;
-
-void Core::add_floor(const scene::Surface& surface) {
-  with(core_, [&](auto& core) { core.add_floor(surface); });
+void NewtonCore::take_back(Body& body) {
+  detach(body.entity);
+  system_.trees.pop_back();
+  leapfrog_sync_.of_tree.pop_back();
+  std::erase_if(joints_, [&](const auto& joint) { return joint.entity == body.entity; });
+  body.articulation.reset();
 }
 
-Body Core::add(const scene::Entity& entity, std::size_t number) {
-  return with(core_, [&](auto& core) { return core.add(entity, number); });
+void NewtonCore::move(Body& body) {
+  dynamics::Tree& old = system_.trees[body.entity];
+  dynamics::Tree tree(old, base_pose(body));
+  tree.gravity = old.gravity;
+  old = std::move(tree);
+  begin_anew(*this, body.entity);
 }
 
-void Core::remove(Body& body) {
-  with(core_, [&](auto& core) { core.remove(body); });
-}
-
-/// Newton's core ends with its bodies in it: they are places in its lists.
-void Core::take_apart(std::span<Body> bodies) {
-  const auto* sweeps = std::get_if<std::unique_ptr<SweepsCore>>(&core_);
-  if (!sweeps) return;
-  for (Body& body : bodies) {
-    if (body.present()) (*sweeps)->remove(body);
+void begin_anew(NewtonCore& core, std::size_t entity) {
+  for (CoordinateJoint& joint : joints_of(entity, core.joints_)) {
+    joint.limit_impulse = joint.motor_impulse = 0;
   }
-}
-
-void Core::take_back(Body& body) {
-  with(core_, [&](auto& core) { core.take_back(body); });
-}
-
-void Core::move(Body& body) {
-  with(core_, [&](auto& core) { core.move(body); });
-}
-
-std::optional<std::size_t> Core::overlapped_by(std::span<const PlacedCollider> colliders,
-                                               std::size_t except) const {
-  return with(core_, [&](const auto& core) { return core.overlapped_by(colliders, except); });
-}
-
-JointIndex Core::joint(std::size_t entity, std::size_t joint) const {
-  return with(core_, [&](const auto& core) { return core.joint(entity, joint); });
-}
-
-void Core::add_motor(JointIndex joint, scene::JointMode mode, double max_impulse) {
-  with(core_, [&](auto& core) { core.add_motor(joint, mode, max_impulse); });
-}
-
-void Core::set_target(JointIndex joint, double target) {
-  with(core_, [&](auto& core) { core.set_target(joint, target); });
-}
-
-void Core::set_joint(JointIndex joint, double position, double velocity) {
-  physics::set_joint(*std::get<std::unique_ptr<NewtonCore>>(core_), joint, position, velocity);
-}
-
-double Core::position(JointIndex joint) const {
-  return with(core_, [&](const auto& core) { return core.position(joint); });
-}
-
-double Core::velocity(JointIndex joint) const {
-  return with(core_, [&](const auto& core) { return core.velocity(joint); });
-}
-
-void Core::substep(std::span<Body> bodies, double length, int splits, Plugin* stiff) {
-  if (auto* newton = std::get_if<std::unique_ptr<NewtonCore>>(&core_)) {
-    (*newton)->substep(bodies, length, splits, stiff);
-  } else {
-    std::get<std::unique_ptr<SweepsCore>>(core_)->substep(bodies, length, splits);
+  for (NewtonCore::GroundServo& held : core.ground_servos_) {
+    if (held.entity == entity) held.impulses = {};
   }
+  core.contacts_.forget(entity, core.system_);
+  core.leapfrog_sync_.of_tree[entity] = LeapfrogSync::unknown;
+  core.system_.wake(static_cast<int>(entity));
+  core.colliders_.reset_poses(entity, core.system_.trees[entity]);
 }
 
-void Core::contacts(std::vector<LinkContact>& out) const {
-  with(core_, [&](const auto& core) { core.contacts(out); });
+void set_joint(NewtonCore& core, JointIndex index, double position, double velocity) {
+  const CoordinateJoint& joint = core.joints_[index.value];
+  dynamics::Tree& tree = core.system_.trees[joint.entity];
+  tree.q[position_of(tree, joint.part)] = position;
+  tree.v[dof_of(tree, joint.part)] = velocity;
+  tree.integrator_step = 0;
+  dynamics::forward_kinematics(tree);
+  dynamics::velocity_kinematics(tree);
+  begin_anew(core, joint.entity);
 }
 
-Convergence Core::convergence() const {
-  return with(core_, [](const auto& core) { return core.convergence(); });
+std::optional<std::size_t> NewtonCore::overlapped_by(std::span<const PlacedCollider> colliders,
+                                                     std::size_t except) const {
+  std::optional<std::size_t> first;
+  for (const Collider& collider : colliders_.all) {
+    if (!collider.is_present || collider.entity == except || (first && *first <= collider.entity))
+      continue;
+    const btVector3 part = to_bullet(system_.trees[collider.entity].position[collider.part]);
+    const btScalar reach = collider.radius + collider.in_part.getOrigin().length();
+    const auto is_far = [&](const PlacedCollider& each) {
+      return part.distance(each.pose.getOrigin()) > reach + contact::bounding_radius(each.shape);
+    };
+    if (std::ranges::all_of(colliders, is_far)) continue;  // most are, and their poses take longer
+    const PlacedCollider other{collider.shape, colliders_.pose(collider, system_)};
+    if (std::ranges::any_of(
+            colliders, [&](const auto& each) { return overlaps(each, other, resting_depth); })) {
+      first = collider.entity;
+    }
+  }
+  return first;
 }
 
-void Core::archive(math::Archive& archive) {
-  archive("newton", *std::get<std::unique_ptr<NewtonCore>>(core_));
+JointIndex NewtonCore::joint(std::size_t entity, std::size_t joint) const {
+  const auto place = [](const CoordinateJoint& of) { return std::pair(of.entity, of.index); };
+  const auto found = std::ranges::lower_bound(joints_, std::pair(entity, joint), {}, place);
+  return {static_cast<std::size_t>(found - joints_.begin())};
+}
+
+void NewtonCore::add_motor(JointIndex index, scene::JointMode mode, double max_impulse) {
+  joints_[index.value].mode = mode;
+  joints_[index.value].max_impulse = max_impulse;
+}
+
+double NewtonCore::position(JointIndex index) const {
+  const CoordinateJoint& joint = joints_[index.value];
+  if (!joint.present) return 0;
+  const dynamics::Tree& tree = system_.trees[joint.entity];
+  return tree.q[position_of(tree, joint.part)];
+}
+
+double NewtonCore::velocity(JointIndex index) const {
+  const CoordinateJoint& joint = joints_[index.value];
+  if (!joint.present) return 0;
+  const dynamics::Tree& tree = system_.trees[joint.entity];
+  return tree.v[dof_of(tree, joint.part)];
 }
 
 }  // namespace ziggurat::physics

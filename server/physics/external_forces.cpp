@@ -1,6 +1,5 @@
-#include "physics/external_forces.h"
-
-#include "physics/convert.h"
+#include "physics/bodies/convert.h"
+#include "physics/forces.h"
 
 namespace ziggurat::physics {
 
@@ -10,10 +9,8 @@ void ExternalForces::before_substep(std::span<Body> bodies, double) {
     if (push.link >= body.links.size()) continue;  // removed
     const LinkBody& link = body.links[push.link];
     if (!link.moves) continue;
-    body.wake();
     const btVector3 force = to_bullet(push.force);
-    const btVector3 arm =
-        body.transform(link).getOrigin() - body.transform(link.part).getOrigin();
+    const btVector3 arm = body.transform(link).getOrigin() - body.transform(link.part).getOrigin();
     body.apply_force(link.part, force);
     body.apply_torque(link.part, arm.cross(force) + to_bullet(push.torque));
   }

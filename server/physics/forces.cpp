@@ -2,19 +2,9 @@
 
 #include <algorithm>
 
-#include "physics/convert.h"
+#include "physics/bodies/convert.h"
 
 namespace ziggurat::physics {
-
-void Gravity::before_substep(std::span<Body> bodies, double) {
-  for (Body& body : bodies) {
-    if (body.parts.empty() || body.sleeps()) continue;
-    for (std::size_t i = 0; i < body.parts.size(); ++i) {
-      const Part& part = body.parts[i];
-      if (part.moves) body.apply_force(i, btVector3(0, 0, -g_ * part.mass));
-    }
-  }
-}
 
 void ViscousDamping::body_added(Body& body) {
   const bool damped = std::any_of(body.links.begin(), body.links.end(), [](const LinkBody& link) {

@@ -1,9 +1,7 @@
-#include "physics/magnet_cores.h"
-
 #include <algorithm>
 
-#include "physics/shape.h"
-#include "physics/turning_magnets.h"
+#include "physics/collision/shape.h"
+#include "physics/magnet_source.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -47,7 +45,8 @@ void set_magnet_cores(Body& body, const scene::Entity& entity) {
   const bool any_turns = std::ranges::any_of(balls, &Ball::turns);
   for (std::size_t i = 0; i < balls.size() && !several; ++i) {
     double radius = balls[i].radius;
-    for (std::size_t j = 0; j < balls.size() && any_turns; ++j) {  // those that act on each other stay apart
+    for (std::size_t j = 0; j < balls.size() && any_turns;
+         ++j) {  // those that act on each other stay apart
       if (j == i || !(balls[i].turns || balls[j].turns)) continue;
       radius = std::min(radius, (balls[i].centre - balls[j].centre).norm() / 2);
     }

@@ -4,9 +4,8 @@
 #include <utility>
 
 #include "magnetism/stiffness.h"
-#include "physics/convert.h"
+#include "physics/bodies/convert.h"
 #include "physics/magnet_source.h"
-#include "physics/turning_magnets.h"
 
 namespace ziggurat::physics {
 
@@ -81,8 +80,7 @@ PairOfMagnets pair_of(const magnetism::Field& field, std::size_t i, std::size_t 
 
 }  // namespace
 
-Magnets::Magnets(const scene::Magnetism& magnetism, bool divides)
-    : settings_(magnetism), divides_(divides) {
+Magnets::Magnets(const scene::Magnetism& magnetism) : settings_(magnetism) {
   if (magnetism.max_distance) options_.max_distance = *magnetism.max_distance;
   if (magnetism.adaptive) options_.precision = magnetism::Precision::adaptive;
   options_.tolerance = magnetism.tolerance;
@@ -124,10 +122,11 @@ void Magnets::build_field(std::span<const Body> bodies) {
   std::vector<magnetism::Magnet> magnets;
   std::ptrdiff_t first = 0;  // carrier of the entity under way: magnets of an entity stand together
   for (const PlacedMagnet& placed : magnets_) {
-    if (!carriers_.empty() && carriers_.back().entity != placed.entity) first = std::ssize(carriers_);
-    const auto found = std::find_if(carriers_.begin() + first, carriers_.end(), [&](const Carrier& carrier) {
-      return carrier.part == placed.part;
-    });
+    if (!carriers_.empty() && carriers_.back().entity != placed.entity)
+      first = std::ssize(carriers_);
+    const auto found =
+        std::find_if(carriers_.begin() + first, carriers_.end(),
+                     [&](const Carrier& carrier) { return carrier.part == placed.part; });
     magnets.push_back(placed.magnet);
     magnets.back().body = static_cast<std::uint32_t>(found - carriers_.begin());
     if (found == carriers_.end()) {
@@ -175,7 +174,7 @@ void Magnets::before_substep(std::span<Body> bodies, double substep) {
     ++substeps_;
     field_->evaluate(substep, poses_, currents_, wrenches_);
     evaluated_ = true;
-    if (divides_) find_close_pairs(bodies, substep);
+    find_close_pairs(bodies, substep);
     quiet_ = false;
   } else {
     quiet_ = true;
@@ -292,8 +291,7 @@ void Magnets::push_stiff(std::span<Body> bodies, double share) {
   for (const std::size_t i : chosen_carriers_) push(bodies, i, share);
 }
 
-StiffestBond stiffest_bond(std::span<const Body> bodies, const scene::Magnetism& magnetism,
-                           bool divides) {
+StiffestBond stiffest_bond(std::span<const Body> bodies, const scene::Magnetism& magnetism) {
   StiffestBond stiffest;
   for (const Body& body : bodies) {
     std::vector<PlacedMagnet> magnets;
@@ -303,11 +301,8 @@ StiffestBond stiffest_bond(std::span<const Body> bodies, const scene::Magnetism&
     for (std::size_t i = 0; i < body.links.size() && !magnets.empty(); ++i) {
       for (const bool fixed : {false, true}) {
         const double rate = stiffest_rate(body, i, magnets, fixed);
-        const double safe = !fixed    ? magnetism::stiffest_product
-                            : divides ? safe_divided
-                                      : safe_whole;
-        if (rate / safe > stiffest.rate / stiffest.safe)
-          stiffest = {body.entity, rate, safe, fixed};
+        const double safe = fixed ? safe_divided : magnetism::stiffest_product;
+        if (rate / safe > stiffest.rate / stiffest.safe) stiffest = {body.entity, rate, safe};
       }
     }
   }

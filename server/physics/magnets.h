@@ -23,8 +23,7 @@ struct PlacedMagnet {
 
 class Magnets final : public Plugin {
  public:
-  /// @param divides  whether the core divides substeps for stiff pairs
-  explicit Magnets(const scene::Magnetism& magnetism, bool divides = false);
+  explicit Magnets(const scene::Magnetism& magnetism);
 
   void body_added(Body& body) override;
   void body_removed(const Body& body) override;
@@ -58,9 +57,8 @@ class Magnets final : public Plugin {
   bool evaluated_ = false;  // wrenches_ are those at poses_ and currents_
 
   // Pairs for which a substep is divided.
-  bool divides_;
-  std::uint64_t substeps_ = 0;  // without quiet ones
-  bool quiet_ = false;          // nothing had changed in the substep before
+  std::uint64_t substeps_ = 0;                          // without quiet ones
+  bool quiet_ = false;                                  // nothing had changed in the substep before
   double felt_inverse_mass_ = 0, inverse_inertia_ = 0;  // the largest of the carriers
   std::vector<magnetism::MagnetPair> near_, chosen_pairs_;
   std::vector<ClosePair> close_;  // of the last one of these
@@ -75,10 +73,7 @@ struct StiffestBond {
   std::size_t entity = 0;  ///< whose it is
   double rate = 0;         ///< see magnetism/stiffness.h [rad/s]
   double safe = 1;         ///< substeps are short enough while substep * rate is below this
-  bool fixed = false;      ///< by magnets that are fixed in their bodies
 };
-/// @param divides  whether the core divides substeps for stiff pairs
-StiffestBond stiffest_bond(std::span<const Body> bodies, const scene::Magnetism& magnetism,
-                           bool divides);
+StiffestBond stiffest_bond(std::span<const Body> bodies, const scene::Magnetism& magnetism);
 
 }  // namespace ziggurat::physics

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "physics/sphere_grid.h"
-#include "physics/overlap.h"
+#include "physics/collision/overlap.h"
+#include "physics/collision/sphere_grid.h"
 
 namespace ziggurat::physics {
 

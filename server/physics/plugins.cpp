@@ -5,9 +5,10 @@
 #include <tuple>
 #include <utility>
 
+#include "physics/contact_sensing.h"
+#include "physics/core.h"
 #include "physics/forces.h"
 #include "physics/magnets.h"
-#include "physics/contact_sensing.h"
 #include "physics/wheels.h"
 
 namespace ziggurat::physics {
@@ -23,15 +24,8 @@ Made make(Arguments&&... arguments) {
 /// The plug-ins, in the order in which they act. The first ones are chosen by their tag in
 /// <dynamics3d>, which scene/engines.cpp reads; a new plug-in is a line here.
 constexpr std::array choices{
-    +[](const scene::Physics& p) {  // dynamics/ has gravity of its own
-      const bool pushed = p.gravity && p.solver == scene::Solver::sweeps;
-      return pushed ? make<Gravity>(*p.gravity) : nullptr;
-    },
     +[](const scene::Physics&) { return make<ViscousDamping>(); },
-    +[](const scene::Physics& p) {
-      const bool divides = p.solver == scene::Solver::newton;
-      return p.magnetism ? make<Magnets>(*p.magnetism, divides) : nullptr;
-    },
+    +[](const scene::Physics& p) { return p.magnetism ? make<Magnets>(*p.magnetism) : nullptr; },
     +[](const scene::Physics&) { return make<Wheels>(); },
     +[](const scene::Physics&) { return make<ContactSensing>(); },
 };
@@ -40,7 +34,7 @@ auto sides(const LinkContact& contact) { return std::tie(contact.a, contact.b); 
 
 }  // namespace
 
-Plugins::Plugins(const scene::Physics& physics, Core& core) {
+Plugins::Plugins(const scene::Physics& physics, NewtonCore& core) {
   if (physics.floor) core.add_floor(physics.floor->surface);
   for (const auto choose : choices) {
     if (Made plugin = choose(physics)) plugins_.push_back(std::move(plugin));
@@ -72,7 +66,7 @@ Plugin* Plugins::stiff() const {
   return nullptr;
 }
 
-void Plugins::after_substep(std::span<Body> bodies, double substep, const Core& core) {
+void Plugins::after_substep(std::span<Body> bodies, double substep, const NewtonCore& core) {
   std::swap(before_, now_);
   now_.clear();
   const bool wanted = std::ranges::any_of(

@@ -5,15 +5,16 @@
 #include <span>
 #include <vector>
 
-#include "physics/core.h"
 #include "physics/plugin.h"
 
 namespace ziggurat::physics {
 
+class NewtonCore;
+
 class Plugins {
  public:
   /// Makes the plug-ins that the scene chooses, and those of every world.
-  Plugins(const scene::Physics& physics, Core& core);
+  Plugins(const scene::Physics& physics, NewtonCore& core);
 
   /// One more, which acts behind the others.
   void add(std::unique_ptr<Plugin> plugin);
@@ -25,14 +26,14 @@ class Plugins {
   /// The one that has stiff pairs in the coming substep; null: none has.
   Plugin* stiff() const;
   /// Tells of contacts, then of the end.
-  void after_substep(std::span<Body> bodies, double substep, const Core& core);
+  void after_substep(std::span<Body> bodies, double substep, const NewtonCore& core);
   void archive(math::Archive& archive, std::span<const Body> bodies);
 
  private:
   void tell_contacts(std::span<Body> bodies);
 
   std::vector<std::unique_ptr<Plugin>> plugins_;  // in the order in which they act
-  std::vector<LinkContact> before_, now_;             // ascending
+  std::vector<LinkContact> before_, now_;         // ascending
 };
 
 }  // namespace ziggurat::physics

@@ -12,8 +12,7 @@ namespace ziggurat::physics {
 
 /// Two bodies bonded by fixed magnets may tumble freely without gaining energy while substep * rate
 /// (magnetism/stiffness.h) is below this. Measured: see docs/magnetism.md.
-constexpr double safe_whole = 0.15;  ///< where the core takes the substep as a whole
-constexpr double safe_divided = 64;  ///< where it divides it for stiff pairs
+constexpr double safe_divided = 64;
 
 /// Need of a pair, or of all pairs of a carrier, in a substep.
 struct Need {

@@ -1,6 +1,5 @@
-#include "physics/turning_magnets.h"
-
-#include "physics/shape.h"
+#include "physics/collision/shape.h"
+#include "physics/magnet_source.h"
 
 namespace ziggurat::physics {
 namespace {

@@ -8,7 +8,8 @@ namespace {
 
 constexpr btScalar slowest = btScalar(1e-6);  // of what slides [m/s]
 
-/// Friction of what does not drive is along its motion: so it is the same in all directions, until it stands.
+/// Friction of what does not drive is along its motion: so it is the same in all directions, until
+/// it stands.
 /// @return  unit, level, or 0 where nothing moves
 btVector3 sliding(const Body& body, const GroundMotion& ground, std::vector<Twist>& motions) {
   if (ground.velocity != 0 || ground.angular_velocity != 0) return {0, 0, 0};
@@ -26,7 +27,8 @@ void aim(const Body& body, GroundMotion& ground, const btVector3& direction, dou
   ground.time_step = substep;
   const btVector3 x = body.transform(std::size_t{0}).getBasis().getColumn(0);
   const double heading = std::atan2(x.y(), x.x()) + half;
-  ground.along = direction.isZero() ? btVector3(std::cos(heading), std::sin(heading), 0) : direction;
+  ground.along =
+      direction.isZero() ? btVector3(std::cos(heading), std::sin(heading), 0) : direction;
   ground.across.setValue(-ground.along.y(), ground.along.x(), 0);
 }
 

@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "physics/archive.h"
-#include "physics/convert.h"
+#include "physics/bodies/convert.h"
 #include "physics/core.h"
+#include "physics/forces.h"
 #include "physics/magnets.h"
 #include "physics/plugins.h"
-#include "physics/external_forces.h"
 
 namespace ziggurat::physics {
 
@@ -41,18 +41,17 @@ struct World::Parts {
     pushes = pushed.get();
     plugins.add(std::move(pushed));
   }
-  ~Parts() { core.take_apart(bodies); }
 
   scene::Physics settings;
   int splits;               // internal substeps per substep
   double length;            // of an internal substep [s]
   std::size_t stepped = 0;  // so many bodies have been through a step; the rest is as placed
   std::size_t link_count = 0, magnet_count = 0;
-  std::vector<Twist> motions;    // memory of read(), kept so that a tick does not allocate it
+  std::vector<Twist> motions;         // memory of read(), kept so that a tick does not allocate it
   std::vector<LinkContact> contacts;  // the same of list_contacts()
 
   std::vector<Body> bodies;
-  Core core;
+  NewtonCore core;
   Plugins plugins;
   ExternalForces* pushes = nullptr;  // one of the plug-ins
 };
@@ -152,9 +151,10 @@ void set_pushes(World& world, std::span<const world::Push> pushes) {
   world.parts_->pushes->set(std::move(list));
 }
 
-void set_joint(World& world, std::size_t entity, JointIndex joint, double position, double velocity) {
+void set_joint(World& world, std::size_t entity, JointIndex joint, double position,
+               double velocity) {
   World::Parts& p = *world.parts_;
-  p.core.set_joint(joint, position, velocity);
+  set_joint(p.core, joint, position, velocity);
   p.plugins.move(p.bodies[entity]);
   p.stepped = std::max(p.stepped, entity + 1);  // its links are no longer where they were placed
 }
@@ -174,7 +174,9 @@ LinkTouch World::take_touch(std::size_t entity, std::size_t link) {
 void World::list_contacts(std::vector<world::Contact>& to) const {
   Parts& p = *parts_;
   p.core.contacts(p.contacts);
-  const auto link_of = [&](const ContactSide& side) { return p.bodies[side.entity].first_link + side.link; };
+  const auto link_of = [&](const ContactSide& side) {
+    return p.bodies[side.entity].first_link + side.link;
+  };
   to.clear();
   for (const LinkContact& contact : p.contacts) {
     world::Contact& entry = to.emplace_back();
@@ -220,7 +222,6 @@ void World::read(std::size_t entity, world::State& state) const {
   state.links.resize(p.link_count);
   Body& body = p.bodies[entity];
   const bool stepped = entity < p.stepped;
-  if (stepped) body.update_poses();
   body.motions(p.motions);
   for (std::size_t i = 0; i < body.links.size(); ++i) {
     const LinkBody& link = body.links[i];
@@ -250,13 +251,11 @@ Convergence World::convergence() const { return parts_->core.convergence(); }
 World::Stiffness World::stiffest_bond() const {
   const Parts& p = *parts_;
   if (!p.settings.magnetism) return {.substep = p.length};
-  const bool divides = p.settings.solver == scene::Solver::newton;
-  const StiffestBond stiffest = physics::stiffest_bond(p.bodies, *p.settings.magnetism, divides);
+  const StiffestBond stiffest = physics::stiffest_bond(p.bodies, *p.settings.magnetism);
   return {.entity = stiffest.entity,
           .product = stiffest.rate * p.length,
           .substep = p.length,
-          .safe = stiffest.safe,
-          .divisible = stiffest.fixed && !divides};
+          .safe = stiffest.safe};
 }
 
 double World::energy() const {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "physics/values.h"
+#include "physics/bodies/values.h"
 #include "scene/scene.h"
 #include "world/commands.h"
 #include "world/contact.h"
@@ -40,8 +40,9 @@ class World {
   /// Afterwards only its joints may be read, which are at 0.
   void remove(std::size_t entity);
 
-  /// The first entity, in order of adding, that another would overlap at a pose of its origin, joints as assembled,
-  /// at the current poses. The floor never counts; touching is not overlapping.
+  /// The first entity, in order of adding, that another would overlap at a pose of its origin,
+  /// joints as assembled, at the current poses. The floor never counts; touching is not
+  /// overlapping.
   /// @param except  in order of adding: does not count
   std::optional<std::size_t> overlapped_by(const scene::Entity& entity, const math::Pose& pose,
                                            std::optional<std::size_t> except = {}) const;
@@ -73,15 +74,15 @@ class World {
   /// @param currents  of the magnets of all entities, in order of adding
   void set_currents(std::span<const double> currents);
 
-  /// Puts forces and torques on links in the substeps from the next one on, instead of those of the call
-  /// before.
+  /// Puts forces and torques on links in the substeps from the next one on, instead of those of the
+  /// call before.
   friend void set_pushes(World& world, std::span<const world::Push> pushes);
 
-  /// Puts a joint of an entity that is present to a position [m] or [rad] and a speed [m/s] or [rad/s]. What hangs on
-  /// it follows; its other joints and its root stay as they are.
+  /// Puts a joint of an entity that is present to a position [m] or [rad] and a speed [m/s] or
+  /// [rad/s]. What hangs on it follows; its other joints and its root stay as they are.
   /// @param joint  of joint()
-  /// @pre the solver is newton
-  friend void set_joint(World& world, std::size_t entity, JointIndex joint, double position, double velocity);
+  friend void set_joint(World& world, std::size_t entity, JointIndex joint, double position,
+                        double velocity);
 
   /// Begins to watch what touches a link of an entity added before.
   /// @param link  index into Entity::links
@@ -110,9 +111,8 @@ class World {
   struct Stiffness {
     std::size_t entity = 0;
     double product = 0;
-    double substep = 0;      ///< internal [s]
-    double safe = 1;         ///< bonds gain no energy while `product` is below this
-    bool divisible = false;  ///< solver="newton" would divide substeps for such bonds
+    double substep = 0;  ///< internal [s]
+    double safe = 1;     ///< bonds gain no energy while `product` is below this
   };
   Stiffness stiffest_bond() const;
 
@@ -120,7 +120,6 @@ class World {
 
   /// All that the next substep reads, between two substeps. What is read must come from a world in
   /// which the same was added and removed in the same order.
-  /// @pre the solver is newton: Bullet keeps state to itself
   /// @throws math::ArchiveError; then the state is undefined
   friend void archive_fields(math::Archive& archive, World& world);
 

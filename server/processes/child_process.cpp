@@ -52,8 +52,7 @@ int open_output(const std::string& path) {
   if (guardian) guardian->end_group(::getpid());
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(127);  // the parent died before prctl()
-  for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ, SIGCHLD})
-    ::signal(number, SIG_DFL);
+  for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ, SIGCHLD}) ::signal(number, SIG_DFL);
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -159,7 +158,8 @@ void ChildProcess::signal(int number) const {
   if (id_ > 0 && !status_) ::kill(-id_, number);  // later the id may be another group's
 }
 
-void end_all(std::vector<ChildProcess*> children, int patience_ms, const std::function<bool()>& hurry,
+void end_all(std::vector<ChildProcess*> children, int patience_ms,
+             const std::function<bool()>& hurry,
              const std::function<void(const ChildProcess&)>& tell_slow) {
   using clock = std::chrono::steady_clock;
   for (const int number : {0, SIGTERM, SIGKILL}) {

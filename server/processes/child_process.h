@@ -16,12 +16,14 @@ namespace ziggurat::processes {
 struct Program {
   std::vector<std::string> arguments;  ///< [0] is searched in PATH unless it contains a slash
   std::vector<std::pair<std::string, std::string>> environment;  ///< added to that of this program
-  std::string output = {};  ///< a file that gets its stdout and stderr; empty: those of this program
+  std::string output =
+      {};  ///< a file that gets its stdout and stderr; empty: those of this program
 };
 
 class ChildProcess {
  public:
-  /// Starts it with an empty stdin, no signal blocked, and none ignored but SIGHUP, if it is here (nohup).
+  /// Starts it with an empty stdin, no signal blocked, and none ignored but SIGHUP, if it is here
+  /// (nohup).
   /// @param guardian  kills its group if this program is killed; must outlive it; null: none
   /// @throws std::system_error if it cannot be started, or its output not be written
   explicit ChildProcess(const Program& program, const Guardian* guardian = nullptr);
@@ -56,7 +58,8 @@ class ChildProcess {
 /// @param patience_ms  wall time before SIGTERM, and again before SIGKILL
 /// @param hurry        called again and again: true sends SIGKILL at once
 /// @param tell_slow    told of each before it gets SIGTERM; empty: not wanted
-void end_all(std::vector<ChildProcess*> children, int patience_ms, const std::function<bool()>& hurry,
+void end_all(std::vector<ChildProcess*> children, int patience_ms,
+             const std::function<bool()>& hurry,
              const std::function<void(const ChildProcess&)>& tell_slow = {});
 
 }  // namespace ziggurat::processes

@@ -10,7 +10,8 @@ namespace ziggurat::processes {
 namespace {
 
 constexpr std::string_view white = " \t\r\n";
-constexpr std::array<std::string_view, 2> folder_names{"${ZIGGURAT_SCENE_FOLDER}", "$ZIGGURAT_SCENE_FOLDER"};
+constexpr std::array<std::string_view, 2> folder_names{"${ZIGGURAT_SCENE_FOLDER}",
+                                                       "$ZIGGURAT_SCENE_FOLDER"};
 
 /// A program that starts another one.
 struct Starter {
@@ -33,7 +34,8 @@ constexpr std::array<Starter, 11> starters{{{"exec", "a"},
 /// Reads one word, character by character.
 class Reader {
  public:
-  Reader(std::string_view command, std::size_t begin, const std::optional<std::string>& scene_folder)
+  Reader(std::string_view command, std::size_t begin,
+         const std::optional<std::string>& scene_folder)
       : command_(command), scene_folder_(scene_folder), at_(begin) {
     word_.begin = begin;
   }
@@ -81,7 +83,9 @@ class Reader {
     for (const std::string_view name : folder_names) {
       if (!scene_folder_ || !command_.substr(at_).starts_with(name)) continue;
       const char behind = at_ + name.size() < command_.size() ? command_[at_ + name.size()] : ' ';
-      const bool is_longer = name.back() != '}' && (std::isalnum(static_cast<unsigned char>(behind)) != 0 || behind == '_');
+      const bool is_longer =
+          name.back() != '}' &&
+          (std::isalnum(static_cast<unsigned char>(behind)) != 0 || behind == '_');
       if (is_longer) continue;
       word_.text += *scene_folder_;
       at_ += name.size();
@@ -99,19 +103,22 @@ class Reader {
 
 bool is_assignment(const Word& word) {
   const auto equals = word.text.find('=');
-  return equals != std::string::npos && equals > 0 && std::isdigit(static_cast<unsigned char>(word.text[0])) == 0 &&
+  return equals != std::string::npos && equals > 0 &&
+         std::isdigit(static_cast<unsigned char>(word.text[0])) == 0 &&
          std::ranges::all_of(word.text.substr(0, equals),
                              [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
 }
 
-/// Whether the value of an option is the word behind it: of `-n 5`, not of `-n5` and `--adjustment=5`.
+/// Whether the value of an option is the word behind it: of `-n 5`, not of `-n5` and
+/// `--adjustment=5`.
 bool takes_next(const Starter& starter, const std::string& option) {
   return option.size() == 2 && starter.with_value.find(option[1]) != std::string_view::npos;
 }
 
 }  // namespace
 
-Word word_at(std::string_view command, std::size_t place, const std::optional<std::string>& scene_folder) {
+Word word_at(std::string_view command, std::size_t place,
+             const std::optional<std::string>& scene_folder) {
   const std::size_t begin = std::min(command.find_first_not_of(white, place), command.size());
   return Reader(command, begin, scene_folder).read();
 }

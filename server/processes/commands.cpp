@@ -21,13 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What /bin/sh runs itself.
+/// Commands that /bin/sh runs itself.
 constexpr std::array<std::string_view, 33> shell_words{
-    "!",    ".",      ":",     "[",    "alias", "bg",    "break", "case",   "cd",
-    "command", "echo", "eval",  "exec", "exit", "export", "false", "for",    "if",
-    "kill", "printf", "read",  "set",  "shift", "test",  "time",  "trap",   "true",
-    "type", "ulimit", "umask", "until", "wait", "while"};
-constexpr std::array<std::string_view, 8> script_endings{".py", ".lua", ".js", ".rb",
+    "!",       ".",      ":",     "[",     "alias", "bg",     "break", "case", "cd",
+    "command", "echo",   "eval",  "exec",  "exit",  "export", "false", "for",  "if",
+    "kill",    "printf", "read",  "set",   "shift", "test",   "time",  "trap", "true",
+    "type",    "ulimit", "umask", "until", "wait",  "while"};
+constexpr std::array<std::string_view, 8> script_endings{".py", ".lua", ".js",  ".rb",
                                                          ".pl", ".sh",  ".jar", ".m"};
 
 bool is_in_path(const std::string& program) {
@@ -42,12 +42,14 @@ bool is_in_path(const std::string& program) {
   return false;
 }
 
-constexpr std::array<std::string_view, 16> interpreters{"python", "pypy", "lua", "node", "ruby", "perl", "bash", "sh",
-                                                       "dash", "zsh", "java", "julia", "octave", "deno", "php", "Rscript"};
+constexpr std::array<std::string_view, 16> interpreters{
+    "python", "pypy", "lua",  "node",  "ruby",   "perl", "bash", "sh",
+    "dash",   "zsh",  "java", "julia", "octave", "deno", "php",  "Rscript"};
 
 bool is_interpreter(const std::string& program) {
   const std::string name = fs::path(program).filename().string();
-  return std::ranges::any_of(interpreters, [&](std::string_view each) { return name.starts_with(each); });
+  return std::ranges::any_of(interpreters,
+                             [&](std::string_view each) { return name.starts_with(each); });
 }
 
 /// Whether behind this option stands no script, but program text or a module: `-c`, `-lc`, `-m`.
@@ -63,7 +65,8 @@ struct Finder {
 
   /// Whether only a shell can read the word, or runs it itself.
   static bool is_of_shell(const Word& word) {
-    const bool is_shell_word = !word.is_quoted && std::ranges::find(shell_words, word.text) != shell_words.end();
+    const bool is_shell_word =
+        !word.is_quoted && std::ranges::find(shell_words, word.text) != shell_words.end();
     return word.size == 0 || !word.is_literal || is_shell_word;
   }
 
@@ -166,10 +169,12 @@ std::string why_not_started(const std::string& command) {
                ? std::string()
                : fmt::format("'{0}' can't be executed; write chmod +x {0}", program);
   }
-  if (fs::exists(file, error)) return fmt::format("'{}' is no program but a folder or device", program);
+  if (fs::exists(file, error))
+    return fmt::format("'{}' is no program but a folder or device", program);
   const std::string meant = similar_file(file);
-  return fmt::format("'{}' is not there: {} has no such file{}", program, file.parent_path().string(),
-                     meant.empty() ? "; check its path" : fmt::format("; did you mean '{}'?", meant));
+  return fmt::format(
+      "'{}' is not there: {} has no such file{}", program, file.parent_path().string(),
+      meant.empty() ? "; check its path" : fmt::format("; did you mean '{}'?", meant));
 }
 
 }  // namespace ziggurat::processes

@@ -15,11 +15,13 @@ struct FoundCommand {
   std::string missing;  ///< a sentence on the file that is not there; empty if all are
 };
 
-/// What programs of a scene find in ZIGGURAT_SCENE_FOLDER.
+/// Value of ZIGGURAT_SCENE_FOLDER for programs of a scene.
 std::string scene_folder(const std::filesystem::path& scene_file);
 
-/// Finds the program that a command starts at last, if its name has a slash, and the script that is its first argument
-/// (`python3 drive.py`, `nice /usr/bin/python3 'my drive.py'`). Words that only a shell can read are left to it.
+/// Finds the program that a command starts at last, if its name has a slash, and the script that is
+/// its first argument
+/// (`python3 drive.py`, `nice /usr/bin/python3 'my drive.py'`). Words that only a shell can read
+/// are left to it.
 FoundCommand find_command(const std::string& command, const std::filesystem::path& naming_file,
                           const std::filesystem::path& scene_file);
 
@@ -28,8 +30,8 @@ FoundCommand find_command(const std::string& command, const std::filesystem::pat
 std::vector<scene::Problem> find_commands(scene::Scene& scene,
                                           const std::filesystem::path& scene_file);
 
-/// Why /bin/sh can't start the program of a command in the working directory: a sentence. Empty if it can, or if
-/// only a shell can read its first word.
+/// Why /bin/sh can't start the program of a command in the working directory: a sentence. Empty if
+/// it can, or if only a shell can read its first word.
 std::string why_not_started(const std::string& command);
 
 }  // namespace ziggurat::processes

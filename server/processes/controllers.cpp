@@ -33,8 +33,9 @@ ControllerProcess start_again(const ControllerProcess& ended, const std::string&
     program.environment.emplace_back(token_name, digits);
   }
   try {
-    return {ended.name,       ended.robots, ChildProcess(program, guardian),
-            ended.place_file, std::nullopt, ended.program, ended.restarts + 1};
+    return {ended.name,        ended.robots, ChildProcess(program, guardian),
+            ended.place_file,  std::nullopt, ended.program,
+            ended.restarts + 1};
   } catch (const std::system_error& error) {
     throw std::runtime_error(
         fmt::format("{} cannot be started again: {}", ended.name, error.code().message()));
@@ -51,7 +52,8 @@ Launch lua_launch(std::string name, const char* option, const std::string& path,
   launch.program.arguments.insert(launch.program.arguments.end(), settings.lua_arguments.begin(),
                                   settings.lua_arguments.end());
   launch.place_file = path + "-place";
-  launch.program.arguments.insert(launch.program.arguments.end(), {"--place-file", launch.place_file});
+  launch.program.arguments.insert(launch.program.arguments.end(),
+                                  {"--place-file", launch.place_file});
   launch.program.environment = no_keys;
   return launch;
 }
@@ -75,14 +77,17 @@ std::vector<Launch> plan_lua(const std::vector<std::size_t>& robots,
   return launches;
 }
 
-/// What a command's program finds in its environment.
+/// Sets the environment of a command's program.
 /// @param name, id  of the variable that says what it is to drive
-void add_environment(const LaunchSettings& settings, const char* name, const std::string& id, Program& program) {
+void add_environment(const LaunchSettings& settings, const char* name, const std::string& id,
+                     Program& program) {
   program.environment = no_keys;
-  program.environment.insert(program.environment.end(), {{"ZIGGURAT_ENDPOINT", settings.endpoint},
-                                                         {name, id},
-                                                         {"ZIGGURAT_SCENE_FOLDER", settings.scene_folder}});
-  if (!settings.python_path.empty()) program.environment.emplace_back("PYTHONPATH", settings.python_path);
+  program.environment.insert(program.environment.end(),
+                             {{"ZIGGURAT_ENDPOINT", settings.endpoint},
+                              {name, id},
+                              {"ZIGGURAT_SCENE_FOLDER", settings.scene_folder}});
+  if (!settings.python_path.empty())
+    program.environment.emplace_back("PYTHONPATH", settings.python_path);
 }
 
 Launch plan_director(const scene::Director& director, const LaunchSettings& settings) {
@@ -91,7 +96,7 @@ Launch plan_director(const scene::Director& director, const LaunchSettings& sett
   launch.director = director.id;
   launch.program.environment = no_keys;
   if (director.command.empty()) {
-    launch.program.arguments = {settings.lua_runner, "--connect",  settings.endpoint,
+    launch.program.arguments = {settings.lua_runner, "--connect", settings.endpoint,
                                 "--director",        director.id, "--quiet"};
     launch.program.arguments.insert(launch.program.arguments.end(), settings.lua_arguments.begin(),
                                     settings.lua_arguments.end());
@@ -102,13 +107,15 @@ Launch plan_director(const scene::Director& director, const LaunchSettings& sett
   return launch;
 }
 
-/// Where a program of ours was looked for that is not there, and what to do.
+/// Sentence on a program of ours that is missing: the places that were searched, and the remedy.
 std::string missing(const std::string& program) {
   std::error_code error;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
-  return fmt::format("there is no {} beside {} and none in the folders of PATH; put it beside, as an installation does, or "
-                     "add its folder to PATH",
-                     program, error ? "this program" : self.string());
+  return fmt::format(
+      "there is no {} beside {} and none in the folders of PATH; put it beside, as an installation "
+      "does, or "
+      "add its folder to PATH",
+      program, error ? "this program" : self.string());
 }
 
 ControllerProcess start(const Launch& launch, const world::Layout& layout,
@@ -123,12 +130,18 @@ ControllerProcess start(const Launch& launch, const world::Layout& layout,
   try {
     std::optional<RobotPipe> pipe;
     if (!launch.robot_pipe.empty()) pipe.emplace(launch.robot_pipe);
-    return {launch.name,       launch.robots,  ChildProcess(launch.program, guardian),
-            launch.place_file, std::move(pipe), launch.program,
-            0,                 launch.director};
+    return {launch.name,
+            launch.robots,
+            ChildProcess(launch.program, guardian),
+            launch.place_file,
+            std::move(pipe),
+            launch.program,
+            0,
+            launch.director};
   } catch (const std::system_error& error) {
     const std::string& program = launch.program.arguments[0];
-    const bool is_missing = error.code() == std::errc::no_such_file_or_directory && program.find('/') == std::string::npos;
+    const bool is_missing = error.code() == std::errc::no_such_file_or_directory &&
+                            program.find('/') == std::string::npos;
     throw std::runtime_error(fmt::format("{} cannot be started ({}): {}", launch.name, program,
                                          is_missing ? missing(program) : error.code().message()));
   }
@@ -136,7 +149,8 @@ ControllerProcess start(const Launch& launch, const world::Layout& layout,
 
 /// The processes of the scene's robots.
 std::vector<Launch> plan_robots(const scene::Scene& scene, const world::Layout& layout,
-                                const std::vector<std::string>& scripts, const LaunchSettings& settings) {
+                                const std::vector<std::string>& scripts,
+                                const LaunchSettings& settings) {
   std::vector<std::size_t> lua;
   std::vector<std::vector<std::size_t>> others(scene.controllers.size());
   for (std::size_t r = 0; r < layout.robots.size(); ++r) {
@@ -257,12 +271,12 @@ bool Controllers::have(std::size_t robot) const {
 }
 
 bool Controllers::have_director(const std::string& id) const {
-  return std::ranges::any_of(
-      processes_, [&](const ControllerProcess& each) { return each.director == id; });
+  return std::ranges::any_of(processes_,
+                             [&](const ControllerProcess& each) { return each.director == id; });
 }
 
 const ControllerProcess& Controllers::restart(const ControllerProcess& ended,
-                                             const std::string& token) {
+                                              const std::string& token) {
   const auto position = static_cast<std::size_t>(&ended - processes_.data());
   auto started = start_again(ended, token, settings_->guardian);
   std::vector<ControllerProcess> processes;  // a process can be moved, but not assigned
@@ -273,7 +287,8 @@ const ControllerProcess& Controllers::restart(const ControllerProcess& ended,
   return processes_[position];
 }
 
-std::vector<ControllerProcess*> Controllers::ended(const std::function<bool(const ControllerProcess&)>& is_needed) {
+std::vector<ControllerProcess*> Controllers::ended(
+    const std::function<bool(const ControllerProcess&)>& is_needed) {
   std::vector<ControllerProcess*> ended;
   for (ControllerProcess& each : processes_) {
     const bool has_ended = each.process.poll();  // of all: it collects what each leaves behind
@@ -283,7 +298,8 @@ std::vector<ControllerProcess*> Controllers::ended(const std::function<bool(cons
 }
 
 bool Controllers::are_running() {
-  return std::ranges::any_of(processes_, [](ControllerProcess& each) { return !each.process.poll(); });
+  return std::ranges::any_of(processes_,
+                             [](ControllerProcess& each) { return !each.process.poll(); });
 }
 
 void Controllers::kill() {
@@ -298,7 +314,8 @@ void Controllers::end(int patience_ms, const std::function<bool()>& hurry,
     children.push_back(&each.process);
   }
   end_all(children, patience_ms, hurry, [&](const ChildProcess& slow) {
-    tell_slow(*std::ranges::find(processes_, slow.id(), [](const ControllerProcess& each) { return each.process.id(); }));
+    tell_slow(*std::ranges::find(processes_, slow.id(),
+                                 [](const ControllerProcess& each) { return each.process.id(); }));
   });
 }
 
@@ -321,7 +338,8 @@ std::string names_of(const std::vector<std::size_t>& robots, const world::Layout
 
 std::string describe(const ControllerProcess& controller, const std::string& what,
                      const world::Layout& layout) {
-  const std::string text = fmt::format("{} (process {}) {}", controller.name, controller.process.id(), what);
+  const std::string text =
+      fmt::format("{} (process {}) {}", controller.name, controller.process.id(), what);
   if (!controller.director.empty()) return text;
   return fmt::format("{}; it controlled {}", text, names_of(controller.robots, layout));
 }

@@ -21,9 +21,9 @@ struct Launch {
   std::string name;                 ///< for messages: "ziggurat-lua 1 of 2"
   std::vector<std::size_t> robots;  ///< into Layout::robots, ascending
   Program program;
-  std::string robots_file;  ///< written before the start, one id per line; empty = none
-  std::string robot_pipe;   ///< made before the start: robots that come later; empty = none
-  std::string place_file;   ///< written by it: which script runs, and where; empty = none
+  std::string robots_file;    ///< written before the start, one id per line; empty = none
+  std::string robot_pipe;     ///< made before the start: robots that come later; empty = none
+  std::string place_file;     ///< written by it: which script runs, and where; empty = none
   std::string director = {};  ///< id of the director that it is; it has no robots then
 };
 
@@ -37,7 +37,8 @@ struct ControllerProcess {
   unsigned restarts = 0;          ///< how often it was started again
   std::string director = {};      ///< as Launch::director
   bool is_settled = false;        ///< it has ended, and its robots need it no more
-  std::optional<std::chrono::steady_clock::time_point> missed_since = {};  ///< it has ended; its last messages may come
+  std::optional<std::chrono::steady_clock::time_point> missed_since =
+      {};  ///< it has ended; its last messages may come
 };
 
 /// A script that runs now.
@@ -46,17 +47,17 @@ struct BusyScript {
   std::string place;  ///< `FILE`, and `:LINE` once that takes long, unless it sleeps
 };
 
-/// What it runs now, or ran when it ended; nothing if it ran none.
+/// Script that it runs now, or ran when it ended; nothing if it ran none.
 std::optional<BusyScript> busy_script(const ControllerProcess& process);
 
-/// How the controllers of a run are started.
+/// Settings that controllers of a run are started with.
 struct LaunchSettings {
-  std::string endpoint;                    ///< where they connect
-  std::string folder;                      ///< for files with the ids of robots
-  std::string lua_runner;                  ///< path or name of ziggurat-lua
-  unsigned lua_processes;                  ///< 0 = one per robot
-  std::vector<std::string> lua_arguments;  ///< more arguments for ziggurat-lua
-  const Guardian* guardian = nullptr;      ///< ends them if this program is killed; null: none
+  std::string endpoint;                         ///< where they connect
+  std::string folder;                           ///< for files with the ids of robots
+  std::string lua_runner;                       ///< path or name of ziggurat-lua
+  unsigned lua_processes;                       ///< 0 = one per robot
+  std::vector<std::string> lua_arguments;       ///< more arguments for ziggurat-lua
+  const Guardian* guardian = nullptr;           ///< ends them if this program is killed; null: none
   std::vector<scene::Director> directors = {};  ///< to start, too; their scripts are resolved paths
   bool only_directors = false;    ///< of what is in the scene; spawned Lua robots are started, too
   std::string scene_folder = {};  ///< ZIGGURAT_SCENE_FOLDER of commands
@@ -65,7 +66,8 @@ struct LaunchSettings {
 
 /// The processes that control the scene's robots. Lua robots that have a script are shared among
 /// Lua processes in contiguous blocks whose sizes differ by at most one. Other controllers that
-/// have robots and a command follow, one process each, then the directors that have a script or command.
+/// have robots and a command follow, one process each, then the directors that have a script or
+/// command.
 /// @param scripts  per robot, empty = none
 std::vector<Launch> plan_controllers(const scene::Scene& scene, const world::Layout& layout,
                                      const std::vector<std::string>& scripts,
@@ -101,7 +103,8 @@ class Controllers {
   /// processes that have no other robots.
   void forget_robots(std::size_t first);
 
-  /// The script that the process of this robot runs now, of one of its robots; nothing if it runs none.
+  /// The script that the process of this robot runs now, of one of its robots; nothing if it runs
+  /// none.
   std::optional<BusyScript> busy_script(std::size_t robot) const;
 
   /// Whether a process was started for this robot.
@@ -112,18 +115,20 @@ class Controllers {
 
   /// Starts an ended process again, with the same robots, in the place of the one that ended.
   /// @param ended  as ended() returns it; not valid afterwards. Not one for spawned robots
-  /// @param token  of its session, which the new process resumes (ZIGGURAT_SESSION_TOKEN, in hexadecimal);
+  /// @param token  of its session, which the new process resumes (ZIGGURAT_SESSION_TOKEN, in
+  /// hexadecimal);
   ///               empty: it had none
   /// @returns the new process
   /// @throws std::runtime_error, see start_all
   const ControllerProcess& restart(const ControllerProcess& ended, const std::string& token);
 
-  /// The processes, in the order of their start, that have ended, are not settled, and for which `is_needed`. Valid
-  /// until one is started.
-  std::vector<ControllerProcess*> ended(const std::function<bool(const ControllerProcess&)>& is_needed);
+  /// The processes, in the order of their start, that have ended, are not settled, and for which
+  /// `is_needed`. Valid until one is started.
+  std::vector<ControllerProcess*> ended(
+      const std::function<bool(const ControllerProcess&)>& is_needed);
 
   bool are_running();  ///< one or more
-  void kill();  ///< SIGKILL to all that still run
+  void kill();         ///< SIGKILL to all that still run
   /// Waits until all have ended, as processes::end_all does.
   void end(int patience_ms, const std::function<bool()>& hurry,
            const std::function<void(const ControllerProcess&)>& tell_slow);

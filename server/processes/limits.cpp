@@ -26,10 +26,10 @@ constexpr Need stack{RLIMIT_STACK, rlim_t{1} << 20, kibibyte, "KiB of stack", "-
 void check(const Need& need) {
   rlimit limit;
   if (::getrlimit(need.resource, &limit) != 0 || limit.rlim_cur >= need.least) return;
-  throw std::runtime_error(fmt::format(
-      "the system allows this program {} {}; it needs {} or more; write: ulimit {} {}",
-      limit.rlim_cur / need.unit, need.name, need.least / need.unit, need.option,
-      need.least / need.unit));
+  throw std::runtime_error(
+      fmt::format("the system allows this program {} {}; it needs {} or more; write: ulimit {} {}",
+                  limit.rlim_cur / need.unit, need.name, need.least / need.unit, need.option,
+                  need.least / need.unit));
 }
 
 }  // namespace

@@ -7,8 +7,8 @@ namespace ziggurat::processes {
 /// 1024 are fewer than the sessions that the protocol promises.
 void allow_many_files();
 
-/// Libraries abort where a limit stops them, so each is compared with the least that is needed: the stack by every
-/// command, the others by those that run a world.
+/// Libraries abort where a limit stops them, so each is compared with the least that is needed: the
+/// stack by every command, the others by those that run a world.
 /// @throws std::runtime_error that names the limit, what is needed and what to write
 void check_stack();
 void check_limits();

@@ -1,5 +1,5 @@
 #pragma once
-// Where the files are that a scene names: scripts, and the programs of commands.
+// Paths of the files that a scene names: scripts, and the programs of commands.
 
 #include <filesystem>
 #include <optional>
@@ -25,7 +25,8 @@ std::optional<std::filesystem::path> find_file(const std::string& name,
 std::string looked_for(const std::string& name, const std::filesystem::path& naming_file,
                        const std::filesystem::path& scene_file);
 
-/// The name of a file beside the one that is not there, with nearly its name; empty if there is none.
+/// The name of a file beside the one that is not there, with nearly its name; empty if there is
+/// none.
 std::string similar_file(const std::filesystem::path& missing);
 
 }  // namespace ziggurat::processes

@@ -5,11 +5,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
@@ -26,8 +23,6 @@ namespace {
 constexpr std::size_t longest_parent = 64;
 constexpr std::string_view prefix = "ziggurat-";
 constexpr std::size_t name_length = prefix.size() + 6;
-constexpr std::time_t young = 60;  // [s]: between being made and being locked
-constexpr std::chrono::milliseconds patience{100};  // for what is put into a folder while it is removed
 
 /// The descriptor of its lock, or -1 if a program that runs has it.
 int lock(const std::string& folder, int flags) {
@@ -38,35 +33,18 @@ int lock(const std::string& folder, int flags) {
   return -1;
 }
 
-/// Whether what is in a folder has names that runs give; also if nothing is.
-bool has_only_ours(const std::string& folder) {
-  const auto is_ours = [](const std::string& name) {
-    constexpr std::array<std::string_view, 5> whole{"run", "socket", "files", "gnuplot.log", "python"};
-    return name.starts_with("robots-") || name.starts_with("spawned-") || std::ranges::find(whole, name) != whole.end();
-  };
-  std::error_code error;
-  auto it = std::filesystem::directory_iterator(folder, error);
-  while (!error && it != std::filesystem::directory_iterator()) {
-    if (!is_ours(it->path().filename().string())) return false;
-    it.increment(error);
-  }
-  return !error;
-}
-
-/// Removes a folder whose program has ended. One without a lock is removed if it is old and has nothing but files of ours.
+/// Removes a folder whose program has ended. One without a lock is removed if it is empty.
 void remove_if_left(const std::string& folder) {
   struct stat status {};
-  if (::lstat(folder.c_str(), &status) != 0) return;
-  if (!S_ISDIR(status.st_mode) || status.st_uid != ::geteuid()) return;
+  if (::lstat(folder.c_str(), &status) != 0 || !S_ISDIR(status.st_mode) ||
+      status.st_uid != ::geteuid())
+    return;
   const int file = lock(folder, 0);
   if (file < 0) {
-    struct stat of_lock {};
-    const bool has_lock = ::lstat((folder + "/" + lock_name).c_str(), &of_lock) == 0;
-    const bool is_old = status.st_mtime + young < std::time(nullptr);
-    if (!has_lock && is_old && has_only_ours(folder)) remove_locked_folder(folder, patience);
+    ::rmdir(folder.c_str());
     return;
   }
-  remove_locked_folder(folder, patience);
+  remove_locked_folder(folder);
   ::close(file);
 }
 
@@ -81,8 +59,8 @@ void remove_left_folders(const std::string& parent) {
   for (const std::string& folder : found) remove_if_left(folder);
 }
 
-/// The descriptor of the lock of a folder that was just made; -1 if another program took the folder for
-/// one that was left, between the making of its lock and the locking, and removes it.
+/// The descriptor of the lock of a folder that was just made; -1 if another program took the folder
+/// for one that was left, between the making of its lock and the locking, and removes it.
 int lock_new(const std::string& folder) {
   const int file = lock(folder, O_CREAT);
   struct stat status {};
@@ -91,31 +69,18 @@ int lock_new(const std::string& folder) {
   return -1;
 }
 
-/// A name that can't be guessed.
-std::string random_name() {
-  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
-  std::array<unsigned char, name_length - prefix.size()> random;
-  if (::getentropy(random.data(), random.size()) != 0) {
-    throw std::system_error(errno, std::generic_category(), "the system gives no random numbers");
-  }
-  std::string name(prefix);
-  for (const unsigned char each : random) name += letters[each % letters.size()];
-  return name;
-}
-
-/// A folder with its lock; an empty path and -1 if the parent takes none. The guardian has its name before it is
-/// made: this program may be killed at any moment.
+/// A folder with its lock; an empty path and -1 if the parent takes none.
 std::pair<std::string, int> make_locked(const std::string& parent, const Guardian* guardian) {
   constexpr int most_tries = 100;
   for (int i = 0; i < most_tries; ++i) {
-    const std::string path = parent + "/" + random_name();
-    if (guardian) guardian->remove_folder(path);
-    const bool is_made = ::mkdir(path.c_str(), 0700) == 0;
-    const int error = errno, file = is_made ? lock_new(path) : -1;
+    std::string path = parent + "/" + std::string(prefix) + "XXXXXX";
+    if (::mkdtemp(path.data()) == nullptr) break;
+    if (guardian)
+      guardian->remove_folder(
+          path);  // before anything is in it: this program may be killed at any moment
+    const int file = lock_new(path);
     if (file >= 0) return {path, file};
-    if (is_made) ::rmdir(path.c_str());
-    if (guardian) guardian->forget_folder(path);
-    if (!is_made && error != EEXIST) return errno = error, std::pair{std::string(), -1};
+    ::rmdir(path.c_str());
   }
   return {{}, -1};
 }
@@ -138,7 +103,7 @@ PrivateFolder::PrivateFolder(const Guardian* guardian) {
 }
 
 PrivateFolder::~PrivateFolder() {
-  remove_locked_folder(path_, patience);
+  remove_locked_folder(path_);
   if (lock_ >= 0) ::close(lock_);
 }
 

@@ -13,14 +13,17 @@ namespace fs = std::filesystem;
 
 bool has_client(const fs::path& package) {
   std::error_code error;
-  return fs::is_regular_file(package / "protocol_pb2.py", error) && fs::is_regular_file(package / "__init__.py", error);
+  return fs::is_regular_file(package / "protocol_pb2.py", error) &&
+         fs::is_regular_file(package / "__init__.py", error);
 }
 
-/// Of a build, build/release/python; of an installation, lib/python3.N/dist-packages or site-packages.
+/// Folder of a build, build/release/python, or of an installation, lib/python3.N/dist-packages or
+/// site-packages.
 std::vector<fs::path> places_below(const fs::path& prefix) {
   std::vector<fs::path> places{prefix / "python/ziggurat"};
   std::error_code error;
-  for (fs::directory_iterator it(prefix / "lib", error), end; !error && it != end; it.increment(error)) {
+  for (fs::directory_iterator it(prefix / "lib", error), end; !error && it != end;
+       it.increment(error)) {
     if (!it->path().filename().string().starts_with("python3")) continue;
     places.push_back(it->path() / "dist-packages/ziggurat");
     places.push_back(it->path() / "site-packages/ziggurat");

@@ -5,8 +5,9 @@
 
 namespace ziggurat::processes {
 
-/// A value of PYTHONPATH with which programs find the Python client beside this program, in a build or an installation,
-/// before any other: a folder that has it alone, then what this program's own PYTHONPATH has.
+/// A value of PYTHONPATH with which programs find the Python client beside this program, in a build
+/// or an installation, before any other: a folder that has it alone, then what this program's own
+/// PYTHONPATH has.
 /// @param folder  of this program's own, in which the former is made
 /// @returns       empty if there is no such package, or the folder takes nothing
 std::string python_path(const std::string& folder);

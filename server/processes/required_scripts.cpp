@@ -19,15 +19,19 @@ using Paths = std::vector<fs::path>;
 
 constexpr std::size_t most_files = 1000;
 constexpr std::size_t largest_file = std::size_t{4} << 20;  // [bytes]
-constexpr std::size_t most_listed = std::size_t{16} << 20;  // of all listed folders together [bytes]
+constexpr std::size_t most_listed = std::size_t{16}
+                                    << 20;  // of all listed folders together [bytes]
 
-/// What a script loads.
+/// Modules that a script loads.
 struct Loaded {
   std::vector<std::string> names;
-  std::vector<std::string> folders;  ///< whose files have names that it computes; empty: its own folder
+  std::vector<std::string>
+      folders;  ///< whose files have names that it computes; empty: its own folder
 };
 
-bool has(const Paths& all, const fs::path& path) { return std::ranges::find(all, path) != all.end(); }
+bool has(const Paths& all, const fs::path& path) {
+  return std::ranges::find(all, path) != all.end();
+}
 
 /// As Lua looks for a module with dots in its name.
 std::string path_of_module(std::string name) {
@@ -39,7 +43,8 @@ std::string path_of_module(std::string name) {
 std::string folder_of_names(std::string begin, bool are_modules) {
   if (are_modules) std::ranges::replace(begin, '.', '/');
   const fs::path folder = fs::path(begin).parent_path();
-  const bool leaves = folder.is_absolute() || std::ranges::find(folder, fs::path("..")) != folder.end();
+  const bool leaves =
+      folder.is_absolute() || std::ranges::find(folder, fs::path("..")) != folder.end();
   return leaves ? std::string() : folder.string();
 }
 
@@ -77,7 +82,8 @@ Loaded loaded_by(const fs::path& script) {
 Paths scripts_in(const fs::path& folder) {
   Paths scripts;
   std::error_code error;
-  for (fs::directory_iterator at(folder.empty() ? "." : folder, error), end; !error && at != end; at.increment(error)) {
+  for (fs::directory_iterator at(folder.empty() ? "." : folder, error), end; !error && at != end;
+       at.increment(error)) {
     std::error_code other;
     if (at->path().extension() != ".lua" || !at->is_regular_file(other)) continue;
     scripts.push_back(folder / at->path().filename());
@@ -94,7 +100,8 @@ class Modules {
     const std::string own = folder.empty() ? "." : folder.string();
     lua_getglobal(lua_.get(), "package");
     lua_getfield(lua_.get(), 1, "path");
-    lua_pushfstring(lua_.get(), "%s/?.lua;%s/?/init.lua;%s", own.c_str(), own.c_str(), lua_tostring(lua_.get(), -1));
+    lua_pushfstring(lua_.get(), "%s/?.lua;%s/?/init.lua;%s", own.c_str(), own.c_str(),
+                    lua_tostring(lua_.get(), -1));
     lua_setfield(lua_.get(), 1, "path");
   }
 
@@ -119,7 +126,8 @@ class Modules {
 };
 
 /// Appends what a script requires and is not there, and to `scripts` what is.
-void look_for_modules(const fs::path& script, Modules& modules, Paths& scripts, std::vector<MissingModule>& missing) {
+void look_for_modules(const fs::path& script, Modules& modules, Paths& scripts,
+                      std::vector<MissingModule>& missing) {
   if (!size_of(script)) return;
   static const std::regex call(R"(\brequire\s*\(?\s*["']([^"'\n]{1,255})["']\s*(\.\.)?)");
   std::ifstream file(script, std::ios::binary);
@@ -128,7 +136,8 @@ void look_for_modules(const fs::path& script, Modules& modules, Paths& scripts, 
     ++number;
     if (line.size() > 4096) continue;  // std::regex recurses
     const auto comment = static_cast<std::ptrdiff_t>(std::min(line.find("--"), line.size()));
-    for (std::sregex_iterator at(line.begin(), line.begin() + comment, call), end; at != end; ++at) {
+    for (std::sregex_iterator at(line.begin(), line.begin() + comment, call), end; at != end;
+         ++at) {
       if ((*at)[2].matched) continue;  // the name goes on
       const auto found = modules.find((*at)[1]);
       if (!found) {
@@ -172,7 +181,7 @@ void add_all(Search& search, const fs::path& folder) {
   }
 }
 
-/// What a script in the folder `own` loads.
+/// Files that a script in the folder `own` loads.
 void follow(Search& search, const fs::path& own, const Loaded& loaded) {
   Paths places = search.folders;
   places.push_back(own);

@@ -8,12 +8,12 @@
 
 namespace ziggurat::processes {
 
-/// Appends the files that the scripts name in `require`, `dofile` and `loadfile` as plain texts, and
-/// those that these name, as far as they are found in the folder of a script. Of names that are put
-/// together, as in `require(here .. "tool")`, the end is looked for beside the script. If a script
-/// computes a name in another way, as in `require(name)`, the Lua files of its folder are appended; those
-/// of a folder below it if names begin with that, as in `require("parts." .. kind)`. 1000 files are the
-/// most, each of 4 MiB, and 16 MiB of those whose names are computed.
+/// Appends the files that the scripts name in `require`, `dofile` and `loadfile` as plain texts,
+/// and those that these name. Only files in the folder of a script are found. For composed names,
+/// as in `require(here .. "tool")`, the end is looked for beside the script. For computed names, as
+/// in `require(name)`, the Lua files of its folder are appended. If names begin with a folder below
+/// it, as in `require("parts." .. kind)`, they are those of that folder. At most 1000 files of 4
+/// MiB each are appended, and 16 MiB of those whose names are computed.
 /// @return  folders with files that did not fit
 std::vector<std::filesystem::path> add_required(std::vector<std::filesystem::path>& scripts);
 
@@ -24,8 +24,8 @@ struct MissingModule {
   std::string name;
 };
 
-/// Those that a script, or one that it requires, names in `require` as a plain text and that Lua finds nowhere.
-/// What is required in a call of pcall may be missing.
+/// Modules that a script, or one that it requires, names in `require` as a plain text and that Lua
+/// finds nowhere. A module that is required in a call of pcall may be missing.
 std::vector<MissingModule> missing_modules(const std::filesystem::path& script);
 
 }  // namespace ziggurat::processes

@@ -49,7 +49,8 @@ std::optional<std::string> fault(const std::string& script, const fs::path& nami
                                  const fs::path& scene_file) {
   const auto path = find_file(script, naming_file, scene_file);
   if (!path) {
-    return fmt::format("script '{}' is not found{}", text::shortened(script), looked_for(script, naming_file, scene_file));
+    return fmt::format("script '{}' is not found{}", text::shortened(script),
+                       looked_for(script, naming_file, scene_file));
   }
   if (const auto unreadable = scene::fault_of_file(*path)) {
     return fmt::format("script '{}' {}", text::shortened(path->string()), *unreadable);
@@ -58,7 +59,9 @@ std::optional<std::string> fault(const std::string& script, const fs::path& nami
   return std::nullopt;
 }
 
-bool is_part_of_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+bool is_part_of_name(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
 
 bool has_word(const std::string& text, std::string_view word) {
   for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
@@ -88,7 +91,8 @@ void check_modules(const fs::path& script, const std::string& file, const scene:
                    std::vector<scene::Problem>& problems) {
   for (const MissingModule& each : missing_modules(script)) {
     problems.push_back({scene::Problem::Severity::warning, file, where,
-                        fmt::format("{}:{}: require \"{}\" finds no such module; write it as a file {}.lua beside the script",
+                        fmt::format("{}:{}: require \"{}\" finds no such module; write it as a "
+                                    "file {}.lua beside the script",
                                     each.script.string(), each.line, text::shortened(each.name),
                                     text::shortened(each.name))});
   }
@@ -111,9 +115,11 @@ void check(const scene::Scene& scene, const Use& use, const fs::path& scene_file
   const auto script = script_of(*use.params);
   if (script.empty()) {
     const auto slip = name_like_script(*use.params);
-    problems.push_back({slip.empty() ? Severity::notice : Severity::warning, file, use.where,
-                        "<params> names no script: the robots of this controller do nothing" +
-                            (slip.empty() ? slip : fmt::format("; did you mean script=\"…\" by {}=\"…\"?", slip))});
+    problems.push_back(
+        {slip.empty() ? Severity::notice : Severity::warning, file, use.where,
+         "<params> names no script: the robots of this controller do nothing" +
+             (slip.empty() ? slip
+                           : fmt::format("; did you mean script=\"…\" by {}=\"…\"?", slip))});
   } else if (auto text = fault(script, file, scene_file)) {
     problems.push_back({Severity::fault, file, use.where, *text});
   } else if (const auto name = missing_function(*find_file(script, file, scene_file))) {

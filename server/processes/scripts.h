@@ -25,8 +25,8 @@ bool runs_script(const scene::Controller& controller);
 /// The file with the params of an entity that has a controller.
 std::string file_of_params(const scene::Scene& scene, const scene::Entity& entity);
 
-/// The scripts that the controllers, entities and directors of a scene name, as absolute paths; those that are
-/// not found are left out.
+/// The scripts that the controllers, entities and directors of a scene name, as absolute paths;
+/// those that are not found are left out.
 std::vector<std::filesystem::path> scripts_of(const scene::Scene& scene,
                                               const std::filesystem::path& scene_file);
 

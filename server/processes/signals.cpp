@@ -28,13 +28,15 @@ bool is_ignored(int number) {
 
 }  // namespace
 
-Signals::Signals(Guardian* guardian) : guardian_(guardian) {
+Signals::Signals(const Guardian* guardian) : guardian_(guardian) {
   sigset_t set;
   ::sigemptyset(&set);
   // SIGXCPU: a soft limit of processor time, as of `ulimit -S -t`, ends the run as Ctrl-C does.
   for (const int number : {SIGINT, SIGTERM, SIGXCPU, SIGCHLD}) ::sigaddset(&set, number);
-  if (!is_ignored(SIGHUP)) ::sigaddset(&set, SIGHUP);  // blocked, it would arrive although it is ignored
-  ::signal(SIGCHLD, SIG_DFL);  // ignored, as a parent may have left it, it would take children away unseen
+  if (!is_ignored(SIGHUP))
+    ::sigaddset(&set, SIGHUP);  // blocked, it would arrive although it is ignored
+  ::signal(SIGCHLD,
+           SIG_DFL);  // ignored, as a parent may have left it, it would take children away unseen
   ::pthread_sigmask(SIG_BLOCK, &set, &former_);
   ::signal(SIGPIPE, SIG_IGN);
   signals_ = ::signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
@@ -127,7 +129,7 @@ void Signals::limit_what_follows() const {
   ::alarm(1);
 }
 
-/// Without destructors: another thread is in the middle of something.
+/// Without destructors: another thread is in the middle of something. The guardian cleans up.
 void Signals::end_by_force() {
   constexpr std::string_view text =
       "\nziggurat: interrupted in the middle of a tick or of an output; the program did not wait "
@@ -136,8 +138,6 @@ void Signals::end_by_force() {
   if (!is_completed_ && ::poll(&error, 1, 0) == 1 && (error.revents & POLLOUT) != 0) {
     [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
   }
-  ::signal(SIGCHLD, SIG_IGN);  // children that the guardian kills are gone at once: it waits for zombies
-  if (guardian_) guardian_->end_now();
   ::_exit(is_completed_ ? exit_code_.load() : interrupted);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// SIGINT, SIGTERM, SIGHUP, SIGXCPU and SIGCHLD as input of a descriptor that can be polled. The program ends
-// at most a second after the first interruption, whatever it is doing.
+// SIGINT, SIGTERM, SIGHUP, SIGXCPU and SIGCHLD as input of a descriptor that can be polled. The
+// program ends at most a second after the first interruption, whatever it is doing.
 
 #include <signal.h>
 
@@ -18,13 +18,13 @@ class Signals {
   static constexpr std::chrono::milliseconds patience{900};
 
   /// Changes the whole process: blocks these signals for this thread and all threads started later,
-  /// and ignores SIGPIPE, so that a closed pipe is an error of write(). SIGHUP stays ignored if it is (nohup).
-  /// Starts a thread that ends
-  /// the process with exit code 130 if it still runs when the patience is over: in a long tick, or
-  /// in an output that takes no more. main() makes the only one.
+  /// and ignores SIGPIPE, so that a closed pipe is an error of write(). SIGHUP stays ignored if it
+  /// is (nohup). Starts a thread that ends the process with exit code 130 if it still runs when the
+  /// patience is over: in a long tick, or in an output that takes no more. main() makes the only
+  /// one.
   /// @param guardian  must outlive this; null: none
   /// @throws std::system_error
-  explicit Signals(Guardian* guardian = nullptr);
+  explicit Signals(const Guardian* guardian = nullptr);
   /// Restores the previous mask.
   ~Signals();
   Signals(const Signals&) = delete;
@@ -40,7 +40,8 @@ class Signals {
   /// The signals since the last call; never waits.
   Arrived take();
 
-  /// 128 and the number of the first interruption's signal; 130 if there was none, or an input has ended.
+  /// 128 and the number of the first interruption's signal; 130 if there was none, or an input has
+  /// ended.
   int exit_code_of_interruption() const { return 128 + first_; }
 
   /// All that matters is done: an end by force is no news from now on, and has this exit code.
@@ -49,15 +50,15 @@ class Signals {
     is_completed_ = true;
   }
 
-  /// From now on the end of this input is an interruption, too: the program that has its other end is gone.
-  /// What can be read is read and ignored. @param descriptor  stays open while this exists
+  /// From now on the end of this input is an interruption, too: the program that has its other end
+  /// is gone. What can be read is read and ignored. @param descriptor  stays open while this exists
   void interrupt_at_end_of(int descriptor);
 
-  /// For what is said behind this, which may find no reader either: the process ends with exit code 130 after a second, if
-  /// there was an interruption.
+  /// For what is said behind this, which may find no reader either: the process ends with exit code
+  /// 130 after a second, if there was an interruption.
   void limit_what_follows() const;
 
-  Guardian* guardian() const { return guardian_; }
+  const Guardian* guardian() const { return guardian_; }
 
  private:
   void watch();
@@ -65,7 +66,7 @@ class Signals {
   bool has_input_ended();
   [[noreturn]] void end_by_force();
 
-  Guardian* guardian_;
+  const Guardian* guardian_;
   int signals_ = -1, news_ = -1, order_ = -1;
   sigset_t former_;
   std::atomic<int> interruptions_ = 0, exit_code_ = 0;

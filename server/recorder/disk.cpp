@@ -15,7 +15,8 @@ namespace ziggurat::recorder {
 
 Disk::Disk(std::string path) : path_(std::move(path)) {
   if (path_ == "-") {
-    throw recording::WriteError("a recording needs a file; write its name instead of -, or /dev/stdout");
+    throw recording::WriteError(
+        "a recording needs a file; write its name instead of -, or /dev/stdout");
   }
   // A pipe without a reader is an error, not a wait.
   descriptor_ = recording::open_alone(path_, O_NONBLOCK);
@@ -28,7 +29,8 @@ Disk::~Disk() {
 }
 
 void Disk::fail(int error) {
-  throw recording::WriteError(fmt::format("{}: cannot be written: {}", path_, std::strerror(error)));
+  throw recording::WriteError(
+      fmt::format("{}: cannot be written: {}", path_, std::strerror(error)));
 }
 
 void Disk::check_loss() const {
@@ -37,7 +39,8 @@ void Disk::check_loss() const {
 }
 
 void Disk::write(std::string_view bytes) {
-  constexpr std::size_t piece = std::size_t{1} << 20;  // at once, so that a slow disk is seen to go on
+  constexpr std::size_t piece = std::size_t{1}
+                                << 20;  // at once, so that a slow disk is seen to go on
   check_loss();
   for (std::string_view left = bytes; !left.empty();) {
     const ssize_t count = ::write(descriptor_, left.data(), std::min(left.size(), piece));
@@ -46,7 +49,7 @@ void Disk::write(std::string_view bytes) {
       taken_ += static_cast<std::uint64_t>(count);
     } else if (is_abandoned_ || errno != EINTR) {
       const int error = is_abandoned_ ? ECANCELED : errno;
-      // Of a pipe nothing can be taken back; its reader sees the end of the file.
+      // A pipe cannot be cut; its reader sees the end of the file.
       [[maybe_unused]] const int ignored = ::ftruncate(descriptor_, static_cast<off_t>(size_));
       fail(error);
     }

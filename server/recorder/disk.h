@@ -10,15 +10,15 @@ namespace ziggurat::recorder {
 
 class Disk {
  public:
-  /// Creates the file, or empties it. @throws recording::WriteError, also for a pipe without a reader and a file to
-  /// which another program writes
+  /// Creates the file, or empties it. @throws recording::WriteError, also for a pipe without a
+  /// reader and a file to which another program writes
   explicit Disk(std::string path);
   ~Disk();
   Disk(const Disk&) = delete;
   Disk& operator=(const Disk&) = delete;
 
-  /// Writes all bytes, or takes what was written of them back. @throws recording::WriteError, also if another program has
-  /// removed or shortened the file
+  /// Writes all bytes, or takes what was written of them back. @throws recording::WriteError, also
+  /// if another program has removed or shortened the file
   void write(std::string_view bytes);
   /// @throws recording::WriteError
   void close();

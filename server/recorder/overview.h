@@ -1,5 +1,5 @@
 #pragma once
-// What is in a recording, or in any other MCAP file, at a glance.
+// Overview of a recording, or of any other MCAP file.
 
 #include <cstdint>
 #include <optional>
@@ -23,14 +23,14 @@ struct Overview {
   std::uint64_t states = 0;    ///< that were published
   std::uint64_t epochs = 0;    ///< how often the world began
   std::uint64_t last_tick = 0;
-  double length = 0;                ///< from the first message to the last, simulated [s]
+  double length = 0;               ///< from the first message to the last, simulated [s]
   std::uint64_t uncompressed = 0;  ///< all chunks [bytes]
 };
 
-/// Of what is intact.
+/// Overview of the intact part.
 Overview overview(const mcap::Reader& reader);
 
-/// What the recording says of its run, without files. @throws mcap::Damaged if it can't be read
+/// Start of the recorded run, without files. @throws mcap::Damaged if it can't be read
 std::optional<Start> read_start(const mcap::Reader& reader);
 
 }  // namespace ziggurat::recorder

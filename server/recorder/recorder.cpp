@@ -16,7 +16,7 @@
 namespace ziggurat::recorder {
 namespace {
 
-// What may wait for the disk: more than that, and the run waits.
+// Limits of the tasks that wait for the disk: beyond them the run waits.
 constexpr std::size_t most_waiting = std::size_t{64} << 20;  // [bytes]
 constexpr std::size_t most_tasks = 1024;
 
@@ -34,7 +34,7 @@ constexpr int parts_of_patience = 100;
 
 }  // namespace
 
-/// What the run's thread and the recorder's share.
+/// State that the run's thread and the recorder's share.
 struct Recorder::Shared {
   explicit Shared(const Settings& settings) : patience(settings.patience), disk(settings.path) {}
 
@@ -66,9 +66,9 @@ struct Recorder::Shared {
   std::size_t waiting = 0;                 // of all tasks that are not done [bytes]
   std::size_t unfinished = 0;              // their number
   std::uint64_t finished = 0;              // the number of those that are done
-  // What a killed run would lose: the chunk under way, and tasks that are not done.
+  // Data that a killed run would lose: the chunk being filled, and tasks that are not done.
   std::size_t chunks = 0, chunk_size = 0, chunk_ticks = 0;  // its number, bytes, and ticks so far
-  std::size_t tick_size = 0;                    // in a chunk, as those before [bytes]
+  std::size_t tick_size = 0;                                // in a chunk, as those before [bytes]
   std::size_t waiting_ticks = 0, other_size = 0;  // of tasks: their number, and bytes of all others
   std::optional<clock::time_point> chunk_begin;
   std::deque<clock::time_point> begins;  // of the tasks that are not done
@@ -87,11 +87,13 @@ Recorder::Recorder(Settings settings, Start start)
 
 Recorder::~Recorder() { close(); }
 
-// --- the run's thread -----------------------------------------------------------------------------
+// --- the run's thread
+// -----------------------------------------------------------------------------
 
 /// Waits for the recorder's thread as long as that, or the disk, gets on.
 /// @return  false: it does not any more
-bool Recorder::Shared::wait(std::unique_lock<std::mutex>& lock, const std::function<bool()>& is_done) {
+bool Recorder::Shared::wait(std::unique_lock<std::mutex>& lock,
+                            const std::function<bool()>& is_done) {
   std::uint64_t seen = finished + disk.taken();
   for (int part = 0; part < parts_of_patience; ++part) {
     if (has_room.wait_for(lock, patience / parts_of_patience, is_done)) return true;
@@ -130,20 +132,22 @@ void Recorder::Shared::add(Task task) {
 
 bool Recorder::Shared::has_room_for(const Task& task) const {
   if (has_failed) return true;
-  if (unfinished > 0 && (waiting + task.size > most_waiting || unfinished >= most_tasks)) return false;
+  if (unfinished > 0 && (waiting + task.size > most_waiting || unfinished >= most_tasks))
+    return false;
   if (task.kind != Task::Kind::tick) return true;
   const auto oldest = chunk_begin ? *chunk_begin : begins.empty() ? task.begin : begins.front();
   if (task.begin - oldest > longest_unwritten) return false;
   return chunk_ticks + waiting_ticks < few_ticks || unwritten() + tick_size <= most_unwritten;
 }
 
-/// What is in no file yet, about [bytes].
+/// Size of the data that is in no file yet, about [bytes].
 std::size_t Recorder::Shared::unwritten() const {
   return chunk_size + waiting_ticks * tick_size + other_size;
 }
 
 bool Recorder::Shared::has_work() const {
-  return tasks.size() >= many_tasks || waiting >= much_waiting || unwritten() >= most_unwritten / 4 * 3;
+  return tasks.size() >= many_tasks || waiting >= much_waiting ||
+         unwritten() >= most_unwritten / 4 * 3;
 }
 
 void Recorder::Shared::give_up() {
@@ -186,12 +190,14 @@ void Recorder::step(const world::Commands& commands, std::vector<world::Metric> 
   copied->commands = commands;
   const std::size_t metrics_size = metrics.size() * sizeof(world::Metric);
   add(
-      [shared = shared_.get(), copied = std::move(copied), metrics = std::move(metrics)](Recording& to) {
+      [shared = shared_.get(), copied = std::move(copied),
+       metrics = std::move(metrics)](Recording& to) {
         to.measured(metrics);
         to.step(copied->commands);
         shared->give_back(std::move(*copied));
       },
-      sizeof(channels::TickCopy) + commands.radio_messages.bytes.size() + metrics_size, Task::Kind::step);
+      sizeof(channels::TickCopy) + commands.radio_messages.bytes.size() + metrics_size,
+      Task::Kind::step);
 }
 
 void Recorder::add(v1::Act act) {
@@ -211,7 +217,8 @@ void Recorder::moved(const std::string& entity, const math::Pose& pose) {
   add(std::move(act));
 }
 
-void Recorder::joint_set(const std::string& entity, const std::string& joint, double position, double velocity) {
+void Recorder::joint_set(const std::string& entity, const std::string& joint, double position,
+                         double velocity) {
   v1::Act act;
   v1::Act::SetJoint& set = *act.mutable_set_joint();
   set.set_entity(v1::valid_utf8(entity));
@@ -303,7 +310,8 @@ std::optional<std::string> Recorder::take_failure() {
   return std::exchange(shared_->failure, std::nullopt);
 }
 
-// --- the recorder's thread ------------------------------------------------------------------------
+// --- the recorder's thread
+// ------------------------------------------------------------------------
 
 void Recorder::Shared::give_back(channels::TickCopy copy) {
   const std::lock_guard lock(mutex);

@@ -1,7 +1,7 @@
 #pragma once
 // A run on its way into a recording, on a thread of its own. The run's thread only copies. If the
-// disk or the thread is slower than the run, the run waits: a recording is whole, and what a killed run
-// loses is bounded. A disk that takes nothing any more ends the recording.
+// disk or the thread is slower than the run, the run waits: a recording is whole, and what a killed
+// run loses is bounded. A disk that takes nothing any more ends the recording.
 
 #include <chrono>
 #include <functional>
@@ -42,7 +42,8 @@ class Recorder {
   void moved(const std::string& entity, const math::Pose& pose);
   /// @param position  [m] or [rad]
   /// @param velocity  [m/s] or [rad/s]
-  void joint_set(const std::string& entity, const std::string& joint, double position, double velocity);
+  void joint_set(const std::string& entity, const std::string& joint, double position,
+                 double velocity);
   /// @param files  that were read for it
   void spawned(const std::string& xml, std::vector<EmbeddedFile> files);
   void removed(const std::string& entity);
@@ -71,13 +72,14 @@ class Recorder {
   };
   struct Shared;
 
-  void add(std::function<void(Recording&)> run, std::size_t size, Task::Kind kind = Task::Kind::other);
+  void add(std::function<void(Recording&)> run, std::size_t size,
+           Task::Kind kind = Task::Kind::other);
   void add(v1::Act act);
 
   const std::function<bool(std::string_view)> wants_;
   const std::uint64_t picture_interval_;
   const clock::time_point begin_ = clock::now();
-  std::set<std::string> snapshots_;  // embedded so far: the hashes of their files
+  std::set<std::string> snapshots_;       // embedded so far: the hashes of their files
   const std::shared_ptr<Shared> shared_;  // also the thread's, which may wait for a disk forever
   std::thread thread_;
 };

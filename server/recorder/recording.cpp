@@ -15,7 +15,9 @@ using channels::Pace;
 constexpr std::size_t full_chunk = most_unwritten / 4 * 3;
 constexpr std::chrono::milliseconds longest_chunk = longest_unwritten / 4 * 3;
 
-mcap::Header header_of(const Start& start) { return {"ziggurat", "ziggurat " + start.build.version}; }
+mcap::Header header_of(const Start& start) {
+  return {"ziggurat", "ziggurat " + start.build.version};
+}
 
 }  // namespace
 
@@ -120,8 +122,7 @@ void Recording::add(v1::Act act) {
   *(has_inputs_ ? inputs_.add_acts() : early_.add_acts_before()) = std::move(act);
 }
 
-void Recording::log(channels::Severity severity, const std::string& name,
-                    const std::string& text) {
+void Recording::log(channels::Severity severity, const std::string& name, const std::string& text) {
   const std::uint32_t id = channels::Channels::id_of(Kind::log);
   if (!std::ranges::binary_search(wanted_, id)) return;
   write(channels_of_.at(id),

@@ -14,18 +14,19 @@
 #include "channels/channels.h"
 #include "channels/copies.h"
 #include "mcap/writer.h"
-#include "recording/inputs.h"
 #include "recorder/start.h"
+#include "recording/inputs.h"
 #include "world/metric.h"
 
 namespace ziggurat::recorder {
 
-/// A killed run loses no more than that, and four ticks: of all messages [bytes], and of wall time. Chunks
-/// end a little before. What supervisors did since the last tick, in a pause for example, is lost with it.
+/// A killed run loses no more than that, and four ticks: of all messages [bytes], and of wall time.
+/// Chunks end a little before. What supervisors did since the last tick, in a pause for example, is
+/// lost with it.
 inline constexpr std::size_t most_unwritten = std::size_t{1} << 20;
 inline constexpr std::chrono::milliseconds longest_unwritten{1000};
 
-/// What of a run is kept. `/run` and `/inputs` always are.
+/// Topics of a run that are kept. `/run` and `/inputs` always are.
 struct Contents {
   std::function<bool(std::string_view topic)> wants;  ///< of the other topics; empty: all
   std::uint64_t picture_interval = 1;                 ///< pictures of each Nth tick
@@ -51,7 +52,7 @@ class Recording {
   void add(v1::Act act);
   void log(channels::Severity severity, const std::string& name, const std::string& text);
   void attach(const EmbeddedFile& file);
-  /// What controllers have measured, between the last tick and the next.
+  /// Adds metrics that controllers have set between the last tick and the next.
   void measured(const std::vector<world::Metric>& metrics);
   /// The world is stepped with these commands.
   void step(const world::Commands& commands);
@@ -62,9 +63,11 @@ class Recording {
   void end_due_chunk();
   void close();
 
-  std::size_t chunks() const { return writer_.chunks(); }          ///< that are written
-  std::size_t chunk_size() const { return writer_.chunk_size(); }  ///< of what is not written [bytes]
-  clock::time_point chunk_begin() const { return chunk_begin_; }   ///< if that is more than 0
+  std::size_t chunks() const { return writer_.chunks(); }  ///< that are written
+  std::size_t chunk_size() const {
+    return writer_.chunk_size();
+  }  ///< of what is not written [bytes]
+  clock::time_point chunk_begin() const { return chunk_begin_; }  ///< if that is more than 0
 
  private:
   void write(std::uint16_t channel, std::string_view bytes);
@@ -77,17 +80,17 @@ class Recording {
 
   mcap::Writer writer_;
   const Contents contents_;
-  std::map<std::string, std::uint16_t> schemas_;        // by the name of the type
-  std::map<std::string, std::uint16_t> topics_;         // channels in the file
-  std::map<std::uint32_t, std::uint16_t> channels_of_;  // by Channel::id
+  std::map<std::string, std::uint16_t> schemas_;                    // by the name of the type
+  std::map<std::string, std::uint16_t> topics_;                     // channels in the file
+  std::map<std::uint32_t, std::uint16_t> channels_of_;              // by Channel::id
   std::uint16_t run_ = 0, inputs_channel_ = 0, state_channel_ = 0;  // 0: not wanted
-  std::shared_ptr<const channels::PopulationCopy> population_;  // that channels_ refers to
+  std::shared_ptr<const channels::PopulationCopy> population_;      // that channels_ refers to
   channels::Channels channels_;
   std::vector<std::uint32_t> wanted_, without_pictures_;  // Channel::id, ascending
   bool is_population_new_ = false;
   channels::TickCopy tick_;  // the last one
   v1::Inputs inputs_;
-  v1::Inputs early_;  // acts that come before the next state, the first of an epoch
+  v1::Inputs early_;         // acts that come before the next state, the first of an epoch
   bool has_inputs_ = false;  // of the last tick, not written yet
   recording::CommandPacker commands_;
   recording::StatePacker links_;

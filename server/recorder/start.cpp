@@ -20,6 +20,7 @@ v1::RunStart to_message(const Start& from) {
   add(from.settings, *to.mutable_settings());
   add(from.parameters, *to.mutable_parameters());
   to.set_clock(from.clock);
+  to.set_core(1);
   to.set_last_tick(from.last_tick);
   for (const Start::Controller& each : from.controllers) {
     v1::RunStart::Controller& controller = *to.add_controllers();

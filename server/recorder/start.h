@@ -1,5 +1,5 @@
 #pragma once
-// What a recording says of its run as a whole.
+// Start of a recording: the properties of its run as a whole.
 
 #include <cstdint>
 #include <string>
@@ -16,7 +16,7 @@ struct EmbeddedFile {
   std::string text;
 };
 
-/// What may change the bits of a run.
+/// Build of the program, as far as it may change the bits of a run.
 struct Build {
   std::string version, compiler, options, libm, cpu_path;
 };

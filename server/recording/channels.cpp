@@ -95,19 +95,22 @@ void write(Message& message, std::string_view name, const std::string* id, const
         value);
 }
 
-/// Of a device; none for values that are recorded by position.
-std::optional<std::string> id_in(const world::DeviceLists& lists, world::IdOf id, std::size_t device) {
+/// Id of a device; none for values that are recorded by position.
+std::optional<std::string> id_in(const world::DeviceLists& lists, world::IdOf id,
+                                 std::size_t device) {
   if (!id) return std::nullopt;
   return id(lists, device);
 }
 
-/// A joint may have a sensor of its position and one of its velocity: the one that is listed later is
-/// recorded as "ID position" or "ID velocity".
-std::string id_of_sensor(const world::DeviceLists& lists, const world::Range& range, std::size_t device) {
+/// A joint may have a sensor of its position and one of its velocity: the one that is listed later
+/// is recorded as "ID position" or "ID velocity".
+std::string id_of_sensor(const world::DeviceLists& lists, const world::Range& range,
+                         std::size_t device) {
   const auto& sensors = lists.joint_sensors;
   const world::JointSensorLayout& sensor = sensors[device];
   for (std::size_t earlier = range.begin; earlier < device; ++earlier) {
-    if (sensors[earlier].id == sensor.id) return sensor.id + (sensor.velocity ? " velocity" : " position");
+    if (sensors[earlier].id == sensor.id)
+      return sensor.id + (sensor.velocity ? " velocity" : " position");
   }
   return sensor.id;
 }
@@ -119,7 +122,8 @@ void add(const Moment& moment, const world::RobotLayout& robot, const Struct& fr
     const world::Range range = channel.devices(moment.layout, robot);
     const bool is_joints = std::string_view(channel.recorded) == "joint_encoders";
     for (std::size_t device = range.begin; device < range.end(); ++device) {
-      const auto id = is_joints ? id_of_sensor(moment.layout, range, device) : id_in(moment.layout, channel.id, device);
+      const auto id = is_joints ? id_of_sensor(moment.layout, range, device)
+                                : id_in(moment.layout, channel.id, device);
       write(out, channel.recorded, id ? &*id : nullptr, (from.*channel.values)[device]);
     }
   });

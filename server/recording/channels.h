@@ -5,10 +5,10 @@
 
 namespace ziggurat::recording {
 
-/// What a robot sensed and showed, of fixed size.
+/// Adds a robot's readings and shown values of fixed size.
 void add_channels(const Moment& moment, const world::RobotLayout& robot, v1::RobotObservation& out);
 
-/// What it set.
+/// Adds the values that it set.
 void add_channels(const Moment& moment, const world::RobotLayout& robot, v1::RobotCommand& out);
 
 }  // namespace ziggurat::recording

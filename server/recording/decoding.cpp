@@ -33,13 +33,16 @@ std::optional<std::string> decode(std::string_view bytes, google::protobuf::Mess
   const auto& type = *to.GetDescriptor();
   const Bound most = bound_of(type);
   if (bytes.size() > most.bytes) {
-    return fmt::format("has {} bytes; at most {} are read, and no run writes as many", bytes.size(), most.bytes);
+    return fmt::format("has {} bytes; at most {} are read, and no run writes as many", bytes.size(),
+                       most.bytes);
   }
   if (v1::decoded_size(bytes, type, most.memory) > most.memory) {
-    return fmt::format("has parts that take more than {} MiB of memory, which none of a run does", most.memory / mebibyte);
+    return fmt::format("has parts that take more than {} MiB of memory, which none of a run does",
+                       most.memory / mebibyte);
   }
   forget(to);
-  // protobuf would print a line for text that is no UTF-8; once, because threads decode side by side.
+  // protobuf would print a line for text that is no UTF-8; once, because threads decode side by
+  // side.
   [[maybe_unused]] static const auto printing = google::protobuf::SetLogHandler(nullptr);
   if (to.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return std::nullopt;
   return "is damaged";

@@ -31,16 +31,17 @@ using Arguments = std::vector<std::string>;
 constexpr int film_of_child = 3;  // its descriptor
 constexpr const char* even_sides = "pad=ceil(iw/2)*2:ceil(ih/2)*2";
 
-/// How ffmpeg makes the format of an ending; empty: it is none of ours.
+/// Arguments with which ffmpeg makes the format of an ending; empty: it is not supported.
 Arguments encoder_of(const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();
   if (ending == ".mp4") {
-    return {"-vf",  even_sides, "-c:v",     "libx264",  "-preset",   "veryfast",
+    return {"-vf",  even_sides, "-c:v",     "libx264", "-preset",   "veryfast",
             "-crf", "20",       "-pix_fmt", "yuv420p", "-movflags", "+faststart"};
   }
   if (ending == ".webm") {
-    return {"-vf",      even_sides,  "-c:v", "libvpx-vp9", "-crf",     "32", "-b:v",    "0",
-            "-deadline", "realtime", "-cpu-used", "6",     "-row-mt", "1",  "-pix_fmt", "yuv420p"};
+    return {"-vf",     even_sides, "-c:v",      "libvpx-vp9", "-crf",      "32",
+            "-b:v",    "0",        "-deadline", "realtime",   "-cpu-used", "6",
+            "-row-mt", "1",        "-pix_fmt",  "yuv420p"};
   }
   if (ending == ".webp") {
     return {"-c:v", "libwebp_anim", "-quality", "70", "-compression_level", "4", "-loop", "0"};
@@ -123,16 +124,29 @@ Film::Film(std::string path, const FilmFormat& format)
 Film::~Film() { end(); }
 
 void Film::start() {
-  const posix::Descriptor film(open_alone(path_));  // by which ffmpeg opens it: the name may lead elsewhere by then
-  Arguments arguments{"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
-                      "-f", "rawvideo", "-pixel_format", "rgb24",
-                      "-video_size", fmt::format("{}x{}", format_.width, format_.height),
-                      "-framerate", fmt::format("{}", format_.frames_per_second),
-                      "-i", "pipe:0", "-an"};
+  const posix::Descriptor film(open_alone(path_));  // by which ffmpeg opens it, and keeps it locked
+  Arguments arguments{"ffmpeg",
+                      "-hide_banner",
+                      "-loglevel",
+                      "error",
+                      "-nostdin",
+                      "-y",
+                      "-f",
+                      "rawvideo",
+                      "-pixel_format",
+                      "rgb24",
+                      "-video_size",
+                      fmt::format("{}x{}", format_.width, format_.height),
+                      "-framerate",
+                      fmt::format("{}", format_.frames_per_second),
+                      "-i",
+                      "pipe:0",
+                      "-an"};
   const Arguments encoder = encoder_of(path_);
   arguments.insert(arguments.end(), encoder.begin(), encoder.end());
   const std::string ending = std::filesystem::path(path_).extension().string();
-  arguments.insert(arguments.end(), {"-f", ending.substr(1), fmt::format("file:/dev/fd/{}", film_of_child)});
+  arguments.insert(arguments.end(),
+                   {"-f", ending.substr(1), fmt::format("file:/dev/fd/{}", film_of_child)});
   std::array<int, 2> pipe{};
   if (::pipe2(pipe.data(), O_CLOEXEC) != 0) fail(std::strerror(errno));
   input_ = pipe[1];

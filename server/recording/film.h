@@ -33,8 +33,8 @@ class Film {
   /// @throws WriteError with what ffmpeg says, if it has ended
   void write(std::span<const std::uint8_t> rgb);
 
-  /// Completes the file, which can be played then; without any frame there is none. Further calls do
-  /// nothing. @throws WriteError
+  /// Completes the file, which can be played then; without any frame there is none. Further calls
+  /// do nothing. @throws WriteError
   void close();
 
   std::uint64_t frames() const { return frames_; }  ///< written

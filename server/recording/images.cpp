@@ -35,7 +35,6 @@ std::string image_name(std::string_view robot, std::string_view camera, std::uin
 
 Images::Images(std::string folder, const world::Layout& layout)
     : folder_(std::move(folder)), layout_(layout) {
-  if (const auto planted = planted_at(folder_ + "/.")) throw WriteError(fmt::format("{}: cannot be made: it is {}", folder_, *planted));
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (error) throw WriteError(fmt::format("{}: cannot be made: {}", folder_, error.message()));

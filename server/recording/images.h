@@ -11,8 +11,8 @@
 
 namespace ziggurat::recording {
 
-/// `robot.camera.000123.png`. In ids, what isn't a letter, a digit, `-` or `_` is `%` and two
-/// hexadecimal digits per byte, so that any two differ and none leaves the folder.
+/// `robot.camera.000123.png`. In ids, bytes other than letters, digits, `-` or `_` become `%` and
+/// two hexadecimal digits. So any two ids differ, and none leaves the folder.
 std::string image_name(std::string_view robot, std::string_view camera, std::uint64_t tick);
 
 class Images {

@@ -48,9 +48,8 @@ constexpr std::tuple packed{
         &Commands::range_and_bearing_data, &Commands::mutable_range_and_bearing_data},
     Packed<world::WheelsCommand, Numbers>{&world::Commands::wheels, &Commands::has_wheels,
                                           &Commands::wheels, &Commands::mutable_wheels},
-    Packed<world::TurretMode, Integers>{&world::Commands::turret_modes,
-                                        &Commands::has_turret_modes, &Commands::turret_modes,
-                                        &Commands::mutable_turret_modes},
+    Packed<world::TurretMode, Integers>{&world::Commands::turret_modes, &Commands::has_turret_modes,
+                                        &Commands::turret_modes, &Commands::mutable_turret_modes},
     Packed<double, Numbers>{&world::Commands::turret_rotations, &Commands::has_turret_rotations,
                             &Commands::turret_rotations, &Commands::mutable_turret_rotations},
     Packed<double, Numbers>{&world::Commands::turret_speeds, &Commands::has_turret_speeds,
@@ -133,7 +132,7 @@ bool read(const std::string& from, std::vector<std::uint8_t>& to) {
   return true;
 }
 
-/// What is wrong with a message's values of a channel.
+/// Reads a message's values of a channel. @return  their fault, if they have one
 template <std::size_t i>
 std::optional<std::string> read_channel(const Commands& from, world::Commands& to) {
   constexpr auto& row = std::get<i>(packed);
@@ -182,10 +181,11 @@ std::optional<std::string> read_radio_messages(const Commands& from, const world
       size += bytes[r];
     }
     if (count > world::most_radio_messages_per_robot || size > world::most_radio_bytes_per_robot) {
-      return fmt::format("the robot '{}' sends {} radio messages of {} bytes in one tick; at most "
-                         "{} of {} are allowed",
-                         robot.id, count, size, world::most_radio_messages_per_robot,
-                         world::most_radio_bytes_per_robot);
+      return fmt::format(
+          "the robot '{}' sends {} radio messages of {} bytes in one tick; at most "
+          "{} of {} are allowed",
+          robot.id, count, size, world::most_radio_messages_per_robot,
+          world::most_radio_bytes_per_robot);
     }
   }
   return std::nullopt;
@@ -268,7 +268,8 @@ std::optional<std::string> unpack(const v1::Commands& from, const world::Layout&
   world::for_each_row(packed, [&](auto i) {
     if (fault) return;
     constexpr auto& row = std::get<i>(packed);
-    constexpr auto& channel = std::get<world::row_of(world::commanded, row.values)>(world::commanded);
+    constexpr auto& channel =
+        std::get<world::row_of(world::commanded, row.values)>(world::commanded);
     fault = read_channel<i>(from, to);
     const std::size_t count = (to.*row.values).size(), expected = (like.*row.values).size();
     if (fault || count == expected) return;

@@ -1,6 +1,6 @@
 #pragma once
-// What a step reads and what it makes of the world, exactly: the messages `Commands` and
-// `ExactState` of run.proto. Writers and readers of recordings share it.
+// Exact inputs and result of a step: the messages `Commands` and `ExactState` of run.proto. Writers
+// and readers of recordings share it.
 
 #include <cstdint>
 #include <optional>
@@ -18,8 +18,8 @@ class ExactState;
 
 namespace ziggurat::recording {
 
-/// Packs the commands of one step after the other, all arrays at the first call. A new epoch takes a
-/// new one.
+/// Packs the commands of one step after the other, all arrays at the first call. A new epoch takes
+/// a new one.
 class CommandPacker {
  public:
   /// Later, arrays that are as in the call before are left out; radio messages never are.

@@ -22,14 +22,17 @@ using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 using google::protobuf::Reflection;
 
-constexpr std::size_t longest_piece = std::size_t{1} << 20;    // of text that is escaped at once [bytes]
+constexpr std::size_t longest_piece = std::size_t{1}
+                                      << 20;  // of text that is escaped at once [bytes]
 constexpr std::size_t longest_buffer = std::size_t{16} << 20;  // [bytes]
 
 /// Such as times.
-bool is_protobufs_own(const google::protobuf::Descriptor& type) { return type.file()->package() == "google.protobuf"; }
+bool is_protobufs_own(const google::protobuf::Descriptor& type) {
+  return type.file()->package() == "google.protobuf";
+}
 
-// protobuf's MessageToJsonString makes a tree of the message and its defaults that takes a thousand bytes for each field,
-// and walks maps in an order that differs from run to run.
+// Writer in place of protobuf's MessageToJsonString. That function takes a thousand bytes for each
+// field, defaults included. It walks maps in an order that differs from run to run.
 class Writer {
  public:
   explicit Writer(OutputFile& to) : file_(to), to_(to.buffer()) {}
@@ -52,13 +55,15 @@ class Writer {
  private:
   void append(std::string_view text) { to_.append(text); }
 
-  /// As protobuf's JSON has them: in the order of the .proto, then optional ones and times by their numbers.
+  /// As protobuf's JSON has them: in the order of the .proto, then optional ones and times by their
+  /// numbers.
   const std::vector<const FieldDescriptor*>& in_order(const google::protobuf::Descriptor& type) {
     std::vector<const FieldDescriptor*>& fields = orders_[&type];
     if (!fields.empty()) return fields;
     for (int i = 0; i < type.field_count(); ++i) fields.push_back(type.field(i));
     const auto place = [](const FieldDescriptor* field) {
-      const bool is_last = field->has_optional_keyword() || (field->message_type() && is_protobufs_own(*field->message_type()));
+      const bool is_last = field->has_optional_keyword() ||
+                           (field->message_type() && is_protobufs_own(*field->message_type()));
       return std::pair(is_last, is_last ? field->number() : field->index());
     };
     std::ranges::sort(fields, {}, place);
@@ -84,8 +89,11 @@ class Writer {
     const auto& keys = *field.message_type()->map_key();
     std::vector<const Message*> entries;
     const int size = message.GetReflection()->FieldSize(message, &field);
-    for (int i = 0; i < size; ++i) entries.push_back(&message.GetReflection()->GetRepeatedMessage(message, &field, i));
-    const auto key = [&](const Message* entry) { return entry->GetReflection()->GetString(*entry, &keys); };
+    for (int i = 0; i < size; ++i)
+      entries.push_back(&message.GetReflection()->GetRepeatedMessage(message, &field, i));
+    const auto key = [&](const Message* entry) {
+      return entry->GetReflection()->GetString(*entry, &keys);
+    };
     std::ranges::sort(entries, {}, key);
     to_.push_back('{');
     for (const Message* entry : entries) {
@@ -121,19 +129,23 @@ class Writer {
         append(get(&Reflection::GetBool, &Reflection::GetRepeatedBool) ? "true" : "false");
         break;
       case FieldDescriptor::CPPTYPE_DOUBLE:
-        write_number(get(&Reflection::GetDouble, &Reflection::GetRepeatedDouble), google::protobuf::SimpleDtoa);
+        write_number(get(&Reflection::GetDouble, &Reflection::GetRepeatedDouble),
+                     google::protobuf::SimpleDtoa);
         break;
       case FieldDescriptor::CPPTYPE_FLOAT:
-        write_number(get(&Reflection::GetFloat, &Reflection::GetRepeatedFloat), google::protobuf::SimpleFtoa);
+        write_number(get(&Reflection::GetFloat, &Reflection::GetRepeatedFloat),
+                     google::protobuf::SimpleFtoa);
         break;
       case FieldDescriptor::CPPTYPE_ENUM:
-        write_enumerator(*field.enum_type(), get(&Reflection::GetEnumValue, &Reflection::GetRepeatedEnumValue));
+        write_enumerator(*field.enum_type(),
+                         get(&Reflection::GetEnumValue, &Reflection::GetRepeatedEnumValue));
         break;
       case FieldDescriptor::CPPTYPE_STRING:
         write_string(message, field, index);
         break;
       case FieldDescriptor::CPPTYPE_MESSAGE:
-        write(index < 0 ? of.GetMessage(message, &field) : of.GetRepeatedMessage(message, &field, index));
+        write(index < 0 ? of.GetMessage(message, &field)
+                        : of.GetRepeatedMessage(message, &field, index));
         break;
     }
   }
@@ -153,8 +165,9 @@ class Writer {
   void write_string(const Message& message, const FieldDescriptor& field, int index) {
     std::string empty;
     const Reflection& of = *message.GetReflection();
-    const std::string& value = index < 0 ? of.GetStringReference(message, &field, &empty)
-                                         : of.GetRepeatedStringReference(message, &field, index, &empty);
+    const std::string& value = index < 0
+                                   ? of.GetStringReference(message, &field, &empty)
+                                   : of.GetRepeatedStringReference(message, &field, index, &empty);
     if (field.type() == FieldDescriptor::TYPE_STRING) return write_text(value);
     std::string text;
     google::protobuf::Base64Escape(value, &text);
@@ -166,7 +179,9 @@ class Writer {
     while (!text.empty()) {
       std::size_t size = std::min(text.size(), longest_piece);
       // Between two characters: the others' bytes begin with the bits 10.
-      while (size < text.size() && size > longest_piece - 4 && (static_cast<unsigned char>(text[size]) & 0xC0U) == 0x80U) --size;
+      while (size < text.size() && size > longest_piece - 4 &&
+             (static_cast<unsigned char>(text[size]) & 0xC0U) == 0x80U)
+        --size;
       write_piece(text.substr(0, size));
       text.remove_prefix(size);
       if (to_.size() > longest_buffer) file_.flush();
@@ -176,7 +191,9 @@ class Writer {
 
   /// Without quotation marks.
   void write_piece(std::string_view text) {
-    const auto is_plain = [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\' && c != '<' && c != '>'; };
+    const auto is_plain = [](char c) {
+      return c >= ' ' && c <= '~' && c != '"' && c != '\\' && c != '<' && c != '>';
+    };
     if (std::ranges::all_of(text, is_plain)) return append(text);
     google::protobuf::StringValue value;
     value.set_value(text.data(), text.size());
@@ -193,7 +210,8 @@ class Writer {
 
   OutputFile& file_;
   fmt::memory_buffer& to_;
-  std::unordered_map<const google::protobuf::Descriptor*, std::vector<const FieldDescriptor*>> orders_;
+  std::unordered_map<const google::protobuf::Descriptor*, std::vector<const FieldDescriptor*>>
+      orders_;
 };
 
 }  // namespace

@@ -7,9 +7,10 @@
 
 namespace ziggurat::recording {
 
-/// Writes the message as protobuf JSON, with the field names of the .proto, defaults written out and maps
-/// sorted by key, to the end of the file's buffer, which it empties when it is large: text can take far more memory than
-/// its message. @throws WriteError, also if the message has no JSON form
+/// Writes the message as protobuf JSON to the end of the file's buffer, and empties that when it is
+/// large. Text can take far more memory than its message. Field names are those of the .proto,
+/// defaults are written out, and maps are sorted by key.
+/// @throws WriteError, also if the message has no JSON form
 void write_json(const google::protobuf::Message& message, OutputFile& to);
 
 }  // namespace ziggurat::recording

@@ -1,6 +1,7 @@
 #include "recording/output_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,7 +11,6 @@
 #include <utility>
 
 #include "posix/descriptor.h"
-#include "recording/place.h"
 
 namespace ziggurat::recording {
 namespace {
@@ -18,40 +18,18 @@ namespace {
 constexpr std::size_t full_buffer = std::size_t{256} << 10;  // [bytes]
 
 [[noreturn]] void fail(const std::string& path, int error) {
-  throw WriteError(fmt::format("{}: cannot be written: {}", path == "-" ? "stdout" : path, std::strerror(error)));
-}
-
-/// @throws WriteError
-Place place_to_write(const std::string& path) {
-  Place place(path);
-  if (place.planted()) throw WriteError(fmt::format("{}: cannot be written: it is {}", path, *place.planted()));
-  if (place.error() != 0) fail(path, place.error());
-  return place;
-}
-
-/// Whether another program has the lock of those that write to a file. Who may only read it could have one that keeps others from
-/// writing, and stop them: that one counts for nothing.
-bool is_taken_by_a_writer(int file) {
-  struct flock lock {};
-  lock.l_type = F_WRLCK;
-  lock.l_whence = SEEK_SET;
-  if (::fcntl(file, F_OFD_SETLK, &lock) == 0 || (errno != EAGAIN && errno != EACCES)) return false;
-  lock.l_type = F_RDLCK;  // only locks of writers are in its way
-  return ::fcntl(file, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+  throw WriteError(fmt::format("{}: cannot be written: {}", path == "-" ? "stdout" : path,
+                               std::strerror(error)));
 }
 
 }  // namespace
 
-std::optional<std::string> planted_at(const std::string& path) { return Place(path).planted(); }
-
 int open_alone(const std::string& path, int flags) {
-  flags |= O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC;
-  int file = place_to_write(path).open(flags | O_EXCL);
-  if (file < 0 && errno == EEXIST) file = place_to_write(path).open(flags);
+  const int file = ::open(path.c_str(), flags | O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
   if (file < 0) fail(path, errno);
   struct stat status {};
   if (::fstat(file, &status) != 0 || !S_ISREG(status.st_mode)) return file;
-  const bool is_taken = is_taken_by_a_writer(file);
+  const bool is_taken = ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   if (!is_taken && ::ftruncate(file, 0) == 0) return file;
   const int error = errno;
   ::close(file);
@@ -60,12 +38,11 @@ int open_alone(const std::string& path, int flags) {
 }
 
 void check_can_be_written(const std::string& path) {
-  const Place place = place_to_write(path);
   constexpr int flags = O_WRONLY | O_CREAT | O_CLOEXEC;
-  const posix::Descriptor made(place.open(flags | O_EXCL));
+  const posix::Descriptor made(::open(path.c_str(), flags | O_EXCL, 0666));
   if (made.is_open()) {
-    place.remove();
-  } else if (errno != EEXIST || !posix::Descriptor(place.open(flags)).is_open()) {
+    ::unlink(path.c_str());
+  } else if (errno != EEXIST || !posix::Descriptor(::open(path.c_str(), flags, 0666)).is_open()) {
     fail(path, errno);
   }
 }
@@ -81,7 +58,9 @@ std::optional<std::string> loss_of(int descriptor, bool had_name, std::uint64_t 
   if (had_name && status.st_nlink == 0) return "was removed while it was written, and is lost";
   const auto now = static_cast<std::uint64_t>(status.st_size);
   if (now >= size) return std::nullopt;
-  return fmt::format("was shortened by another program while it was written: {} bytes of {} are lost", size - now, size);
+  return fmt::format(
+      "was shortened by another program while it was written: {} bytes of {} are lost", size - now,
+      size);
 }
 
 OutputFile::OutputFile(std::string path) : path_(std::move(path)) {

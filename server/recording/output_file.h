@@ -1,6 +1,6 @@
 #pragma once
-// A file being written. What stands in the buffer reaches the disk in large pieces, and a disk
-// that takes no more is an error of its own, never a silently shortened file.
+// A file being written. The buffer reaches the disk in large pieces. A full disk is an error of its
+// own, never a silently shortened file.
 
 #include <fmt/format.h>
 
@@ -17,24 +17,22 @@ class WriteError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What another user has put at a place in a folder that all can write, as /tmp: a file, a pipe, or a link that could lead to
-/// a file of ours. None if it is ours, of the folder's owner, or not there.
-std::optional<std::string> planted_at(const std::string& path);
-
-/// Opens a file to write to it alone, and empties it. What is written goes to its end, also behind a program that shortens it.
-/// A pipe or a device may have several writers. @throws WriteError if it can't be created, another user has planted it, or
-/// another program writes to it, which would mix both
+/// Opens a file to write to it alone, and empties it. What is written goes to its end, also behind
+/// a program that shortens it. A pipe or a device may have several writers. @throws WriteError if
+/// it can't be created, or another program writes to it, which would mix both
 int open_alone(const std::string& path, int flags = 0);
 
-/// That open_alone() could open it. It stays as it is, and no file stays that was not there. @throws WriteError
+/// Checks that open_alone() could open it. It stays as it is, and no file stays that was not there.
+/// @throws WriteError
 void check_can_be_written(const std::string& path);
 
 /// Whether an open file has a name, by which it can be found when it is closed.
 bool has_name(int descriptor);
 
-/// What another program has done to a file of open_alone(), if it is no longer what was written: removed or shortened it.
+/// Description of the damage to a file of open_alone() by another program, which removed or
+/// shortened it; none: it is whole.
 /// @param had_name  when it was opened
-/// @param size      of what was written [bytes]
+/// @param size      of the written content [bytes]
 std::optional<std::string> loss_of(int descriptor, bool had_name, std::uint64_t size);
 
 class OutputFile {
@@ -56,8 +54,8 @@ class OutputFile {
   /// Writes what is in the buffer. Call it between whole lines. @throws WriteError
   void flush();
 
-  /// Writes the rest and closes; further calls do nothing. @throws WriteError, also if the file was removed or shortened
-  /// meanwhile
+  /// Writes the rest and closes; further calls do nothing. @throws WriteError, also if the file was
+  /// removed or shortened meanwhile
   void close();
 
  private:

@@ -7,11 +7,12 @@
 
 namespace ziggurat::recording {
 
-/// What an option says. `-` is stdout.
+/// Output that an option names. `-` is stdout.
 struct OutputName {
-  std::string option;                ///< such as "--csv"
+  std::string option;  ///< such as "--csv"
   std::string path;
-  std::vector<std::string> endings;  ///< of names of files with this content, such as ".csv"; empty: any
+  std::vector<std::string>
+      endings;  ///< of names of files with this content, such as ".csv"; empty: any
 };
 
 /// A file that an output must not replace: the command reads it, or writes something else to it.
@@ -20,17 +21,14 @@ struct TakenFile {
   std::string what;  ///< in a message, such as "the recording itself"
 };
 
-/// Whether both paths are one file, by links too. What several may write to at once, a device or a pipe, is not.
+/// Whether both paths are one file, by links too. What several may write to at once, a device or a
+/// pipe, is not.
 bool is_one_file(const std::string& a, const std::string& b);
 
-/// That the name has the right ending, and the file is neither planted by another user (planted_at()), nor taken, nor one of
-/// another kind that ziggurat reads, which would be lost: a scene, a script, a recording, a database. Pipes, devices and `-` need no
-/// ending.
+/// Checks that the name has the ending of its content, and the file is not taken. A file of another
+/// kind that ziggurat reads, known by its ending, would be lost, and is refused: a scene, a script,
+/// a recording, a database. Pipes, devices and `-` need no ending.
 /// @throws text::UsageError
 void check_output(const OutputName& output, std::span<const TakenFile> taken = {});
-
-/// That another user has put no link on the way to a folder for outputs, or at its place.
-/// @throws text::UsageError
-void check_output_folder(const std::string& option, const std::string& path);
 
 }  // namespace ziggurat::recording

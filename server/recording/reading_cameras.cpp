@@ -9,7 +9,7 @@
 namespace ziggurat::recording {
 namespace {
 
-/// Those of a camera; the readings ascend by camera.
+/// Readings of a camera; they ascend by camera.
 template <typename Reading>
 std::span<const Reading> seen_by(std::size_t camera, const std::vector<Reading>& readings) {
   const auto first = std::ranges::lower_bound(readings, camera, {}, &Reading::camera);

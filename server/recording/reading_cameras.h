@@ -1,5 +1,5 @@
 #pragma once
-// What cameras see, for a line of `--readings`.
+// Camera readings for a line of `--readings`.
 
 #include <cstddef>
 #include <string>

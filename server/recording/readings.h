@@ -1,5 +1,5 @@
 #pragma once
-// What robots sensed and what they answered: `--readings`.
+// Readings of robots and the commands that answered them: `--readings`.
 
 #include <string>
 #include <vector>
@@ -13,14 +13,15 @@
 namespace ziggurat::recording {
 
 /// One line per tick and robot that is there, in scene order: ziggurat.v1.Reading as protobuf JSON
-/// with the field names of recording.proto, devices sorted by id. A director that set metrics at the
-/// tick has a line, too, with its id as `robot` and nothing else.
+/// with the field names of recording.proto, devices sorted by id. A director that set metrics at
+/// the tick has a line, too, with its id as `robot` and nothing else.
 class Readings {
  public:
   /// Keeps a reference to `layout`. @throws WriteError
   Readings(std::string path, const world::Layout& layout);
 
-  /// What was true and observed at a tick, and the commands that answered it. @throws WriteError
+  /// Writes true state, readings, and the commands that answered them, of one tick.
+  /// @throws WriteError
   /// @param metrics  that were set then
   void write(const world::State& state, const world::Observations& observations,
              const world::Commands& commands, const std::vector<world::Metric>& metrics = {});

@@ -10,7 +10,7 @@
 
 namespace ziggurat::recording {
 
-/// Of those that are new; of all when a world begins or goes back.
+/// Names the rows of new entities and links, or of all when a world begins or goes back.
 void Trace::name_rows(const world::State& state) {
   if (state.tick == 0 || state.tick < last_tick_) name_anew();
   last_tick_ = state.tick;
@@ -19,9 +19,9 @@ void Trace::name_rows(const world::State& state) {
     rows_.push_back({fmt::format(",{},,", text::csv_field(entity.id)), entities_, true, entities_});
     if (!entity.lists_links) continue;
     for (std::size_t l = entity.links.begin; l < entity.links.end(); ++l) {
-      rows_.push_back({fmt::format(",{},{},", text::csv_field(entity.id),
-                                   text::csv_field(layout_.links[l].id)),
-                       entities_, false, l});
+      rows_.push_back(
+          {fmt::format(",{},{},", text::csv_field(entity.id), text::csv_field(layout_.links[l].id)),
+           entities_, false, l});
     }
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Where everything stood: `--trace`, a CSV file of world poses.
+// World poses of all links over time: `--trace`, a CSV file.
 
 #include <cstdint>
 #include <string>

@@ -1,4 +1,4 @@
-// What a canvas makes once: programs, and where they find their arrays.
+// Setup of a canvas: its programs, and the locations of their arrays.
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// What is drawn over the world if a view asks for it: rays, frusta, names.
+// Layers over the world if a view asks for them: rays, frusta, names.
 #include <algorithm>
 
 #include "camera/projection.h"
@@ -10,8 +10,8 @@ namespace {
 using math::Pose;
 using math::Vector3;
 
-constexpr double nearest = 0.01;     // of lines [m]
-constexpr double above = 0.02;       // of names: over an entity's highest point [m]
+constexpr double nearest = 0.01;  // of lines [m]
+constexpr double above = 0.02;    // of names: over an entity's highest point [m]
 
 /// Colours by what a ray is, and whether it met something.
 Float3 color_of(const world::Ray& ray) {
@@ -28,7 +28,8 @@ Float3 color_of(const world::Ray& ray) {
   return ray.hit ? Float3{0.86f, 0.20f, 0.16f} : Float3{0.93f, 0.62f, 0.10f};
 }
 
-/// The part of a segment that is in front of the camera, if any. @param start, end  in its frame [m]
+/// The part of a segment that is in front of the camera, if any. @param start, end  in its frame
+/// [m]
 void add_line(Vector3 start, Vector3 end, const Float3& color, Drawing& drawing) {
   if (start.z() < nearest && end.z() < nearest) return;
   const auto cut = [](Vector3& hidden, const Vector3& seen) {

@@ -29,7 +29,8 @@ void fill(Picture& picture, int left, int top, int side, std::uint8_t grey) {
   for (int y = std::max(top, 0); y < bottom; ++y) {
     for (int x = std::max(left, 0); x < right; ++x) {
       std::uint8_t* pixel =
-          &picture.rgb[3 * (static_cast<std::size_t>(y) * picture.width + static_cast<unsigned>(x))];
+          &picture
+               .rgb[3 * (static_cast<std::size_t>(y) * picture.width + static_cast<unsigned>(x))];
       pixel[0] = pixel[1] = pixel[2] = grey;
     }
   }
@@ -61,7 +62,8 @@ void draw_labels(std::span<Label> labels, Picture& picture) {
     const std::u32string text = characters(label.text);
     const int width = scale * (static_cast<int>(text.size()) * advance - 1);
     const int left = static_cast<int>(std::floor(label.u)) - width / 2;
-    const int top = static_cast<int>(std::floor(label.v)) - scale * (static_cast<int>(glyph_height) + 1);
+    const int top =
+        static_cast<int>(std::floor(label.v)) - scale * (static_cast<int>(glyph_height) + 1);
     draw(text, left, top, scale, picture);
   }
 }

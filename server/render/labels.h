@@ -9,9 +9,9 @@
 namespace ziggurat::render {
 
 struct Label {
-  std::string text;  ///< UTF-8
+  std::string text;     ///< UTF-8
   double u = 0, v = 0;  ///< the middle of its lower edge [px]
-  double depth = 0;  ///< along the view [m]: nearer ones cover farther ones
+  double depth = 0;     ///< along the view [m]: nearer ones cover farther ones
 };
 
 /// @param labels  are sorted by depth

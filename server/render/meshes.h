@@ -15,7 +15,7 @@ struct Vertex {
   std::array<float, 3> position;  ///< of a unit box, of a cylinder or sphere of radius 1, or
                                   ///< of a hull [m]
   std::array<float, 3> normal;    ///< unit, outwards
-  /// Where the face's edges are: the vertex' coordinate along each axis with edges at -1 and 1.
+  /// Coordinate of the vertex along each axis of the face; its edges are at -1 and 1.
   std::array<float, 3> edge;
 };
 
@@ -25,7 +25,7 @@ struct Mesh {
   std::int32_t base_vertex = 0;
 };
 
-/// How finely a round shape is cut: number of straight pieces around it.
+/// Resolution of a round shape: number of straight pieces around it.
 constexpr std::array<unsigned, 5> roundness{16, 32, 64, 128, 256};
 
 struct Meshes {

@@ -1,5 +1,5 @@
 #pragma once
-// What of a scene's looks never changes: the surfaces of its links, and its floor.
+// Model of a scene's constant looks: the surfaces of its links, and its floor.
 
 #include <vector>
 

@@ -15,7 +15,7 @@
 
 namespace ziggurat::render {
 
-/// The pictures are those of a Renderer, bit by bit, and are given away in the order in which they
+/// Pictures are those of a Renderer, bit by bit. They are given away in the order in which they
 /// were asked for, whatever the number of threads.
 class Several {
  public:
@@ -34,8 +34,10 @@ class Several {
   /// Waits while as many pictures as there are threads wait for one.
   /// @param rays  that are drawn instead of those of the state
   /// @param take  gets the picture, on a thread of these, one at a time
-  /// @throws once what drawing an earlier picture or an earlier take() threw; none is taken after that
-  void draw(const world::State& state, std::span<const world::Ray> rays, const View& view, Take take);
+  /// @throws once what drawing an earlier picture or an earlier take() threw; none is taken after
+  /// that
+  void draw(const world::State& state, std::span<const world::Ray> rays, const View& view,
+            Take take);
 
   /// Waits until all pictures were taken. @throws as draw()
   void finish();

@@ -40,7 +40,7 @@ float sunlight(vec3 position, vec3 normal) {
     vec4 high_left = textureGather(shadow_map, (corner + vec2(0.0, 2.0)) / size, depth);
     vec4 high_right = textureGather(shadow_map, (corner + 2.0) / size, depth);
     vec2 before = 1.0 - part;
-    // Of a gathering: left above, right above, right below, left below.
+    // Order of a gathering: left above, right above, right below, left below.
     float rows[4] = float[4](before.x * low_left.w + low_left.z + low_right.w + part.x * low_right.z,
                              before.x * low_left.x + low_left.y + low_right.x + part.x * low_right.y,
                              before.x * high_left.w + high_left.z + high_right.w + part.x * high_right.z,
@@ -131,8 +131,9 @@ const char* const shadow_fragment = R"(
 void main() {}
 )";
 
-// The floor is a plane without end. near / z of its points is linear over the picture, so a triangle
-// over all of it has the floor's depth, and its clipping cuts off what is above the horizon.
+// The floor is a plane without end. near / z of its points is linear over the picture. So a
+// triangle over all of it has the floor's depth, and its clipping cuts off the part above the
+// horizon.
 const char* const floor_vertex = R"(
 out vec2 at;
 

@@ -3,7 +3,7 @@
 
 namespace ziggurat::render::shaders {
 
-/// What all of them share: the uniforms, and the light. Goes before each of the others.
+/// Common part of all shaders: the uniforms, and the light. Goes before each of the others.
 extern const char* const common;
 
 extern const char* const body_vertex;

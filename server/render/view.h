@@ -1,5 +1,5 @@
 #pragma once
-// What a picture is and from where it is taken.
+// View of a picture, and its camera.
 
 #include <cstdint>
 #include <vector>
@@ -14,15 +14,15 @@ struct Picture {
   std::vector<std::uint8_t> rgb;   ///< width * height * 3
 };
 
-/// What a picture shows besides what an eye would see.
+/// Layers of a picture besides the visible surfaces.
 struct Layers {
   bool rays = false;    ///< State::rays
   bool frusta = false;  ///< what cameras can see, as edges
   bool labels = false;  ///< ids of entities
 };
 
-/// A pinhole camera. A point (X, Y, Z) of its frame, Z > 0, is at u = fx X / Z + cx,
-/// v = fy Y / Z + cy; (0, 0) is the top left corner of the picture, not the centre of a pixel.
+/// A pinhole camera. A point (X, Y, Z) of its frame, Z > 0, is at u = fx X / Z + cx, v = fy Y / Z +
+/// cy. (0, 0) is the top left corner of the picture, not the centre of a pixel.
 struct View {
   math::Pose camera;  ///< X_WC: +z forward, +x right, +y down in the picture
   math::Vector2 focal_length = math::Vector2::Zero();     ///< fx, fy [px], > 0

@@ -1,5 +1,5 @@
 #pragma once
-// Where what a robot wants differs from what it wanted when it was recorded.
+// Comparison of a robot's commands with the recorded ones.
 
 #include <optional>
 #include <string>

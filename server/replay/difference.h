@@ -1,5 +1,5 @@
 #pragma once
-// Where two states differ.
+// Comparison of two states.
 
 #include <cstddef>
 #include <optional>
@@ -20,14 +20,14 @@ struct Difference {
 std::optional<Difference> first_difference(std::span<const world::LinkState> a,
                                            std::span<const world::LinkState> b);
 
-/// How far the poses of two states are apart.
+/// Distance between the poses of two states.
 struct Distance {
   double greatest = 0;   ///< [m]
   double mean = 0;       ///< over all links [m]
   double angle = 0;      ///< the greatest between two orientations [rad]
   std::size_t link = 0;  ///< the one with the greatest
 };
-/// Of links that both have. All zero if there are none.
+/// Distance over the links that both have. All zero if there are none.
 Distance distance(std::span<const world::LinkState> a, std::span<const world::LinkState> b);
 
 }  // namespace ziggurat::replay

@@ -31,7 +31,8 @@ math::Pose pose_of(const google::protobuf::RepeatedField<double>& position,
   math::Pose pose;
   if (position.size() == 3) pose.position = {position[0], position[1], position[2]};
   if (orientation.size() == 4) {
-    pose.orientation = math::Quaternion(orientation[0], orientation[1], orientation[2], orientation[3]);
+    pose.orientation =
+        math::Quaternion(orientation[0], orientation[1], orientation[2], orientation[3]);
   }
   return pose;
 }
@@ -57,11 +58,16 @@ struct Inhabitants {
     const auto links = static_cast<std::size_t>(world.links_size());
     for (const auto& entity : world.entities()) {
       const world::Range range{entity.first_link(), entity.link_count()};
-      const auto is_its_own = [&](const v1::World::Link& link) { return link.entity() == layout.entities.size(); };
+      const auto is_its_own = [&](const v1::World::Link& link) {
+        return link.entity() == layout.entities.size();
+      };
       if (range.end() > links || entity.reference_link() >= links ||
           !std::all_of(world.links().begin() + entity.first_link(),
-                       world.links().begin() + entity.first_link() + entity.link_count(), is_its_own)) {
-        throw RecordingError(path + ": a message of /world is damaged: an entity refers to links that are not its own");
+                       world.links().begin() + entity.first_link() + entity.link_count(),
+                       is_its_own)) {
+        throw RecordingError(
+            path +
+            ": a message of /world is damaged: an entity refers to links that are not its own");
       }
       const bool lists_links = entity.kind() != Kind::BOX && entity.kind() != Kind::CYLINDER &&
                                entity.kind() != Kind::SPHERE;
@@ -97,7 +103,8 @@ struct Topic {
   const google::protobuf::Descriptor* type = nullptr;  ///< null: this version does not know it
 };
 
-/// Of those that runs record. protobuf knows types of its own, for which there are no bounds.
+/// Whether a type is one that runs record. protobuf knows types of its own, for which there are no
+/// bounds.
 bool is_recorded(const google::protobuf::Descriptor& type) {
   const std::string& package = type.file()->package();
   return package == "ziggurat.v1" || package == "foxglove";
@@ -114,8 +121,9 @@ std::map<std::uint16_t, Topic> chosen_topics(
     if (type && is_recorded(*type)) chosen.emplace(id, Topic{channel.topic, type});
   }
   if (!chosen.empty()) return chosen;
-  throw RecordingError(fmt::format(
-      "{} has no topic that is asked for; 'ziggurat info {}' lists them", file.path(), file.path()));
+  throw RecordingError(
+      fmt::format("{} has no topic that is asked for; 'ziggurat info {}' lists them", file.path(),
+                  file.path()));
 }
 
 }  // namespace
@@ -126,7 +134,8 @@ std::uint64_t export_csv(const RecordingFile& file, const std::string& out) {
   const auto* of_state = contents.channel_of("/state");
   auto messages = file.messages({"/world", "/state"});
   if (!of_world || !of_state) {
-    throw RecordingError(file.path() + ": the topics /world and /state are needed for a table; "
+    throw RecordingError(file.path() +
+                         ": the topics /world and /state are needed for a table; "
                          "write 'ziggurat replay --trace FILE.csv' to compute it anew");
   }
   Inhabitants inhabitants;
@@ -146,7 +155,8 @@ std::uint64_t export_csv(const RecordingFile& file, const std::string& out) {
       continue;
     }
     file.decode(*messages, *message, exact);
-    if (const auto fault = recording::unpack(exact, links)) throw RecordingError(file.path() + ": " + *fault);
+    if (const auto fault = recording::unpack(exact, links))
+      throw RecordingError(file.path() + ": " + *fault);
     state.tick = exact.tick();
     state.time_ns = time_of(exact.tick(), ticks_per_second);
     if (!inhabitants.fill(links, state)) continue;
@@ -154,7 +164,8 @@ std::uint64_t export_csv(const RecordingFile& file, const std::string& out) {
     ++written;
   }
   trace.close();
-  if (written == 0) throw RecordingError(file.path() + ": no state of it is intact, so a table would be empty");
+  if (written == 0)
+    throw RecordingError(file.path() + ": no state of it is intact, so a table would be empty");
   return written;
 }
 
@@ -172,9 +183,10 @@ std::uint64_t export_jsonl(const RecordingFile& file,
     const std::unique_ptr<google::protobuf::Message> content(
         MessageFactory::generated_factory()->GetPrototype(topic.type)->New());
     file.decode(messages, *message, *content);
-    output.buffer().append(fmt::format("{{\"topic\":{},\"time_s\":{},\"message\":",
-                                       nlohmann::json(topic.name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
-                                       static_cast<double>(message->log_time) / 1e9));
+    output.buffer().append(fmt::format(
+        "{{\"topic\":{},\"time_s\":{},\"message\":",
+        nlohmann::json(topic.name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
+        static_cast<double>(message->log_time) / 1e9));
     recording::write_json(*content, output);
     output.buffer().append(std::string_view("}\n"));
     output.written();

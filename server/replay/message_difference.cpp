@@ -29,11 +29,14 @@ std::string text_of(const Message& message, const FieldDescriptor& field, int in
                                        : reflection.GetRepeatedDouble(message, &field, index));
   }
   std::string text;
-  if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {  // whose text can be far longer than it is
+  if (field.cpp_type() ==
+      FieldDescriptor::CPPTYPE_MESSAGE) {  // whose text can be far longer than it is
     text.resize(longest);
     google::protobuf::io::ArrayOutputStream first(text.data(), static_cast<int>(text.size()));
-    google::protobuf::TextFormat::Print(
-        index < 0 ? reflection.GetMessage(message, &field) : reflection.GetRepeatedMessage(message, &field, index), &first);
+    google::protobuf::TextFormat::Print(index < 0
+                                            ? reflection.GetMessage(message, &field)
+                                            : reflection.GetRepeatedMessage(message, &field, index),
+                                        &first);
     text.resize(static_cast<std::size_t>(first.ByteCount()));
   } else {
     google::protobuf::TextFormat::PrintFieldValueToString(message, &field, index, &text);
@@ -103,7 +106,8 @@ std::optional<FieldDifference> first_difference(const Message& a, const Message&
 
 std::optional<FieldDifference> first_difference(const std::string& type, std::string_view a,
                                                 std::string_view b) {
-  const auto* known = google::protobuf::DescriptorPool::generated_pool()->FindMessageTypeByName(type);
+  const auto* known =
+      google::protobuf::DescriptorPool::generated_pool()->FindMessageTypeByName(type);
   if (!known) return std::nullopt;
   const Message* prototype =
       google::protobuf::MessageFactory::generated_factory()->GetPrototype(known);

@@ -1,5 +1,5 @@
 #pragma once
-// Where two protobuf messages of one type differ.
+// Comparison of two protobuf messages of one type.
 
 #include <google/protobuf/message.h>
 

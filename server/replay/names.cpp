@@ -11,7 +11,7 @@ namespace ziggurat::replay {
 
 namespace {
 
-/// Of the entity that a link names.
+/// Id of the entity that a link names.
 const std::string& entity_of(const v1::World& world, const v1::World::Link& link) {
   static const std::string unknown = "?";
   const bool is_known = link.entity() < static_cast<std::uint32_t>(world.entities_size());
@@ -25,8 +25,9 @@ std::optional<std::string> fault_of_names(const v1::World& world) {
   for (const auto& link : world.links()) bytes += entity_of(world, link).size() + link.id().size();
   for (const auto& entity : world.entities()) bytes += entity.id().size();
   if (bytes <= most_name_bytes) return std::nullopt;
-  return fmt::format("a message of /world is damaged: the names of its links have {} bytes; at most {} are read", bytes,
-                     most_name_bytes);
+  return fmt::format(
+      "a message of /world is damaged: the names of its links have {} bytes; at most {} are read",
+      bytes, most_name_bytes);
 }
 
 std::vector<std::string> link_names(const RecordingFile& file) {

@@ -13,28 +13,31 @@
 namespace ziggurat::replay {
 namespace {
 
-const std::string snapshot_folder = "snapshot/";  // of the names of attachments
+const std::string snapshot_folder = "snapshot/";                 // of the names of attachments
 constexpr std::uint64_t most_embedded = std::uint64_t{1} << 30;  // all files [bytes]
 
 RecordingError damaged(const std::string& path, const mcap::Damaged& damage) {
   if (damage.offset() == 0 && path.ends_with(".argos")) {
-    return RecordingError(fmt::format("{}: this is a scene, not a recording; write the file of 'ziggurat run {} --record FILE'",
-                                      path, path));
+    return RecordingError(fmt::format(
+        "{}: this is a scene, not a recording; write the file of 'ziggurat run {} --record FILE'",
+        path, path));
   }
   if (damage.offset() == 0) {
-    return RecordingError(fmt::format(
-        "{}: {}; write the file of 'ziggurat run SCENE --record FILE' (if this was one, 'ziggurat info {} --repair OUT' "
-        "saves what is whole)",
-        path, damage.what(), path));
+    return RecordingError(
+        fmt::format("{}: {}; write the file of 'ziggurat run SCENE --record FILE' (if this was "
+                    "one, 'ziggurat info {} --repair OUT' "
+                    "saves what is whole)",
+                    path, damage.what(), path));
   }
-  return RecordingError(fmt::format(
-      "{}: damaged at byte {}: {}; 'ziggurat info {} --repair OUT' saves what is whole", path,
-      damage.offset(), damage.what(), path));
+  return RecordingError(
+      fmt::format("{}: damaged at byte {}: {}; 'ziggurat info {} --repair OUT' saves what is whole",
+                  path, damage.offset(), damage.what(), path));
 }
 
 }  // namespace
 
-RecordingFile::RecordingFile(const std::string& path) : RecordingFile(path, mcap::open_file(path)) {}
+RecordingFile::RecordingFile(const std::string& path)
+    : RecordingFile(path, mcap::open_file(path)) {}
 
 RecordingFile::RecordingFile(std::string path, mcap::Source source) : path_(std::move(path)) {
   try {
@@ -45,10 +48,12 @@ RecordingFile::RecordingFile(std::string path, mcap::Source source) : path_(std:
       const std::string lacks = shortcoming();
       throw RecordingError(
           lacks.empty()
-              ? fmt::format("{}: an MCAP file without the topic /run; only what 'ziggurat run --record' writes can "
+              ? fmt::format("{}: an MCAP file without the topic /run; only what 'ziggurat run "
+                            "--record' writes can "
                             "be repeated",
                             path_)
-              : fmt::format("{}: {}; it has no message of /run, with which a recording begins", path_, lacks));
+              : fmt::format("{}: {}; it has no message of /run, with which a recording begins",
+                            path_, lacks));
     }
     decode(*start, *message, run_);
     read_files();
@@ -63,8 +68,8 @@ void RecordingFile::read_files() {
     if (index.name.starts_with(snapshot_folder)) continue;
     all += index.length;  // the index's data_size may say anything
     if (all > most_embedded) {
-      throw RecordingError(fmt::format("{}: its embedded files have more than {} bytes", path_,
-                                       most_embedded));
+      throw RecordingError(
+          fmt::format("{}: its embedded files have more than {} bytes", path_, most_embedded));
     }
     files_.add(index.name, reader_->attachment(index));
   }
@@ -88,9 +93,10 @@ std::optional<std::string> RecordingFile::snapshot(const std::string& name) cons
 std::string RecordingFile::shortcoming() const {
   if (reader_->has_summary()) return {};
   const auto& faults = reader_->faults();
-  return fmt::format("the recording was not closed: its end is missing{}",
-                     faults.empty() ? "" : fmt::format(" (byte {}: {})", faults.front().offset,
-                                                       faults.front().text));
+  return fmt::format(
+      "the recording was not closed: its end is missing{}",
+      faults.empty() ? ""
+                     : fmt::format(" (byte {}: {})", faults.front().offset, faults.front().text));
 }
 
 std::uint64_t RecordingFile::states() const {
@@ -117,7 +123,8 @@ void RecordingFile::decode(const mcap::Messages& from, const mcap::Message& mess
   const mcap::Contents& contents = reader_->contents();
   const auto channel = contents.channels.find(message.channel);
   throw RecordingError(fmt::format(
-      "{}: a message of {} at {} s, in the chunk at byte {}, {}; take another copy of the recording, or record the run again",
+      "{}: a message of {} at {} s, in the chunk at byte {}, {}; take another copy of the "
+      "recording, or record the run again",
       path_, channel == contents.channels.end() ? "no topic" : channel->second.topic,
       static_cast<double>(message.log_time) / 1e9, contents.chunks[from.chunk()].offset, *fault));
 }
@@ -143,8 +150,8 @@ const v1::Inputs* States::next() {
       file_.decode(*messages_, *message, coming_);
       std::swap(inputs_, coming_);
       log_time_ = message->log_time;
-      has_links_ = state_.epoch() == inputs_.epoch() && state_.tick() == inputs_.tick() &&
-                   !links_.empty();
+      has_links_ =
+          state_.epoch() == inputs_.epoch() && state_.tick() == inputs_.tick() && !links_.empty();
       return &inputs_;
     }
     file_.decode(*messages_, *message, state_);

@@ -17,7 +17,8 @@ namespace ziggurat::replay {
 
 class RecordingFile {
  public:
-  /// @throws RecordingError if it is no recording; what follows a damaged place can still be missing
+  /// @throws RecordingError if it is no recording; what follows a damaged place can still be
+  /// missing
   explicit RecordingFile(const std::string& path);
   /// The same of bytes from elsewhere. @param path  for messages
   RecordingFile(std::string path, mcap::Source source);
@@ -30,15 +31,17 @@ class RecordingFile {
   std::optional<std::string> snapshot(const std::string& name) const;
   /// A sentence on what is missing or damaged at the end; empty: it was closed in good order.
   std::string shortcoming() const;
-  /// How many states were recorded.
+  /// Number of recorded states.
   std::uint64_t states() const;
 
   /// The messages of these topics, in the order of the file; topics that it lacks are skipped.
   /// Nothing: it has none of them.
   std::optional<mcap::Messages> messages(const std::vector<std::string>& topics) const;
   /// Decodes one of them. @param from  the messages that it is the last one of
-  /// @throws RecordingError that names topic, time and place if it is damaged or beyond the bounds of recording/decoding.h
-  void decode(const mcap::Messages& from, const mcap::Message& message, google::protobuf::Message& to) const;
+  /// @throws RecordingError that names topic, time and place if it is damaged or beyond the bounds
+  /// of recording/decoding.h
+  void decode(const mcap::Messages& from, const mcap::Message& message,
+              google::protobuf::Message& to) const;
 
  private:
   void read_files();

@@ -17,13 +17,15 @@
 namespace ziggurat::replay {
 namespace {
 
-constexpr std::size_t most_spawned_bytes = std::size_t{64} << 20;  // since a reset, models written out
-constexpr std::size_t most_snapshots = 1024;  // as the server keeps
+constexpr std::size_t most_spawned_bytes = std::size_t{64}
+                                           << 20;  // since a reset, models written out
+constexpr std::size_t most_snapshots = 1024;       // as the server keeps
 constexpr std::size_t most_snapshot_bytes = std::size_t{1} << 30;  // of all of them
 constexpr double farthest = 1e6;                                   // [m], as in scenes
 
 /// Sets a joint, or tells why it can't be.
-std::optional<simulation::JointFault> set_joint(simulation::Simulation& world, std::size_t entity, const v1::Act::SetJoint& set) {
+std::optional<simulation::JointFault> set_joint(simulation::Simulation& world, std::size_t entity,
+                                                const v1::Act::SetJoint& set) {
   const simulation::JointMotion wanted{set.joint(), set.position(), set.velocity()};
   auto fault = simulation::fault_of(world, entity, wanted);
   if (!fault) simulation::set_joint(world, entity, wanted);
@@ -99,7 +101,8 @@ void Replay::apply(const v1::Act& act) {
     case v1::Act::kMove:
       return move(act.move());
     case v1::Act::kSetJoint:
-      if (const auto fault = set_joint(world_.simulation, entity_named(act.set_joint().entity()), act.set_joint())) {
+      if (const auto fault = set_joint(world_.simulation, entity_named(act.set_joint().entity()),
+                                       act.set_joint())) {
         fail(fmt::format("a joint cannot be set: {}", fault->text));
       }
       ++changes_;
@@ -129,7 +132,8 @@ std::optional<std::size_t> Replay::find(const std::string& id) {
     names_.last[entities[names_.entities].id] = names_.entities;
   }
   const auto found = names_.last.find(id);
-  if (found == names_.last.end() || world_.simulation.state().is_absent(found->second)) return std::nullopt;
+  if (found == names_.last.end() || world_.simulation.state().is_absent(found->second))
+    return std::nullopt;
   return found->second;
 }
 
@@ -174,7 +178,7 @@ void Replay::spawn(const std::string& xml) {
     ++changes_;
     if (links_) {  // wherever others were when the world was built
       simulation::repeat(world_.simulation, world_.scene,
-                         {simulation::WorldEdit::Kind::spawn, tick_, entities.size(), {},
+                         {simulation::WorldEdit::Kind::spawn, tick_, entities.size(),
                           std::make_shared<const scene::Entity>(std::move(addition.entity)), xml});
     } else {
       world_.simulation.spawn(world_.scene, addition.entity, xml);
@@ -235,7 +239,6 @@ void Replay::restore_to(const simulation::Snapshot& snapshot) {
   if (links_) {
     world_.simulation.reset(world_.scene, {snapshot.seed, {}});
     for (const simulation::WorldEdit& act : snapshot.history.edits) {
-      if (act.kind == simulation::WorldEdit::Kind::move) continue;
       simulation::repeat(world_.simulation, world_.scene, act);
     }
   } else {
@@ -246,7 +249,8 @@ void Replay::restore_to(const simulation::Snapshot& snapshot) {
   spawned_bytes_ = 0;
   for (const simulation::WorldEdit& act : snapshot.history.edits) {
     const auto size = spawned_sizes_.find(act.xml);
-    if (act.kind == simulation::WorldEdit::Kind::spawn) spawned_bytes_ += size == spawned_sizes_.end() ? act.xml.size() : size->second;
+    if (act.kind == simulation::WorldEdit::Kind::spawn)
+      spawned_bytes_ += size == spawned_sizes_.end() ? act.xml.size() : size->second;
   }
   ++changes_;
 }

@@ -66,14 +66,14 @@ class Replay {
   /// @throws RecordingError
   void act();
 
-  /// Where the snapshots are that the recording has embedded: by the name of their file.
+  /// Source of embedded snapshots: by the name of their file.
   using OpenSnapshot = std::function<simulation::Snapshot(const std::string& file)>;
   void open_snapshots_by(OpenSnapshot open) { open_snapshot_ = std::move(open); }
 
   /// The poses and velocities of the present inputs' state; null: they were not recorded.
   using Links = std::function<const std::vector<world::LinkState>*()>;
-  /// Nothing is simulated: the recorded states are shown one after the other. What robots sense stays
-  /// as at the begin, and no hash is computed. @pre nothing was repeated yet
+  /// Nothing is simulated: the recorded states are shown one after the other. What robots sense
+  /// stays as at the begin, and no hash is computed. @pre nothing was repeated yet
   void show(Links links) { links_ = std::move(links); }
   /// Puts the world where the recording begins. @throws RecordingError if it does not fit
   void begin_at(const simulation::Snapshot& snapshot) { restore_to(snapshot); }
@@ -81,14 +81,14 @@ class Replay {
   /// Told of each act, after it was done.
   void tell(std::function<void(const v1::Act&)> told) { told_ = std::move(told); }
 
-  /// Of the present state.
+  /// Inputs of the current state.
   const v1::Inputs& inputs() const { return *inputs_; }
   /// As computed, behind act() with what it has changed; if it is shown, as recorded.
   std::uint64_t hash() const { return hash_; }
-  bool is_same() const;                         ///< the recorded hash is the same
-  /// How many resets and restores, moves, spawns and removals there were.
+  bool is_same() const;  ///< the recorded hash is the same
+  /// Number of resets and restores, moves, spawns and removals.
   std::uint64_t changes() const { return changes_; }
-  /// How many of the first robots were still the same ones after the last restore.
+  /// Number of first robots that were still the same ones after the last restore.
   std::size_t common_robots() const { return common_robots_; }
 
  private:
@@ -112,16 +112,16 @@ class Replay {
   Source source_;
   std::function<void(const v1::Act&)> told_;
   const v1::Inputs* inputs_ = nullptr;
-  world::Commands commands_;  // of all inputs so far
+  world::Commands commands_;                               // of all inputs so far
   std::map<std::string, simulation::Snapshot> snapshots_;  // by name
   std::size_t snapshots_size_ = 0;                         // of all of them [bytes]
   OpenSnapshot open_snapshot_;
   Links links_;  // empty: it is simulated
   std::uint64_t hash_ = 0, changes_ = 0;
   std::size_t common_robots_ = 0;
-  std::size_t spawned_bytes_ = 0;  // of what is spawned in this world
+  std::size_t spawned_bytes_ = 0;                               // of what is spawned in this world
   std::unordered_map<std::string, std::size_t> spawned_sizes_;  // by element
-  std::uint64_t epoch_ = 0, tick_ = 0;  // of the present state
+  std::uint64_t epoch_ = 0, tick_ = 0;                          // of the present state
   bool has_commands_ = false, acted_ = false;
   struct Names {
     std::unordered_map<std::string, std::size_t> last;  ///< by id: the last entity that has it

@@ -73,6 +73,16 @@ scene::OpenScene read_scene(const v1::RunStart& run, const EmbeddedFiles& files,
   return {std::move(read.scene), std::move(read.additions)};
 }
 
+void check_core(const v1::RunStart& run, const scene::Scene& scene) {
+  if (run.core() != 0 || !scene.physics.had_second_core) return;
+  throw RecordingError(
+      fmt::format("the run was computed with solver=\"sweeps\", which this version does not have, "
+                  "so that it can't be repeated; "
+                  "show its poses (ziggurat replay --from-poses), or repeat it with the version "
+                  "that recorded it{}",
+                  run.build().version().empty() ? "" : ": " + run.build().version()));
+}
+
 std::string scene_hash(const scene::Scene& scene, const EmbeddedFiles& files) {
   return hash_of(scene, scene.variation, files);
 }

@@ -21,10 +21,15 @@ namespace ziggurat::replay {
 scene::OpenScene read_scene(const v1::RunStart& run, const EmbeddedFiles& files,
                             const scene::Variation& more = {});
 
-/// Of the embedded files and what is set in them: 16 hexadecimal digits.
+/// @throws RecordingError if the run was computed by a core of physics that this version does not
+/// have
+void check_core(const v1::RunStart& run, const scene::Scene& scene);
+
+/// Hash of the embedded files and their settings: 16 hexadecimal digits.
 std::string scene_hash(const scene::Scene& scene, const EmbeddedFiles& files);
 
-/// Reads a snapshot that the recording has; its state is compared with its hash when it is restored.
+/// Reads a snapshot that the recording has; its state is compared with its hash when it is
+/// restored.
 /// @throws RecordingError if it has none of this name; simulation::SnapshotError, scene::SceneError
 simulation::Snapshot read_snapshot(const RecordingFile& file, const std::string& name,
                                    const scene::Scene& scene, const scene::Additions& additions);

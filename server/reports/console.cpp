@@ -78,7 +78,9 @@ void Console::notice(std::string_view text) {
 
 void Console::message(std::string_view severity, std::string_view text) {
   const bool fault = severity == "fault";
-  if (style_.json) return to_stderr(text::printable_json(json_text({{"severity", severity}, {"text", text}})), fault);
+  if (style_.json)
+    return to_stderr(text::printable_json(json_text({{"severity", severity}, {"text", text}})),
+                     fault);
   to_stderr(fmt::format("{}ziggurat: {}{}{}", color_error_ && fault ? red : "",
                         fault ? "" : fmt::format("{}: ", severity), text::printable(text),
                         color_error_ && fault ? plain : ""),

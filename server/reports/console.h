@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "scene/reader.h"
-#include "text/outlet.h"
+#include "text/buffered_stream.h"
 
 namespace ziggurat::reports {
 
@@ -72,7 +72,7 @@ class Console {
   Style style_;
   bool color_out_, color_error_, shows_progress_;
   bool progress_shown_ = false;
-  text::Outlet out_, error_;
+  text::BufferedStream out_, error_;
 };
 
 }  // namespace ziggurat::reports

@@ -46,9 +46,11 @@ Condition parse_condition(const std::string& part) {
   const auto subject = std::ranges::find(subjects, name, [](const auto& s) { return s.first; });
   if (subject == subjects.end()) wrong(part);
   Condition condition{subject->second, false, 0, part};
-  const auto [end, error] = std::from_chars(limit.data(), limit.data() + limit.size(), condition.limit);
+  const auto [end, error] =
+      std::from_chars(limit.data(), limit.data() + limit.size(), condition.limit);
   if (error != std::errc()) wrong(part);
-  const std::string_view unit = text::trimmed(limit.substr(static_cast<std::size_t>(end - limit.data())));
+  const std::string_view unit =
+      text::trimmed(limit.substr(static_cast<std::size_t>(end - limit.data())));
   if (!std::isfinite(condition.limit) || condition.limit < 0) wrong(part);
   if (is_time(condition.subject)) {
     const auto seconds = text::seconds_in(unit);
@@ -57,13 +59,16 @@ Condition parse_condition(const std::string& part) {
   } else if (unit == "%") {
     condition.is_share = true;
     condition.limit /= 100;
-    if (condition.limit > 1) throw text::UsageError(fmt::format("--gate: '{}' is always met: a share has 100% at most", part));
+    if (condition.limit > 1)
+      throw text::UsageError(
+          fmt::format("--gate: '{}' is always met: a share has 100% at most", part));
   } else if (!unit.empty()) {
     wrong(part);
   }
   if (condition.limit == 0) {
-    throw text::UsageError(fmt::format("--gate: '{}' is never met: nothing is below 0; write {}", part,
-                                       is_time(condition.subject) ? "a time" : fmt::format("{}<1 for none at all", name)));
+    throw text::UsageError(fmt::format(
+        "--gate: '{}' is never met: nothing is below 0; write {}", part,
+        is_time(condition.subject) ? "a time" : fmt::format("{}<1 for none at all", name)));
   }
   return condition;
 }

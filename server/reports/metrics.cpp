@@ -133,7 +133,8 @@ struct MetricsPort::State {
 
   http::Answer read(std::string_view path) {
     const std::lock_guard lock(mutex);
-    if (path == "/metrics") return {200, "text/plain; version=0.0.4; charset=utf-8", {}, prometheus};
+    if (path == "/metrics")
+      return {200, "text/plain; version=0.0.4; charset=utf-8", {}, prometheus};
     if (path == "/status") return {200, "application/json", {}, json};
     if (path == "/") {
       return {200, "text/plain", {}, "Ziggurat: /metrics for Prometheus, /status for JSON\n"};
@@ -153,7 +154,8 @@ MetricsPort::MetricsPort(const std::string& address, bool insecure)
   // Other machines may know this one by any name.
   state.port.emplace("--metrics", place, insecure,
                      [&state](std::string_view path) { return state.read(path); });
-  state.url = fmt::format("http://{}:{}", address.substr(0, address.rfind(':')), state.port->number());
+  state.url =
+      fmt::format("http://{}:{}", address.substr(0, address.rfind(':')), state.port->number());
 }
 
 MetricsPort::~MetricsPort() = default;

@@ -36,8 +36,9 @@ std::string reached(std::uint64_t tick, std::optional<std::uint64_t> ticks, doub
   const double time = static_cast<double>(tick) * tick_length;
   if (!ticks || *ticks == 0) return fmt::format("t = {:.2f} s", time);
   const double share = static_cast<double>(tick) / static_cast<double>(*ticks);
-  std::string text = fmt::format("t = {:.2f} of {:.2f} s ({:.0f} %)", time,
-                                 static_cast<double>(*ticks) * tick_length, std::floor(100 * share));
+  std::string text =
+      fmt::format("t = {:.2f} of {:.2f} s ({:.0f} %)", time,
+                  static_cast<double>(*ticks) * tick_length, std::floor(100 * share));
   if (rate > 0 && tick <= *ticks) {
     text += fmt::format(", {} left", text::to_duration(static_cast<double>(*ticks - tick) / rate));
   }
@@ -46,10 +47,12 @@ std::string reached(std::uint64_t tick, std::optional<std::uint64_t> ticks, doub
 
 std::string progress_line(const Speed& at, std::string_view waiting_for) {
   if (!waiting_for.empty()) {
-    return fmt::format("{}, waiting for {}", reached(at.tick, at.ticks, at.tick_length, 0), waiting_for);
+    return fmt::format("{}, waiting for {}", reached(at.tick, at.ticks, at.tick_length, 0),
+                       waiting_for);
   }
   return fmt::format("{}, real-time factor {:.2f}, {:.0f} ticks/s",
-                     reached(at.tick, at.ticks, at.tick_length, at.usual_rate), at.rate * at.tick_length, at.rate);
+                     reached(at.tick, at.ticks, at.tick_length, at.usual_rate),
+                     at.rate * at.tick_length, at.rate);
 }
 
 }  // namespace ziggurat::reports

@@ -49,7 +49,8 @@ struct Speed {
   double rate, usual_rate;             ///< since the last line, and over some seconds [ticks/s]
 };
 
-/// The whole line. A terminal cuts it at its width: whom the world waits for stands before what is not true meanwhile.
+/// The whole line. A terminal cuts it at its width: whom the world waits for stands before what is
+/// not true meanwhile.
 std::string progress_line(const Speed& at, std::string_view waiting_for);
 
 }  // namespace ziggurat::reports

@@ -153,7 +153,8 @@ double measured(const ReportCard& card, const ControllerCard& controller,
 
 bool meets(const ReportCard& card, const ControllerCard& controller, const Condition& condition) {
   if (is_of_misses(condition.subject) && !has_deadlines(card)) return false;
-  return controller.statistics.count() > 0 && measured(card, controller, condition) < condition.limit;
+  return controller.statistics.count() > 0 &&
+         measured(card, controller, condition) < condition.limit;
 }
 
 bool passes(const ReportCard& card) {
@@ -180,7 +181,8 @@ std::string to_text(const std::vector<scene::DeadlinePolicy>& deadlines) {
   return text.empty() ? "none" : text;
 }
 
-std::string to_text(const ReportCard& card, const ControllerCard& controller, const Condition& condition) {
+std::string to_text(const ReportCard& card, const ControllerCard& controller,
+                    const Condition& condition) {
   if (controller.statistics.count() == 0) return condition.text + ": no observation counts";
   if (is_of_misses(condition.subject) && !has_deadlines(card)) {
     return condition.text + ": no controller had a deadline, so nothing could be missed";

@@ -1,6 +1,5 @@
 #pragma once
-// How well each controller kept up with the simulation: what runs with hardware in the loop end
-// with.
+// Report card: response times of each controller, at the end of runs with hardware in the loop.
 
 #include <cstdint>
 #include <string>
@@ -23,7 +22,7 @@ struct ControllerCard {
   Statistics statistics{};                         ///< without the warm-up; complete() fills it
 };
 
-/// How a paced tick began.
+/// Start of a paced tick.
 struct TickStart {
   std::uint32_t world = 0;  ///< 0, and one more after each reset
   std::uint32_t tick = 0;
@@ -53,7 +52,7 @@ void complete(ReportCard& card);
 
 // The following expect a complete card.
 
-/// What a condition is about, in its unit.
+/// Quantity of a condition, in its unit.
 double measured(const ReportCard& card, const ControllerCard& controller,
                 const Condition& condition);
 /// Whether a controller meets a condition. One of which no reaction counts meets none.
@@ -65,8 +64,9 @@ bool passes(const ReportCard& card);
 std::string to_text(const network::Injection& injection);
 /// "hold:18, drop:50:3", or "wait".
 std::string to_text(const std::vector<scene::DeadlinePolicy>& deadlines);
-/// What was measured of a condition: "p99<20ms: 14 ms".
-std::string to_text(const ReportCard& card, const ControllerCard& controller, const Condition& condition);
+/// Measured value of a condition: "p99<20ms: 14 ms".
+std::string to_text(const ReportCard& card, const ControllerCard& controller,
+                    const Condition& condition);
 
 /// Several lines without line feed at the end.
 std::string to_text(const ReportCard& card);

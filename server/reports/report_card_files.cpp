@@ -128,8 +128,7 @@ Panel panel_of(const ReportCard& card, const ControllerCard& controller) {
        "black"});
   for (const Condition& condition : card.gate) {
     const bool is_met = meets(card, controller, condition);
-    panel.notes.push_back({(is_met ? "met: " : "MISSED: ") +
-                               to_text(card, controller, condition),
+    panel.notes.push_back({(is_met ? "met: " : "MISSED: ") + to_text(card, controller, condition),
                            is_met ? "#15803d" : "#b91c1c"});
   }
   return panel;

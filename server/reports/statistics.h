@@ -1,5 +1,6 @@
 #pragma once
-// How a controller kept up, computed from all its reactions. Percentiles are exact.
+// Statistics of a controller's response times, computed from all its reactions. Percentiles are
+// exact.
 
 #include <array>
 #include <cstddef>
@@ -19,7 +20,7 @@ std::size_t of(double seconds);
 double begin_of(std::size_t bin);  ///< [s]
 }  // namespace bins
 
-/// Of wall times [s].
+/// Percentiles of wall times [s].
 struct Percentiles {
   double p50 = 0, p90 = 0, p99 = 0, p999 = 0, max = 0;
 };

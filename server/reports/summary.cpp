@@ -58,7 +58,8 @@ std::string departed(const std::vector<Summary::Departure>& departures) {
   constexpr std::size_t most = 8;
   std::string text = fmt::format("  {} left before the end: ", departures.size());
   for (std::size_t i = 0; i < std::min(most, departures.size()); ++i) {
-    text += fmt::format("{}robot {} at tick {}", i == 0 ? "" : ", ", departures[i].robot, departures[i].tick);
+    text += fmt::format("{}robot {} at tick {}", i == 0 ? "" : ", ", departures[i].robot,
+                        departures[i].tick);
   }
   if (departures.size() > most) text += fmt::format(" and {} more", departures.size() - most);
   return text + "\n";
@@ -103,7 +104,8 @@ std::string to_text(const Summary& summary) {
   }
   text += fmt::format("; before it, start-up {:.3f} s\n", summary.startup_s);
   if (!summary.shutdown_reason.empty()) {
-    text += fmt::format("  shut down by a supervisor: {}\n", text::indented(summary.shutdown_reason));
+    text +=
+        fmt::format("  shut down by a supervisor: {}\n", text::indented(summary.shutdown_reason));
   }
   if (summary.result) {
     text += fmt::format("  director '{}' ended the run: {}\n", summary.result->director,
@@ -115,13 +117,14 @@ std::string to_text(const Summary& summary) {
   }
   if (!summary.failures.empty()) text += failed(summary.failures);
   if (!summary.departures.empty()) text += departed(summary.departures);
-  if (!summary.recording_failure.empty()) text += fmt::format("  not recorded in whole: {}\n", summary.recording_failure);
+  if (!summary.recording_failure.empty())
+    text += fmt::format("  not recorded in whole: {}\n", summary.recording_failure);
   for (const auto& each : summary.dropped) text += fmt::format("  {}\n", each);
   if (const auto& solver = summary.solver; solver.not_converged > 0) {
     text += fmt::format(
-        "  solver {} did not converge in {} of {} islands; the worst residual is {:.2g} m/s or "
+        "  the solver did not converge in {} of {} islands; the worst residual is {:.2g} m/s or "
         "rad/s\n",
-        summary.solver_name, solver.not_converged, solver.islands, solver.worst_residual);
+        solver.not_converged, solver.islands, solver.worst_residual);
   }
   text += metrics(summary.metrics);
   text += fmt::format("  seed {}, hash {}", summary.seed, math::to_hex(summary.hash));
@@ -143,7 +146,8 @@ std::string to_json(const Summary& summary) {
   }
   auto departures = nlohmann::ordered_json::array();
   for (const auto& each : summary.departures) {
-    departures.push_back({{"robot", each.robot}, {"controller", each.controller}, {"tick", each.tick}});
+    departures.push_back(
+        {{"robot", each.robot}, {"controller", each.controller}, {"tick", each.tick}});
   }
   auto missed = nlohmann::ordered_json::array();
   for (const auto& each : summary.missed) {
@@ -179,7 +183,6 @@ std::string to_json(const Summary& summary) {
     json["director"] = summary.result->director;
     json["result"] = summary.result->text;
   }
-  json["solver"]["name"] = summary.solver_name;
   if (summary.solver.islands > 0) {
     json["solver"]["islands"] = summary.solver.islands;
     json["solver"]["not_converged"] = summary.solver.not_converged;

@@ -12,7 +12,7 @@
 
 namespace ziggurat::reports {
 
-/// How the program ends.
+/// Ending of the program.
 namespace exit_code {
 constexpr int finished = 0;
 constexpr int fault = 1;  ///< of scene, arguments or environment
@@ -40,8 +40,9 @@ struct Summary {
   Ending ending = Ending::finished;
   std::uint64_t ticks = 0;
   double simulated_s = 0;
-  double startup_s = 0;  ///< wall time until every robot had its controller, and of the wait for a first viewer
-  double wall_s = 0;     ///< of the ticks; the next four are parts of it
+  double startup_s =
+      0;  ///< wall time until every robot had its controller, and of the wait for a first viewer
+  double wall_s = 0;  ///< of the ticks; the next four are parts of it
   double physics_s = 0;
   double exchange_s = 0;  ///< sending, and waiting for controllers
   double recording_s = 0;
@@ -50,8 +51,7 @@ struct Summary {
   std::uint64_t seed = 0;
   std::uint64_t hash = 0;
   std::size_t robots = 0;
-  std::string solver_name;    ///< as in a scene file
-  wire::SolverStatus solver;  ///< without islands: it does not tell
+  wire::SolverStatus solver;
 
   struct Failure {
     std::string robot;
@@ -60,15 +60,16 @@ struct Summary {
     std::string message;
     std::string director = {};  ///< that failed; empty: a robot's controller did
   };
-  std::vector<Failure> failures;     ///< in order of time
+  std::vector<Failure> failures;  ///< in order of time
   struct Departure {
     std::string robot;
     std::string controller;
     std::uint64_t tick = 0;  ///< the last that it took part in
   };
-  std::vector<Departure> departures;  ///< robots whose controller left before the end; in order of time
-  std::string shutdown_reason;       ///< shut_down: why
-  /// How a director has ended the run.
+  std::vector<Departure>
+      departures;               ///< robots whose controller left before the end; in order of time
+  std::string shutdown_reason;  ///< shut_down: why
+  /// Result with which a director has ended the run.
   struct Result {
     std::string director;  ///< id
     std::string text;
@@ -76,8 +77,9 @@ struct Summary {
   std::optional<Result> result;
   std::vector<std::string> dropped;  ///< a sentence on each robot that a deadline took out
   bool drops_are_failures = true;
-  std::string recording_failure;  ///< why the recording is not complete, and what it lacks; empty: it is
-  std::string vanished;  ///< the sentence on the controller that ended the run; empty: none did
+  std::string
+      recording_failure;  ///< why the recording is not complete, and what it lacks; empty: it is
+  std::string vanished;   ///< the sentence on the controller that ended the run; empty: none did
 
   struct Missed {
     std::string controller;

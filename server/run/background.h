@@ -18,7 +18,7 @@ namespace ziggurat::run {
 template <class Result>
 class Background {
  public:
-  struct News {
+  struct Status {
     bool is_done = false;
     double progress = 0;  ///< 0 to 1
     std::string message;
@@ -46,13 +46,13 @@ class Background {
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;
 
-  /// Readable when there is news that was not asked for.
+  /// Readable after the status has changed.
   int descriptor() const { return wake_; }
-  News news() {
+  Status status() {
     eventfd_t ignored = 0;
     ::eventfd_read(wake_, &ignored);
     const std::lock_guard lock(mutex_);
-    return news_;
+    return status_;
   }
   /// Waits for the result. Once. @throws what the work has thrown
   std::unique_ptr<Result> take() { return result_.get(); }
@@ -63,17 +63,17 @@ class Background {
     ~AtEnd() { owner->publish({true, 1, {}}); }
   };
 
-  void publish(News news) {
+  void publish(Status status) {
     {
       const std::lock_guard lock(mutex_);
-      news_ = std::move(news);
+      status_ = std::move(status);
     }
     ::eventfd_write(wake_, 1);
   }
 
   int wake_;
   std::mutex mutex_;  // of the next one
-  News news_;
+  Status status_;
   std::future<std::unique_ptr<Result>> result_;
 };
 

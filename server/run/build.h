@@ -1,5 +1,5 @@
 #pragma once
-// What this program was built with, as far as it may change results.
+// Build of this program, as far as it may change results.
 
 #include "recorder/start.h"
 

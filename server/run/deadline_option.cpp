@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "run/by_controller.h"
+#include "run/controller_option.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
@@ -70,10 +70,9 @@ DeadlinesOfRun deadlines_of(const std::vector<DeadlineOption>& options, const sc
   };
   std::ranges::for_each(scene.controllers, add);
   std::ranges::for_each(scene.directors, add);
-  apply_by_awaited("--deadline", options, scene,
-                   [&](const DeadlineOption& option, std::size_t i) {
-                     deadlines.all[i] = {option.policy, true};
-                   });
+  apply_by_awaited("--deadline", options, scene, [&](const DeadlineOption& option, std::size_t i) {
+    deadlines.all[i] = {option.policy, true};
+  });
   for (const DeadlineOption& option : options) {
     if (option.controller.empty()) deadlines.of_others = {option.policy, true};
   }

@@ -19,12 +19,13 @@ struct DeadlineOption {
 DeadlineOption to_deadline(const std::string& value);
 
 struct DeadlinesOfRun {
-  std::vector<network::Config::Deadline> all;  ///< of the scene's controllers, then of its directors
-  network::Config::Deadline of_others;         ///< of directors that the scene does not name
+  std::vector<network::Config::Deadline>
+      all;                              ///< of the scene's controllers, then of its directors
+  network::Config::Deadline of_others;  ///< of directors that the scene does not name
 };
 
-/// Later options win over earlier ones, those that name a controller or director over those for all, and all
-/// of them over the scene.
+/// Later options win over earlier ones, those that name a controller or director over those for
+/// all, and all of them over the scene.
 /// @param otherwise  for those that neither the options nor the scene give one
 /// @throws text::UsageError if the scene has none of that name
 DeadlinesOfRun deadlines_of(const std::vector<DeadlineOption>& options, const scene::Scene& scene,

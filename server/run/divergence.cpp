@@ -20,7 +20,8 @@ namespace {
 
 constexpr std::size_t most_rows = 20;      // of the table
 constexpr std::size_t most_points = 1000;  // of a curve
-constexpr std::size_t most_states = std::size_t{1} << 20;  // that are kept: a small file may have a hundred million
+constexpr std::size_t most_states =
+    std::size_t{1} << 20;  // that are kept: a small file may have a hundred million
 
 using Links = std::vector<world::LinkState>;
 
@@ -28,7 +29,8 @@ using Links = std::vector<world::LinkState>;
 std::vector<std::size_t> places(const std::vector<std::string>& to,
                                 const std::vector<std::string>& from) {
   const std::size_t both = std::min(to.size(), from.size());
-  if (std::equal(to.begin(), to.begin() + static_cast<std::ptrdiff_t>(both), from.begin())) return {};
+  if (std::equal(to.begin(), to.begin() + static_cast<std::ptrdiff_t>(both), from.begin()))
+    return {};
   std::unordered_map<std::string_view, std::size_t> known;
   for (std::size_t i = 0; i < from.size(); ++i) known.emplace(from[i], i);
   std::vector<std::size_t> found;
@@ -89,9 +91,8 @@ class Comparison {
  private:
   void compare(const v1::Inputs& a, const v1::Inputs& b) {
     ++result_.compared;
-    const std::string when =
-        fmt::format("tick {}{}", a.tick(),
-                    a.epoch() > 0 ? fmt::format(" of epoch {}", a.epoch()) : "");
+    const std::string when = fmt::format(
+        "tick {}{}", a.tick(), a.epoch() > 0 ? fmt::format(" of epoch {}", a.epoch()) : "");
     if (!result_.first_state && a.hash() != b.hash()) {
       result_.first_state = fmt::format("{}: {} (hash {} and {})", when, first_field(),
                                         math::to_hex(a.hash()), math::to_hex(b.hash()));
@@ -120,7 +121,8 @@ class Comparison {
       *of_b.mutable_commands() = b_.commands;
     }
     for (v1::Inputs* each : {&of_a, &of_b}) {
-      if (a.has_commands() != b.has_commands()) {  // one of them ended here, before what was done next
+      if (a.has_commands() !=
+          b.has_commands()) {  // one of them ended here, before what was done next
         each->clear_commands();
         each->clear_metrics();
         each->clear_acts();
@@ -132,7 +134,8 @@ class Comparison {
     }
     const auto found = replay::first_difference(of_a, of_b);
     if (!found) return;
-    result_.first_inputs = fmt::format("{}: {} is {} in A, {} in B", when, found->field, found->a, found->b);
+    result_.first_inputs =
+        fmt::format("{}: {} is {} in A, {} in B", when, found->field, found->a, found->b);
   }
 
   std::string first_field() {
@@ -181,7 +184,8 @@ Divergence compare(const replay::RecordingFile& a, const replay::RecordingFile& 
 
 std::string to_text(const Divergence& of) {
   std::string text = fmt::format("A  {}\nB  {}\n", of.path_a, of.path_b);
-  if (of.is_same() && !of.first_inputs) return text + fmt::format("identical: {} states\n", of.compared);
+  if (of.is_same() && !of.first_inputs)
+    return text + fmt::format("identical: {} states\n", of.compared);
   text += of.first_state ? fmt::format("first difference   {}\n", *of.first_state)
                          : fmt::format("identical in the {} states that both have\n", of.compared);
   if (of.first_inputs) text += fmt::format("first other input  {}\n", *of.first_inputs);
@@ -201,9 +205,9 @@ std::string to_text(const Divergence& of) {
 }
 
 std::string to_json(const Divergence& of) {
-  nlohmann::ordered_json json{{"a", of.path_a},         {"b", of.path_b},
-                              {"identical", of.is_same()}, {"compared", of.compared},
-                              {"only_a", of.only_a},    {"only_b", of.only_b}};
+  nlohmann::ordered_json json{
+      {"a", of.path_a},          {"b", of.path_b},      {"identical", of.is_same()},
+      {"compared", of.compared}, {"only_a", of.only_a}, {"only_b", of.only_b}};
   if (of.first_state) json["first_state"] = *of.first_state;
   if (of.first_inputs) json["first_inputs"] = *of.first_inputs;
   json["distances"] = nlohmann::ordered_json::array();
@@ -224,7 +228,8 @@ std::string to_svg(const Divergence& of) {
   panel.title = "how far links are apart";
   panel.x_label = "simulated time [s]";
   panel.y_label = "distance [m]";
-  panel.curves = {{"the farthest link", "#c1272d", false, {}}, {"mean of all links", "#0050a0", true, {}}};
+  panel.curves = {{"the farthest link", "#c1272d", false, {}},
+                  {"mean of all links", "#0050a0", true, {}}};
   for (const Divergence::State* state : some(of.states, most_points)) {
     if (state->time_s <= 0) continue;
     panel.x.push_back(state->time_s);

@@ -1,5 +1,5 @@
 #pragma once
-// How two recordings differ: where first, and how far their poses are apart over time.
+// Comparison of two recordings: their first difference, and the distance of their poses over time.
 
 #include <cstdint>
 #include <optional>
@@ -18,11 +18,12 @@ struct Divergence {
     replay::Distance apart;
   };
   std::string path_a, path_b;
-  std::uint64_t compared = 0;          ///< states with the same epoch and tick
+  std::uint64_t compared = 0;            ///< states with the same epoch and tick
   std::uint64_t only_a = 0, only_b = 0;  ///< states that the other one lacks
   /// Sentences on the first state that differs, and on the first inputs that do.
   std::optional<std::string> first_state, first_inputs;
-  std::vector<State> states;       ///< that were compared, if their exact poses are recorded; a million at most
+  std::vector<State>
+      states;  ///< that were compared, if their exact poses are recorded; a million at most
   std::vector<std::string> names;  ///< of links
 
   bool is_same() const { return !first_state && only_a == 0 && only_b == 0; }
@@ -32,7 +33,7 @@ struct Divergence {
 /// @throws replay::RecordingError
 Divergence compare(const replay::RecordingFile& a, const replay::RecordingFile& b);
 
-/// What differs first, then a table of about 20 rows.
+/// First difference, then a table of about 20 rows.
 std::string to_text(const Divergence& divergence);
 /// One object.
 std::string to_json(const Divergence& divergence);

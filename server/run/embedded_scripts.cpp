@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where an embedded file is written: `..` and roots are names like any other.
+/// Path that an embedded file is written to: `..` and roots are names like any other.
 fs::path place(const std::string& folder, const std::string& name) {
   fs::path path = folder;
   for (const fs::path& part : fs::path(name).lexically_normal()) {
@@ -43,10 +43,11 @@ bool ends_with(const fs::path& path, const fs::path& end) {
   return path == end || path.string().ends_with("/" + end.string());
 }
 
-/// The embedded file that this script can only be. Embedded names are as seen from the folder where the run was
-/// started: of a script that a scene names from the root such a name is the end, less any `..`; it ends itself as one
-/// that a scene names otherwise.
-std::optional<std::string> only_file_of(const fs::path& script, const replay::EmbeddedFiles& files) {
+/// The embedded file that this script can only be. Embedded names are as seen from the folder where
+/// the run was started: of a script that a scene names from the root such a name is the end, less
+/// any `..`; it ends itself as one that a scene names otherwise.
+std::optional<std::string> only_file_of(const fs::path& script,
+                                        const replay::EmbeddedFiles& files) {
   const fs::path path = stripped(script);
   std::optional<std::string> found;
   for (const auto& [name, bytes] : files.all()) {
@@ -58,9 +59,10 @@ std::optional<std::string> only_file_of(const fs::path& script, const replay::Em
   return found;
 }
 
-/// Where it is written. @throws replay::RecordingError if it is not embedded
+/// Path of the written script. @throws replay::RecordingError if it is not embedded
 std::string embedded_script(const std::string& folder, const replay::EmbeddedFiles& files,
-                            const scene::Scene& scene, const std::string& scene_path, const Named& script) {
+                            const scene::Scene& scene, const std::string& scene_path,
+                            const Named& script) {
   std::vector<fs::path> folders;  // where a run looks for scripts, too
   for (const std::string& file : scene.files) folders.push_back(fs::path(file).parent_path());
   for (fs::path up = fs::path(scene_path).parent_path(); !up.empty(); up = up.parent_path()) {
@@ -73,9 +75,10 @@ std::string embedded_script(const std::string& folder, const replay::EmbeddedFil
     if (files.find(path)) return place(folder, path.string()).string();
   }
   if (const auto path = only_file_of(script.name, files)) return place(folder, *path).string();
-  throw replay::RecordingError(fmt::format(
-      "the script '{}' of '{}' is not in the recording, or cannot be told from others; write --controller {}=CMD", script.name,
-      script.owner, script.controller));
+  throw replay::RecordingError(
+      fmt::format("the script '{}' of '{}' is not in the recording, or cannot be told from others; "
+                  "write --controller {}=CMD",
+                  script.name, script.owner, script.controller));
 }
 
 }  // namespace
@@ -106,7 +109,8 @@ std::string script_below(const std::string& folder, const replay::EmbeddedFiles&
                          const scene::Scene& scene, const std::string& scene_path,
                          const scene::Director& director) {
   if (director.script.empty()) return {};
-  return embedded_script(folder, files, scene, scene_path, {director.script, director.id, director.id});
+  return embedded_script(folder, files, scene, scene_path,
+                         {director.script, director.id, director.id});
 }
 
 }  // namespace ziggurat::run

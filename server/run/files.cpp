@@ -1,7 +1,7 @@
 #include "run/files.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <string>
@@ -9,7 +9,7 @@
 
 #include "processes/scripts.h"
 #include "recording/output_name.h"
-#include "run/clients_file.h"
+#include "text/numbers.h"
 
 namespace ziggurat::run {
 namespace {
@@ -20,12 +20,12 @@ using recording::TakenFile;
 
 std::vector<OutputName> outputs_of(const Options& options) {
   std::vector<OutputName> files{{"--trace", options.trace, {".csv"}},
-                          {"--readings", options.readings, {".jsonl"}},
-                          {"--rays", options.rays, {".jsonl"}},
-                          {"--hash-file", options.hash_file, {}},
-                          {"--record", options.record, {".mcap"}},
-                          {"--summary", options.summary, {".json"}},
-                          {"--report-card", options.report_card, {".json", ".svg", ".csv"}}};
+                                {"--readings", options.readings, {".jsonl"}},
+                                {"--rays", options.rays, {".jsonl"}},
+                                {"--hash-file", options.hash_file, {}},
+                                {"--record", options.record, {".mcap"}},
+                                {"--summary", options.summary, {".json"}},
+                                {"--report-card", options.report_card, {".json", ".svg", ".csv"}}};
   if (options.pictures) files.push_back({"--out", options.pictures->out, {".png"}});
   if (options.pictures && options.pictures->film) {
     files.push_back({"--video", options.pictures->film->path, {}});
@@ -43,6 +43,18 @@ std::vector<OutputName> pictures_of(const Options& options) {
     files.push_back({"--out", picture_path(options.pictures->out, i, count), {".png"}});
   }
   return files;
+}
+
+/// @throws text::UsageError if all users can write the list of clients' keys
+void check_clients(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode) ||
+      (status.st_mode & S_IWOTH) == 0)
+    return;
+  throw text::UsageError(
+      fmt::format("--curve-clients is '{}', which all users can write: they could add their keys; "
+                  "write: chmod o-w '{}'",
+                  path, path));
 }
 
 TakenFile taken_by(const std::string& what, const std::string& path) {
@@ -63,7 +75,8 @@ std::vector<TakenFile> inputs_of(const Options& options) {
 
 std::vector<std::string> files_of(const scene::Scene& scene, const std::string& path) {
   std::vector<std::string> files = scene.files;
-  for (const fs::path& script : processes::scripts_of(scene, path)) files.push_back(script.string());
+  for (const fs::path& script : processes::scripts_of(scene, path))
+    files.push_back(script.string());
   return files;
 }
 
@@ -83,8 +96,7 @@ void check_files(const Options& options) {
     taken.push_back(taken_by(output.option, output.path));
   }
   for (const OutputName& picture : pictures_of(options)) check_output(picture, inputs);
-  if (!options.snapshot_folder.empty()) recording::check_output_folder("--snapshot-folder", options.snapshot_folder);
-  check_clients(options.curve_clients, ::geteuid());
+  check_clients(options.curve_clients);
 }
 
 void check_outputs(const Options& options, const scene::Scene& scene,
@@ -96,7 +108,8 @@ void check_outputs(const Options& options, const scene::Scene& scene,
   for (const OutputName& picture : pictures_of(options)) check_output(picture, taken);
 }
 
-std::vector<std::string> exceptions_of(const Options& options, const scene::Scene* scene, const std::string& path) {
+std::vector<std::string> exceptions_of(const Options& options, const scene::Scene* scene,
+                                       const std::string& path) {
   std::vector<std::string> arguments;
   const auto add = [&](const char* option, const std::string& file) {
     if (!file.empty()) arguments.insert(arguments.end(), {option, fs::absolute(file).string()});

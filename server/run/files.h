@@ -11,25 +11,27 @@
 
 namespace ziggurat::run {
 
-/// @throws text::UsageError if check_output() refuses an output, or it is the scene, a key file or another output; if
-/// others may write the list of clients' keys
+/// @throws text::UsageError if check_output() refuses an output, or it is the scene, a key file or
+/// another output; if all users can write the list of clients' keys
 void check_files(const Options& options);
 
 /// The scene's file, what it includes, and its scripts.
 std::vector<std::string> files_of(const scene::Scene& scene, const std::string& path);
 
-/// What no output may replace, of files that a scene was read from, and its scripts.
+/// Files of a scene, its includes and its scripts, which no output may replace.
 std::vector<recording::TakenFile> taken_by_scene(const std::vector<std::string>& files);
 
-/// That no output is a file that the scene was read from, or one of its scripts.
+/// Checks that no output is a file that the scene was read from, or one of its scripts.
 /// @param read  other files that were read for the scene
 /// @throws text::UsageError
 void check_outputs(const Options& options, const scene::Scene& scene,
                    const std::vector<std::string>& read = {});
 
-/// Arguments of ziggurat-lua by which scripts, which may use the scene's folder, change neither the scene, its
-/// includes and scripts, nor outputs, nor the list of keys, and do not read the secret key.
+/// Arguments of ziggurat-lua that protect files in the scene's folder, which scripts may use.
+/// Scripts can't change the scene, its includes and scripts, outputs, and the list of keys. They
+/// can't read the secret key.
 /// @param scene  null: its files are not on the disk
-std::vector<std::string> exceptions_of(const Options& options, const scene::Scene* scene, const std::string& path);
+std::vector<std::string> exceptions_of(const Options& options, const scene::Scene* scene,
+                                       const std::string& path);
 
 }  // namespace ziggurat::run

@@ -9,14 +9,14 @@
 
 namespace ziggurat::run {
 
-/// What the run gives its gate to measure.
-struct GateGround {
+/// Properties of the run that its gate depends on.
+struct GateContext {
   std::span<const network::Config::Deadline> deadlines;  ///< of the controllers
   bool may_be_asked = false;  ///< clients of their own may ask for deadlines when they connect
   bool is_paced = false;
 };
 
 /// @throws text::UsageError if a condition is always met in this run
-void check_gate(const std::vector<reports::Condition>& gate, const GateGround& ground);
+void check_gate(const std::vector<reports::Condition>& gate, const GateContext& context);
 
 }  // namespace ziggurat::run

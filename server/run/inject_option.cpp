@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "run/by_controller.h"
+#include "run/controller_option.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
@@ -144,11 +144,10 @@ void check_losses(const std::vector<network::Injection>& injections, const scene
   for (std::size_t c = 0; c < injections.size(); ++c) {
     const bool loses = injections[c].observations.loss > 0 || injections[c].commands.loss > 0;
     if (!loses || deadlines[c].policy.action != scene::DeadlineAction::wait) continue;
-    throw text::UsageError(
-        fmt::format("--inject loses messages of {0} '{1}', for which the world would "
-                    "wait forever; add --hil, or --deadline '{1}=hold:50'",
-                    c < scene.controllers.size() ? "controller" : "director",
-                    ids_of_awaited(scene)[c]));
+    throw text::UsageError(fmt::format(
+        "--inject loses messages of {0} '{1}', for which the world would "
+        "wait forever; add --hil, or --deadline '{1}=hold:50'",
+        c < scene.controllers.size() ? "controller" : "director", ids_of_awaited(scene)[c]));
   }
 }
 

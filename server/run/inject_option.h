@@ -20,8 +20,8 @@ struct InjectOption {
 /// @throws text::UsageError with the reason and an example
 InjectOption to_injection(const std::string& value);
 
-/// For each controller of the scene, then for each of its directors. Later options win over earlier ones, and
-/// those with a name over those for all; each sets all three values of its direction.
+/// For each controller of the scene, then for each of its directors. Later options win over earlier
+/// ones, and those with a name over those for all; each sets all three values of its direction.
 /// @throws text::UsageError if the scene has none of that name
 std::vector<network::Injection> injections_of(const std::vector<InjectOption>& options,
                                               const scene::Scene& scene);

@@ -9,7 +9,7 @@
 
 #include "processes/commands.h"
 #include "processes/scripts.h"
-#include "run/by_controller.h"
+#include "run/controller_option.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
@@ -61,8 +61,8 @@ scene::OpenScene load_scene(const std::string& path, const Options& options,
   const auto add = [&](const std::vector<scene::Problem>& more) {
     problems.insert(problems.end(), more.begin(), more.end());
   };
-  // What is replaced need not be there. A Lua controller remains one for clients that connect: CMD may be ziggurat-lua in a
-  // debugger.
+  // Commands that are replaced need not exist. A Lua controller remains one for clients that
+  // connect: CMD may be ziggurat-lua in a debugger.
   for (const auto& [id, command] : options.controllers) set_command(result.scene, id, {});
   add(processes::find_commands(result.scene, path));
   for (const auto& [id, command] : options.controllers) set_command(result.scene, id, command);

@@ -23,7 +23,7 @@ std::uint64_t choose_seed(const Options& options, const scene::Scene& scene);
 /// The tick that contains a simulated time [s].
 std::uint64_t tick_at(double time, const scene::Experiment& experiment);
 
-/// How many ticks the run has; nothing = until it is stopped.
+/// Number of ticks of the run; nothing: until it is stopped.
 /// @throws text::UsageError if it is shorter than one tick
 std::optional<std::uint64_t> tick_count(const Options& options, const scene::Scene& scene);
 

@@ -24,17 +24,17 @@ class LocalEndpoints {
 
   /// For `ipc://*`: anywhere.
   std::string any();
-  /// Where `serve` listens by itself, and clients of this user find it: in
-  /// $XDG_RUNTIME_DIR/ziggurat, otherwise in /tmp/ziggurat-UID, both with mode 0700; if another
-  /// user has taken that name, anywhere. Removes there the sockets of servers that were killed.
+  /// Endpoint of `serve` by default, at which clients of this user find it. Its folder is
+  /// $XDG_RUNTIME_DIR/ziggurat, otherwise /tmp/ziggurat-UID, both with mode 0700. If another user
+  /// has taken that name, it is any other. Removes the sockets of killed servers from it.
   /// @param scene  path of the scene file, whose name is part of the socket's
   std::string of_server(const std::string& scene);
 
  private:
   const processes::Guardian* guardian_;
   std::list<processes::PrivateFolder> folders_;
-  std::string shared_;          ///< the folder of of_server()
-  posix::Descriptor opened_;    ///< the same
+  std::string shared_;        ///< the folder of of_server()
+  posix::Descriptor opened_;  ///< the same
 };
 
 }  // namespace ziggurat::run

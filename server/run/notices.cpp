@@ -1,25 +1,29 @@
-// Notices of a run: what its author should know before it begins, and what goes wrong while it runs.
+// Notices of a run: what its author should know before it begins, and what goes wrong while it
+// runs.
 
 #include <fmt/format.h>
 
-#include "run/askers.h"
+#include "run/client_scopes.h"
 #include "run/run.h"
 #include "simulation/scene_warnings.h"
 
 namespace ziggurat::run {
 
 void Run::print_notices() {
-  for (const auto& doubt : simulation::scene_warnings(world_.scene, world_.simulation)) console_.problem(doubt);
+  for (const auto& doubt : simulation::scene_warnings(world_.scene, world_.simulation))
+    console_.problem(doubt);
   for (const auto& notice : world_.simulation.notices()) console_.notice(path_ + ": " + notice);
   if (config_.curve) {
-    for (const auto& doubt : doubts_of(config_.curve->clients, world_.scene, world_.simulation.layout())) console_.notice(doubt);
+    for (const auto& doubt :
+         doubts_of(config_.curve->clients, world_.scene, world_.simulation.layout()))
+      console_.notice(doubt);
   }
-  const std::uint64_t scene_seed = past_ ? world_.seed : world_.scene.experiment.random_seed;
+  const std::uint64_t scene_seed = fork_ ? world_.seed : world_.scene.experiment.random_seed;
   if (options_.seed.value_or(scene_seed) == 0) {
     console_.notice(fmt::format("seed {0} drawn; --seed {0} repeats this run", world_.seed));
   }
   if (options_.paused) {
-    server_.set_paused(!past_);  // a fork stands when it begins
+    server_.set_paused(!fork_);  // a fork is paused when it begins
     return console_.notice("paused, as --paused asks; 'ziggurat ctl URL resume' begins");
   }
   const bool has_controllers =
@@ -31,18 +35,21 @@ void Run::print_notices() {
       "'ziggurat ctl URL resume'");
 }
 
-/// A notice when the physics' solver has not converged for the first time, and one when something makes it slow.
+/// A notice when the physics' solver has not converged for the first time, and one when something
+/// makes it slow.
 void Run::print_troubles() {
-  if (const auto notice = printed_slow_ ? std::nullopt : simulation::slow_notice(world_.simulation)) {
-    printed_slow_ = true;
+  if (const auto notice =
+          printed_.slow ? std::nullopt : simulation::slow_notice(world_.simulation)) {
+    printed_.slow = true;
     console_.notice(fmt::format("tick {}: {}", world_.simulation.state().tick, *notice));
   }
   const wire::SolverStatus solver = supervision::solver_status(world_.simulation);
-  if (printed_miss_ || solver.not_converged == 0) return;
-  printed_miss_ = true;
+  if (printed_.not_converged || solver.not_converged == 0) return;
+  printed_.not_converged = true;
   console_.notice(fmt::format(
       "tick {}: the solver did not converge: bodies that touch miss the laws of contact by up to "
-      "{:.2g} m/s or rad/s, or light links carry more than a substep can follow; more iterations in "
+      "{:.2g} m/s or rad/s, or light links carry more than a substep can follow; more iterations "
+      "in "
       "<dynamics3d> make substeps shorter; the summary counts such cases",
       world_.simulation.state().tick, solver.worst_residual));
 }

@@ -13,12 +13,13 @@ bool wants_report_card(const Options& options) {
 
 const std::string& only_scene(const Options& options) {
   if (options.scenes.empty() || options.scenes.front().empty())
-    throw text::UsageError("no scene is given; write the path of a scene file, as in: ziggurat run vehicle.argos");
-  if (options.scenes.size() > 1) {
     throw text::UsageError(
-        fmt::format("only one scene is allowed, which is '{}'; remove '{}', or write the option that "
-                    "it is the value of",
-                    options.scenes[0], options.scenes[1]));
+        "no scene is given; write the path of a scene file, as in: ziggurat run vehicle.argos");
+  if (options.scenes.size() > 1) {
+    throw text::UsageError(fmt::format(
+        "only one scene is allowed, which is '{}'; remove '{}', or write the option that "
+        "it is the value of",
+        options.scenes[0], options.scenes[1]));
   }
   return options.scenes.front();
 }

@@ -1,5 +1,5 @@
 #pragma once
-// What a run is asked for, as plain data.
+// Options of a run, as plain data.
 
 #include <cstddef>
 #include <cstdint>
@@ -22,7 +22,7 @@ namespace ziggurat::run {
 /// `ziggurat fork`: a run that goes on from a recorded one.
 struct ForkOptions {
   std::uint64_t at = 0;  ///< tick of the state from which it goes on: the first one with this tick
-  bool fresh = false;    ///< controllers begin there; otherwise they are first given what came before
+  bool fresh = false;  ///< controllers begin there; otherwise they are first given what came before
   bool trusts_commands = false;  ///< those of the recording may be started
   /// The name of an embedded script, and the file that is used instead.
   std::vector<std::pair<std::string, std::string>> scripts;
@@ -50,11 +50,11 @@ struct Options {
   double lease = 0;  ///< wall time that the robots of a lost session are kept for it [s]
   bool without_controllers = false;         ///< the robots do nothing
   std::string curve_secret, curve_clients;  ///< paths; both or none
-  bool fail_fast = false;    ///< the run ends when a controller fails or a robot is dropped
-  bool allow_drops = false;  ///< robots that a deadline dropped are no failure
-  bool paused = false;       ///< the world stands at tick 0 until a supervisor resumes it
+  bool fail_fast = false;        ///< the run ends when a controller fails or a robot is dropped
+  bool allow_drops = false;      ///< robots that a deadline dropped are no failure
+  bool paused = false;           ///< the world is halted at tick 0 until a supervisor resumes it
   bool ends_with_input = false;  ///< the end of standard input is an interruption
-  bool hil = false;          ///< hardware in the loop: paced, never waits
+  bool hil = false;              ///< hardware in the loop: paced, never waits
   std::vector<reports::Condition> gate;  ///< conditions that every controller must meet
   std::string report_card;               ///< path; empty = none
   std::uint64_t warm_up = 0;             ///< ticks that the report card does not count
@@ -70,11 +70,12 @@ struct Options {
   bool json = false;
   bool hash = false;
   std::string hash_file, trace, readings, rays, images, summary;  ///< paths; empty = none
-  std::string record;                      ///< path of the recording; empty = none
+  std::string record;  ///< path of the recording; empty = none
   mcap::Compression record_compression = mcap::Compression::zstd;
   std::vector<std::string> record_topics;  ///< patterns; empty = all
   std::uint64_t record_every = 1;          ///< pictures of each Nth tick
   bool record_strict = false;              ///< the run ends if the recording can't be written
+  bool record_paths = false;  ///< paths and the command line are recorded as they were written
   std::vector<std::string> arguments;      ///< of the command line, without keys and tokens
   std::optional<PictureOptions> pictures;  ///< the run ends with the last of them
 };

@@ -4,7 +4,7 @@
 
 namespace ziggurat::run {
 
-/// Where the page's files are: installed, and built, beside the program. They are missing where the
+/// Folders of the page's files: installed, and built, beside the program. They are missing if the
 /// page was not built.
 std::string page_folder();
 

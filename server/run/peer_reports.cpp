@@ -33,9 +33,8 @@ void PeerReports::take(network::Report report, std::uint64_t tick, network::Noti
   }
   for (auto& failure : report.failed_directors) {
     print_log(tick);
-    const auto text =
-        fmt::format("director '{}' failed at tick {}: {}", failure.director, failure.tick,
-                    text::indented(failure.message));
+    const auto text = fmt::format("director '{}' failed at tick {}: {}", failure.director,
+                                  failure.tick, text::indented(failure.message));
     console_.fault(text);
     tell_(channels::Severity::error, failure.director, text);
     failures_.push_back(
@@ -54,9 +53,11 @@ void PeerReports::take(network::Report report, std::uint64_t tick, network::Noti
   }
 }
 
-void PeerReports::take_departures(const std::vector<network::Departure>& departures, network::Notices::Time now) {
+void PeerReports::take_departures(const std::vector<network::Departure>& departures,
+                                  network::Notices::Time now) {
   const world::Layout& layout = world_.simulation.layout();
-  std::map<std::pair<std::size_t, std::uint64_t>, std::vector<std::size_t>> groups;  // by controller and tick
+  std::map<std::pair<std::size_t, std::uint64_t>, std::vector<std::size_t>>
+      groups;  // by controller and tick
   for (const network::Departure& each : departures) {
     const auto& robot = layout.robots[each.robot];
     groups[{robot.controller, each.tick}].push_back(each.robot);
@@ -64,9 +65,10 @@ void PeerReports::take_departures(const std::vector<network::Departure>& departu
   }
   for (const auto& [group, robots] : groups) {
     of_departures_.add(
-        fmt::format("{} (controller '{}') left at tick {}: {} controller ended, and the run goes on without it",
-                    processes::names_of(robots, layout), world_.scene.controllers[group.first].id, group.second,
-                    robots.size() == 1 ? "its" : "their"),
+        fmt::format("{} (controller '{}') left at tick {}: {} controller ended, and the run goes "
+                    "on without it",
+                    processes::names_of(robots, layout), world_.scene.controllers[group.first].id,
+                    group.second, robots.size() == 1 ? "its" : "their"),
         now);
   }
   of_departures_.tell_last(now);
@@ -74,8 +76,8 @@ void PeerReports::take_departures(const std::vector<network::Departure>& departu
 }
 
 void PeerReports::print_log(std::uint64_t tick) {
-  std::ranges::stable_sort(
-      log_, {}, [](const Line& each) { return std::tie(each.line.robot, each.robot); });
+  std::ranges::stable_sort(log_, {},
+                           [](const Line& each) { return std::tie(each.line.robot, each.robot); });
   for (const auto& [line, robot] : log_) {
     console_.log_line(tick, robot, line.text, line.error);
     tell_(line.error ? channels::Severity::error : channels::Severity::info, robot, line.text);
@@ -90,7 +92,8 @@ void PeerReports::forget_spawned() {
     if (robot && (*robot >= robots.size() || robots[*robot].id != failure.robot)) robot.reset();
   }
   std::size_t forgotten = 0;
-  std::erase_if(failures_, [&](const auto& failure) { return !failure.first && ++forgotten > most_kept; });
+  std::erase_if(failures_,
+                [&](const auto& failure) { return !failure.first && ++forgotten > most_kept; });
   if (departures_.size() > most_kept) departures_.resize(most_kept);
 }
 

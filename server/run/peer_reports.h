@@ -1,5 +1,5 @@
 #pragma once
-// Prints what the server reports of controllers and other peers.
+// Printer of the server's reports about controllers and other peers.
 
 #include <chrono>
 #include <cstdint>
@@ -26,7 +26,7 @@ using TellLine =
 
 class PeerReports {
  public:
-  /// Of each kind, over resets.
+  /// Most reports that are kept of each kind, over resets.
   static constexpr std::size_t most_kept = 10'000;
 
   /// All must outlive this. @param tell  viewers and recordings
@@ -34,27 +34,28 @@ class PeerReports {
       : world_(world), console_(console), tell_(std::move(tell)) {}
 
   /// Prints failures and notices at once. Log lines wait for print_log(), so that their order does
-  /// not depend on which controller is faster. Departures can be any number, over resets, and are told as
-  /// Notices are.
+  /// not depend on which controller is faster. Departures can be any number, over resets, and are
+  /// told as Notices are.
   void take(network::Report report, std::uint64_t tick,
             network::Notices::Time now = std::chrono::steady_clock::now());
 
   /// Prints the log lines of a tick, in the order of the robots.
   void print_log(std::uint64_t tick);
 
-  /// The world was reset, or is that of a snapshot again: spawned robots are gone, and others may be at
-  /// their places. Of what is kept for the summary, 10 000 departures stay, and as many failures of robots that
-  /// are not there any more: a world may be reset without end.
+  /// The world was reset, or is that of a snapshot again: spawned robots are gone, and others may
+  /// be at their places. Of what is kept for the summary, 10 000 departures stay, and as many
+  /// failures of robots that are not there any more: a world may be reset without end.
   void forget_spawned();
 
   /// Whether the controller of one of these robots failed.
   /// @param robots  into the present layout
   bool has_failure(std::span<const std::size_t> robots) const;
 
-  /// Of all robots whose controller left before the end: sorted by tick, then by scene order.
+  /// Departures of robots whose controller left before the end: sorted by tick, then by scene
+  /// order.
   const std::vector<reports::Summary::Departure>& departures() const { return departures_; }
 
-  /// Of all robots whose controller failed: sorted by tick, then by scene order.
+  /// Failures of all controllers: sorted by tick, then by scene order of the robots.
   std::vector<reports::Summary::Failure> failures() const;
 
  private:
@@ -65,7 +66,8 @@ class PeerReports {
   };
 
   void notice(const std::string& text);
-  void take_departures(const std::vector<network::Departure>& departures, network::Notices::Time now);
+  void take_departures(const std::vector<network::Departure>& departures,
+                       network::Notices::Time now);
 
   const supervision::World& world_;
   reports::Console& console_;

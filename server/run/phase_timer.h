@@ -22,7 +22,7 @@ class PhaseTimer {
   /// @param is_paced  otherwise a tick has no pacing
   void end_tick(supervision::Supervision& supervision, bool is_paced);
 
-  /// Of the last tick that ended, by Phase [s].
+  /// Time of each Phase in the last tick that ended [s].
   const std::array<double, supervision::phase_count>& last_tick() const { return last_tick_; }
 
  private:

@@ -54,7 +54,8 @@ double end_of(const FilmOptions& film, const scene::Experiment& experiment) {
 std::uint64_t frame_count(const FilmOptions& film, const scene::Experiment& experiment) {
   constexpr double most = 1e15;  // a recording may claim any end
   const double length = (end_of(film, experiment) - film.from) / film.speed;
-  return static_cast<std::uint64_t>(std::clamp(std::round(length * film.frames_per_second), 1.0, most));
+  return static_cast<std::uint64_t>(
+      std::clamp(std::round(length * film.frames_per_second), 1.0, most));
 }
 
 /// A film has less to show of each frame than a picture: outlines with four samples are enough.
@@ -65,7 +66,8 @@ render::View view_of_film(render::View view) {
 
 std::uint64_t tick_of_frame(std::uint64_t frame, const FilmOptions& film,
                             const scene::Experiment& experiment) {
-  return tick_at(film.from + static_cast<double>(frame) * film.speed / film.frames_per_second, experiment);
+  return tick_at(film.from + static_cast<double>(frame) * film.speed / film.frames_per_second,
+                 experiment);
 }
 
 /// No more than there are pictures: each thread has Mesa compile its programs.
@@ -95,8 +97,10 @@ std::optional<std::size_t> find_entity(const std::string& id, const world::Layou
   for (const world::EntityLayout& entity : layout.entities) ids.push_back(entity.id);
   const auto found = std::ranges::find(ids, id);
   if (found != ids.end()) return static_cast<std::size_t>(found - ids.begin());
-  throw text::UsageError(fmt::format("--follow: the scene has no entity '{}'; {}", id,
-                                     text::advice(id, ids, ids.empty() ? "it has none" : "write the id of one, such as '" + ids[0] + "'")));
+  throw text::UsageError(fmt::format(
+      "--follow: the scene has no entity '{}'; {}", id,
+      text::advice(id, ids,
+                   ids.empty() ? "it has none" : "write the id of one, such as '" + ids[0] + "'")));
 }
 
 }  // namespace
@@ -116,14 +120,17 @@ std::uint64_t last_tick(const PictureOptions& options, const scene::Experiment& 
 void check_picture_path(const std::string& out) {
   constexpr std::string_view between = "-+#0123456789", conversions = "diouxXeEfFgGaAcspn";
   const auto number = find_number_place(out);
-  for (std::size_t begin = out.find('%'); begin != std::string::npos; begin = out.find('%', begin + 1)) {
+  for (std::size_t begin = out.find('%'); begin != std::string::npos;
+       begin = out.find('%', begin + 1)) {
     const std::size_t end = out.find_first_not_of(between, begin + 1);
-    const bool is_other = end != std::string::npos && conversions.find(out[end]) != conversions.npos;
+    const bool is_other =
+        end != std::string::npos && conversions.find(out[end]) != conversions.npos;
     if (!is_other || (number && begin == number->begin)) continue;
-    throw text::UsageError(fmt::format("--out is '{}': '{}' {}; write %03d once, for the number of the picture", out,
-                                       out.substr(begin, end + 1 - begin),
-                                       number && begin > number->begin ? "stands behind another place for a number"
-                                                                       : "is no place for a number"));
+    throw text::UsageError(
+        fmt::format("--out is '{}': '{}' {}; write %03d once, for the number of the picture", out,
+                    out.substr(begin, end + 1 - begin),
+                    number && begin > number->begin ? "stands behind another place for a number"
+                                                    : "is no place for a number"));
   }
 }
 
@@ -150,9 +157,8 @@ Pictures::Pictures(const PictureOptions& options, const scene::Scene& scene,
   if (followed_) followed_link_ = simulation.layout().entities[*followed_].links.begin;
   if (!options.film) return;
   frames_ = frame_count(*options.film, scene.experiment);
-  film_.emplace(options.film->path,
-                recording::FilmFormat{options.view.width, options.view.height,
-                                      options.film->frames_per_second});
+  film_.emplace(options.film->path, recording::FilmFormat{options.view.width, options.view.height,
+                                                          options.film->frames_per_second});
 }
 
 /// Before entities that came, or other ones after a reset, are drawn.
@@ -170,7 +176,7 @@ void Pictures::draw(const simulation::Simulation& simulation, const render::View
   several_->draw(simulation.state(), simulation.rays(), view, std::move(take));
 }
 
-/// That of the first picture, moved with the entity that it follows.
+/// View of the first picture, moved with the entity that it follows.
 render::View Pictures::view(const world::State& state) {
   const auto place = [&] { return state.origins[*followed_].position; };
   if (!view_) {
@@ -222,9 +228,11 @@ void Pictures::close() {
 }
 
 std::string Pictures::shortcoming() const {
-  if (const std::size_t missing = (options_.out.empty() ? 0 : options_.times.size()) - pictures_; missing > 0) {
-    return fmt::format("{}: {} of {} pictures were not taken, because the run ended before their times",
-                       options_.out, missing, options_.times.size());
+  if (const std::size_t missing = (options_.out.empty() ? 0 : options_.times.size()) - pictures_;
+      missing > 0) {
+    return fmt::format(
+        "{}: {} of {} pictures were not taken, because the run ended before their times",
+        options_.out, missing, options_.times.size());
   }
   if (!film_ || film_->frames() == frames_) return {};
   if (film_->frames() == 0) {

@@ -34,7 +34,8 @@ struct PictureOptions {
 /// The tick of the last picture. @throws text::UsageError if the film has no end
 std::uint64_t last_tick(const PictureOptions& options, const scene::Experiment& experiment);
 
-/// That a path has one place at most for the number of a picture, and nothing else that printf() would replace.
+/// Checks that a path has at most one number of a picture, and nothing else that printf() would
+/// replace.
 /// @throws text::UsageError
 void check_picture_path(const std::string& out);
 
@@ -51,8 +52,8 @@ class Pictures {
   Pictures(const PictureOptions& options, const scene::Scene& scene,
            const simulation::Simulation& simulation);
 
-  /// Takes the pictures of the world's tick, with its rays if the view asks for them; waits for earlier ones if
-  /// they are many.
+  /// Takes the pictures of the world's tick, with its rays if the view asks for them; waits for
+  /// earlier ones if they are many.
   /// @throws recording::WriteError, render::RenderError
   void tick(const simulation::Simulation& simulation);
 
@@ -62,14 +63,15 @@ class Pictures {
 
   /// The paths of pictures and film, after close().
   const std::vector<std::string>& taken() const { return taken_; }
-  /// A sentence if there are fewer pictures, or frames of the film, than there should be, otherwise empty;
-  /// after close().
+  /// A sentence if there are fewer pictures, or frames of the film, than there should be, otherwise
+  /// empty; after close().
   std::string shortcoming() const;
 
  private:
   render::View view(const world::State& state);
   void populate(const simulation::Simulation& simulation);
-  void draw(const simulation::Simulation& simulation, const render::View& view, render::Several::Take take);
+  void draw(const simulation::Simulation& simulation, const render::View& view,
+            render::Several::Take take);
 
   PictureOptions options_;
   const scene::Scene& scene_;

@@ -41,9 +41,12 @@ std::string RadioWatch::warning(const world::Layout& layout) const {
 
 std::string RadioWatch::of_left_out() const {
   if (left_out_ == 0) return {};
-  return fmt::format("from tick {} on, {} radio messages were not received: all radios together receive at most {} at a tick, "
-                     "and of more the last ones of those that send most are left out; send fewer, or write a smaller range",
-                     first_left_out_, left_out_, world::most_received_messages);
+  return fmt::format(
+      "from tick {} on, {} radio messages were not received: all radios together receive at most "
+      "{} at a tick, "
+      "and of more the last ones of those that send most are left out; send fewer, or write a "
+      "smaller range",
+      first_left_out_, left_out_, world::most_received_messages);
 }
 
 std::string RadioWatch::of_deaf(const world::Layout& layout) const {
@@ -56,16 +59,18 @@ std::string RadioWatch::of_deaf(const world::Layout& layout) const {
   std::size_t count = 0;
   for (std::size_t r = 0; r < radios_.size() && r < layout.radios.size(); ++r) {
     const world::RadioLayout& radio = layout.radios[r];
-    const bool is_deaf = radio.receives && !radios_[r].has_received && radios_[r].sent + 1 >= ticks_;
+    const bool is_deaf =
+        radio.receives && !radios_[r].has_received && radios_[r].sent + 1 >= ticks_;
     if (!is_deaf || senders[radio.medium] < 2) continue;
     if (++count == 1) {
       first = fmt::format("radio '{}' of '{}'", radio.id, layout.entities[radio.mount.entity].id);
     }
   }
   if (count == 0) return {};
-  return fmt::format("{}{} sent at every tick and so heard nothing: a radio that sends in a tick "
-                     "receives nothing in it; send at some ticks only",
-                     first, count == 1 ? "" : fmt::format(" and {} more", count - 1));
+  return fmt::format(
+      "{}{} sent at every tick and so heard nothing: a radio that sends in a tick "
+      "receives nothing in it; send at some ticks only",
+      first, count == 1 ? "" : fmt::format(" and {} more", count - 1));
 }
 
 }  // namespace ziggurat::run

@@ -14,11 +14,12 @@ namespace ziggurat::run {
 
 class RadioWatch {
  public:
-  /// A tick was answered: what was received at it, and what is sent next.
+  /// Takes the messages of an answered tick: received ones, and ones that are sent next.
   void tick(const world::Observations& observations, const world::Commands& commands);
 
-  /// Sentences if there are radios that sent at every tick and so received nothing, while others of
-  /// their medium sent, too, and if there were more messages than all radios may receive; otherwise empty.
+  /// Warnings about radios; empty: there are none. One names radios that sent at every tick and so
+  /// received nothing while others of their medium sent. Another tells that radios had more
+  /// messages than they may receive.
   std::string warning(const world::Layout& layout) const;
 
  private:
@@ -33,7 +34,7 @@ class RadioWatch {
 
   std::vector<Radio> radios_;  // into Layout::radios; may be shorter
   std::uint64_t ticks_ = 0;
-  std::uint64_t left_out_ = 0;         // messages
+  std::uint64_t left_out_ = 0;        // messages
   std::uint64_t first_left_out_ = 0;  // tick of the first of them
 };
 

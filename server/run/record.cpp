@@ -40,6 +40,36 @@ std::string name_of_script(const fs::path& script, const std::string& scene_file
   return (folder / relative).lexically_normal().string();
 }
 
+/// Folder of the scene file, as seen from which files are named: other names would tell the folders
+/// of the author. Empty, if a file of the scene or a setting names one of its folders in full: that
+/// one would not be found again.
+std::string folder_to_hide(const recorder::Start& start) {
+  const std::string folder = fs::path(start.scene).parent_path().string();
+  const auto tells = [](std::string_view text, const std::string& path) {
+    return path.starts_with('/') && text.find(path) != std::string_view::npos;
+  };
+  for (const auto& named : start.files) {
+    const std::string in = fs::path(named.name).parent_path().string() + "/";
+    for (const auto& file : start.files) {
+      if (tells(file.text, in)) return {};
+    }
+    for (const auto* values : {&start.settings, &start.parameters}) {
+      for (const auto& each : *values) {
+        if (tells(each.second, in)) return {};
+      }
+    }
+  }
+  return folder;
+}
+
+/// Name of a file as seen from a folder; empty: as it is.
+void name_from(const std::string& folder, std::string& name) {
+  if (folder.empty() || folder.starts_with('/') != name.starts_with('/')) return;
+  const fs::path relative =
+      fs::path(name).lexically_normal().lexically_relative(fs::path(folder).lexically_normal());
+  if (!relative.empty()) name = relative.string();
+}
+
 /// Attaches a script under a name that no other file has. One that cannot be read is left out.
 void attach(const fs::path& script, std::string name, std::vector<recorder::EmbeddedFile>& files) {
   std::ifstream file(script, std::ios::binary);
@@ -51,14 +81,16 @@ void attach(const fs::path& script, std::string name, std::vector<recorder::Embe
 void add_required(std::vector<fs::path>& scripts, reports::Console& console) {
   for (const fs::path& folder : processes::add_required(scripts)) {
     console.notice(fmt::format(
-        "some Lua files of {} are not in the recording: it takes 1000 at most, of 4 MiB each, and 16 MiB of those "
+        "some Lua files of {} are not in the recording: it takes 1000 at most, of 4 MiB each, and "
+        "16 MiB of those "
         "whose names scripts compute; controllers that load others cannot be repeated from it",
         folder.string()));
   }
 }
 
 /// Each script of the scene, and what it loads from its folders, once.
-void add_scripts(const supervision::World& world, recorder::Start& start, reports::Console& console) {
+void add_scripts(const supervision::World& world, recorder::Start& start,
+                 reports::Console& console) {
   std::vector<fs::path> scripts = processes::scripts_of(world.scene, world.path);
   add_required(scripts, console);
   for (const fs::path& script : scripts) {
@@ -94,12 +126,13 @@ std::function<bool(std::string_view)> wish_of(const std::vector<std::string>& pa
   };
 }
 
-/// Those that a recording of the world as it is can have.
+/// Topics that a recording of this world can have.
 std::vector<std::string> topics_of(const supervision::World& world) {
   std::vector<std::string> topics{"/run", "/inputs", "/state"};
   channels::Channels channels;
-  channels.populate({world.scene, world.path, world.scene_hash, world.seed, 0, world.simulation.layout(),
-                     world.simulation.entities(), world.simulation.state()});
+  channels.populate({world.scene, world.path, world.scene_hash, world.seed, 0,
+                     world.simulation.layout(), world.simulation.entities(),
+                     world.simulation.state()});
   for (const channels::Channel& channel : channels.list()) {
     if (recorder::is_recorded(channel.kind)) topics.push_back(channel.topic);
   }
@@ -113,25 +146,35 @@ bool is_of_robots(std::string_view pattern) {
   return pattern.substr(0, exact) == robots.substr(0, exact);
 }
 
-/// Robots that are spawned later have topics that fit then: only a warning. @throws text::UsageError
-void check_topics(const std::vector<std::string>& patterns, const supervision::World& world, reports::Console& console) {
-  const std::vector<std::string> topics = patterns.empty() ? std::vector<std::string>() : topics_of(world);
+/// Robots that are spawned later have topics that fit then: only a warning. @throws
+/// text::UsageError
+void check_topics(const std::vector<std::string>& patterns, const supervision::World& world,
+                  reports::Console& console) {
+  const std::vector<std::string> topics =
+      patterns.empty() ? std::vector<std::string>() : topics_of(world);
   for (const std::string& pattern : patterns) {
-    if (std::ranges::any_of(topics, [&](const std::string& topic) { return network::matches(pattern, topic); })) continue;
-    const std::string told = fmt::format("--record-topics: '{}' fits no topic", text::shortened(pattern));
+    if (std::ranges::any_of(
+            topics, [&](const std::string& topic) { return network::matches(pattern, topic); }))
+      continue;
+    const std::string told =
+        fmt::format("--record-topics: '{}' fits no topic", text::shortened(pattern));
     if (is_of_robots(pattern)) {
       console.warning(told + " of this world; it is for robots that are spawned later, if any");
       continue;
     }
-    throw text::UsageError(fmt::format("{}; {}", told,
-                                       text::advice(pattern, topics, "write /poses or '/robots/*', for example (docs/recordings.md)")));
+    throw text::UsageError(
+        fmt::format("{}; {}", told,
+                    text::advice(pattern, topics,
+                                 "write /poses or '/robots/*', for example (docs/recordings.md)")));
   }
 }
 
 /// Names in a recording are UTF-8: others would not be found again. @throws text::UsageError
 void check_names(const recorder::Start& start) {
   const auto check = [](const std::string& name) {
-    if (!text::is_utf8(name)) throw text::UsageError(fmt::format("{}: the name is not UTF-8, as names in a recording are; rename it", name));
+    if (!text::is_utf8(name))
+      throw text::UsageError(
+          fmt::format("{}: the name is not UTF-8, as names in a recording are; rename it", name));
   };
   check(start.scene);
   for (const recorder::EmbeddedFile& file : start.files) check(file.name);
@@ -139,7 +182,7 @@ void check_names(const recorder::Start& start) {
 
 recorder::Start start_of(const Options& options, const supervision::World& world,
                          const ReadFiles& files, std::uint64_t last_tick,
-                         const std::vector<std::size_t>& idle, const Past* past,
+                         const std::vector<std::size_t>& idle, const Fork* fork,
                          reports::Console& console) {
   recorder::Start start;
   start.scene = world.path;
@@ -154,12 +197,13 @@ recorder::Start start_of(const Options& options, const supervision::World& world
   start.last_tick = last_tick;
   start.controllers = controllers_of(world);
   start.robots_without_controller = idle;
-  start.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(
-                                                        std::chrono::system_clock::now())));
+  start.date = fmt::format(
+      "{:%Y-%m-%dT%H:%M:%SZ}",
+      fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
   start.build = this_build();
   start.arguments = options.arguments;
   start.files = files.all();
-  past ? past->describe(world, start) : add_scripts(world, start, console);
+  fork ? fork->describe(world, start) : add_scripts(world, start, console);
   check_names(start);
   return start;
 }
@@ -186,7 +230,7 @@ std::vector<std::string> ReadFiles::names() const {
 
 RecordedRun::RecordedRun(const Options& options, supervision::World& world, const ReadFiles& files,
                          std::uint64_t last_tick, const std::vector<std::size_t>& idle,
-                         const Past* past, reports::Console& console)
+                         const Fork* fork, reports::Console& console)
     : world_(world),
       console_(console),
       last_tick_(last_tick),
@@ -194,11 +238,31 @@ RecordedRun::RecordedRun(const Options& options, supervision::World& world, cons
       recorder_({options.record,
                  options.record_compression,
                  {wish_of(options.record_topics), options.record_every}},
-                begin(start_of(options, world, files, last_tick, idle, past, console))) {}
+                begin(start_of(options, world, files, last_tick, idle, fork, console),
+                      options.record_paths)) {}
 
-recorder::Start RecordedRun::begin(recorder::Start start) {
+/// @param with_paths  names and the command line stay as they were written
+recorder::Start RecordedRun::begin(recorder::Start start, bool with_paths) {
+  if (!with_paths) {
+    if (start.snapshot.empty())
+      hidden_folder_ = folder_to_hide(start);  // else names are those of a recording
+    start.arguments.clear();
+  }
+  name_from(hidden_folder_, start.scene);
+  for (auto& controller : start.controllers) name_from(hidden_folder_, controller.script);
+  for (auto& file : start.files) name_from(hidden_folder_, file.name);
+  scene_name_ = start.scene;
   note(start.files);
   return start;
+}
+
+void RecordedRun::log(channels::Severity severity, std::string_view name, std::string_view text) {
+  std::string shown(text);
+  for (std::size_t at = 0;
+       !hidden_folder_.empty() && (at = shown.find(hidden_folder_, at)) != std::string::npos;) {
+    shown.erase(at, hidden_folder_.size());
+  }
+  recorder_.log(severity, name, shown);
 }
 
 void RecordedRun::note(const std::vector<recorder::EmbeddedFile>& files) {
@@ -208,12 +272,16 @@ void RecordedRun::note(const std::vector<recorder::EmbeddedFile>& files) {
 void RecordedRun::tick() {
   simulation::Simulation& simulation = world_.simulation;
   if (std::exchange(is_population_new_, false)) {
-    recorder_.populate({world_.scene, world_.path, world_.scene_hash, world_.seed, last_tick_,
+    recorder_.populate({world_.scene, scene_name_, world_.scene_hash, world_.seed, last_tick_,
                         simulation.layout(), simulation.entities(), simulation.state()});
   }
-  recorder_.tick({simulation.state(), simulation.observations(), simulation.commands(),
-                  simulation.contacts(), {}});
-  report_failure(fmt::format("the recording ends before tick {}", simulation.state().tick), ", the run goes on");
+  recorder_.tick({simulation.state(),
+                  simulation.observations(),
+                  simulation.commands(),
+                  simulation.contacts(),
+                  {}});
+  report_failure(fmt::format("the recording ends before tick {}", simulation.state().tick),
+                 ", the run goes on");
 }
 
 void RecordedRun::close(const std::vector<world::Metric>& metrics) {
@@ -229,45 +297,49 @@ void RecordedRun::report_failure(const std::string& missing, const char* otherwi
   console_.fault(failure_ + otherwise);
 }
 
-/// That of a spawned robot, and what it loads; not those that the recording has, which may have been
-/// edited since: the robots that run them began with the first.
-void RecordedRun::add_script(const std::string& script, std::vector<recorder::EmbeddedFile>& files) {
+/// Embeds the script of a spawned robot, and the scripts that it loads. Scripts that the recording
+/// has already are left out: they may have been edited since, but their robots began with the first
+/// version.
+void RecordedRun::add_script(const std::string& script,
+                             std::vector<recorder::EmbeddedFile>& files) {
   if (script.empty() || !scripts_.insert(script).second) return;
   std::vector<fs::path> scripts{script};
   add_required(scripts, console_);
   for (const fs::path& each : scripts) {
     std::string name = name_of_script(each, world_.path);
+    name_from(hidden_folder_, name);
     if (!embedded_.contains(name)) attach(each, std::move(name), files);
   }
 }
 
-void RecordedRun::act(const supervision::Act& done) {
+void RecordedRun::record(const supervision::WorldChange& change) {
   recorder::Recorder& to = recorder_;
   std::visit(
-      [&](const auto& act) {
-        using Type = std::decay_t<decltype(act)>;
+      [&](const auto& made) {
+        using Type = std::decay_t<decltype(made)>;
         if constexpr (std::is_same_v<Type, supervision::Moved>) {
-          to.moved(act.entity, act.pose);
+          to.moved(made.entity, made.pose);
         } else if constexpr (std::is_same_v<Type, supervision::JointSet>) {
-          to.joint_set(act.entity, act.joint, act.position, act.velocity);
+          to.joint_set(made.entity, made.joint, made.position, made.velocity);
         } else if constexpr (std::is_same_v<Type, supervision::Spawned>) {
           std::vector<recorder::EmbeddedFile> files;
-          for (const auto& [name, text] : act.files) files.push_back({name, text});
-          add_script(act.script, files);
+          for (const auto& [name, text] : made.files) files.push_back({name, text});
+          for (auto& file : files) name_from(hidden_folder_, file.name);
+          add_script(made.script, files);
           note(files);
-          to.spawned(act.xml, std::move(files));
+          to.spawned(made.xml, std::move(files));
           is_population_new_ = true;
         } else if constexpr (std::is_same_v<Type, supervision::Removed>) {
-          to.removed(act.entity);
+          to.removed(made.entity);
           is_population_new_ = true;
         } else if constexpr (std::is_same_v<Type, supervision::WasReset>) {
-          to.reset(act.seed);
+          to.reset(made.seed);
           is_population_new_ = true;
         } else if constexpr (std::is_same_v<Type, supervision::Restored>) {
-          to.restored(act.snapshot, act.bytes);
+          to.restored(made.snapshot, made.bytes);
           is_population_new_ = true;
-        } else if constexpr (std::is_same_v<Type, supervision::Kept>) {
-          to.kept(act.snapshot);
+        } else if constexpr (std::is_same_v<Type, supervision::SnapshotTaken>) {
+          to.kept(made.snapshot);
         } else if constexpr (std::is_same_v<Type, supervision::Paused>) {
           to.set_paused(true);
         } else {
@@ -275,16 +347,16 @@ void RecordedRun::act(const supervision::Act& done) {
           to.set_paused(false);
         }
       },
-      done);
+      change);
 }
 
 std::unique_ptr<RecordedRun> start_recording(const Options& options, supervision::World& world,
                                              const ReadFiles& files, std::uint64_t last_tick,
-                                             const std::vector<std::size_t>& idle, const Past* past,
+                                             const std::vector<std::size_t>& idle, const Fork* fork,
                                              reports::Console& console) {
   if (options.record.empty()) return nullptr;
   check_topics(options.record_topics, world, console);
-  return std::make_unique<RecordedRun>(options, world, files, last_tick, idle, past, console);
+  return std::make_unique<RecordedRun>(options, world, files, last_tick, idle, fork, console);
 }
 
 }  // namespace ziggurat::run

@@ -1,5 +1,5 @@
 #pragma once
-// --record: what a recording is told of its run.
+// Recording of a run: --record.
 
 #include <cstdint>
 #include <filesystem>
@@ -11,11 +11,11 @@
 
 #include "recorder/recorder.h"
 #include "reports/console.h"
+#include "run/fork.h"
 #include "run/options.h"
-#include "run/past.h"
 #include "scene/files.h"
-#include "supervision/act.h"
 #include "supervision/world.h"
+#include "supervision/world_change.h"
 
 namespace ziggurat::run {
 
@@ -39,19 +39,17 @@ class RecordedRun {
   /// @param last_tick  0: until stopped
   /// @param idle       robots without controller: into Layout::robots
   /// @throws recording::WriteError
-  /// @param past       of a fork, whose world is where it begins; null: the run begins at tick 0
+  /// @param fork       its world is where the run begins; null: the run begins at tick 0
   RecordedRun(const Options& options, supervision::World& world, const ReadFiles& files,
-              std::uint64_t last_tick, const std::vector<std::size_t>& idle, const Past* past,
+              std::uint64_t last_tick, const std::vector<std::size_t>& idle, const Fork* fork,
               reports::Console& console);
 
   bool wants_contacts() const { return recorder_.wants("/contacts"); }
   /// A tick was published. If the recording can't be written any more, a message is printed, once.
   /// @throws recording::WriteError instead, if the run is to end then
   void tick();
-  void act(const supervision::Act& act);
-  void log(channels::Severity severity, std::string_view name, std::string_view text) {
-    recorder_.log(severity, name, text);
-  }
+  void record(const supervision::WorldChange& change);
+  void log(channels::Severity severity, std::string_view name, std::string_view text);
   /// The world is about to be stepped. @param metrics  that were set since the tick
   void step(const std::vector<world::Metric>& metrics) {
     recorder_.step(world_.simulation.commands(), metrics);
@@ -63,7 +61,7 @@ class RecordedRun {
   const std::string& failure() const { return failure_; }
 
  private:
-  recorder::Start begin(recorder::Start start);
+  recorder::Start begin(recorder::Start start, bool with_paths);
   void note(const std::vector<recorder::EmbeddedFile>& files);
   void report_failure(const std::string& missing, const char* otherwise = "");
   void add_script(const std::string& script, std::vector<recorder::EmbeddedFile>& files);
@@ -72,6 +70,8 @@ class RecordedRun {
   reports::Console& console_;
   const std::uint64_t last_tick_;
   const bool is_strict_;
+  std::string hidden_folder_;                ///< from which files are named; empty: as they are
+  std::string scene_name_;                   ///< of the scene file in the recording
   std::set<std::string> embedded_;           // names of files that the recording has
   std::set<std::filesystem::path> scripts_;  // of spawned robots
   recorder::Recorder recorder_;
@@ -82,7 +82,7 @@ class RecordedRun {
 /// Null if the options ask for no recording.
 std::unique_ptr<RecordedRun> start_recording(const Options& options, supervision::World& world,
                                              const ReadFiles& files, std::uint64_t last_tick,
-                                             const std::vector<std::size_t>& idle, const Past* past,
+                                             const std::vector<std::size_t>& idle, const Fork* fork,
                                              reports::Console& console);
 
 }  // namespace ziggurat::run

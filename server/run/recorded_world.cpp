@@ -8,6 +8,7 @@
 namespace ziggurat::run {
 
 void begin_as_recorded(const replay::RecordingFile& file, supervision::World& world) {
+  replay::check_core(file.run(), world.scene);
   const std::string& name = file.run().snapshot();
   if (name.empty()) return;
   try {

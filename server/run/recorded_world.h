@@ -7,8 +7,8 @@
 
 namespace ziggurat::run {
 
-/// Puts a new world of the recording's scene and seed where the recording begins: into a snapshot, if
-/// it is one of a fork. @throws replay::RecordingError, simulation::SnapshotError
+/// Puts a new world of the recording's scene and seed where the recording begins: into a snapshot,
+/// if it is one of a fork. @throws replay::RecordingError, simulation::SnapshotError
 void begin_as_recorded(const replay::RecordingFile& file, supervision::World& world);
 
 /// Reads the snapshots that the recording has embedded. Both must outlive it.

@@ -15,15 +15,15 @@
 #include "reports/report_card.h"
 #include "reports/summary.h"
 #include "run/options.h"
+#include "run/periodic_task.h"
 #include "run/pictures.h"
-#include "run/repeating.h"
 #include "simulation/simulation.h"
 #include "supervision/world.h"
 
 namespace ziggurat::run {
 
-/// What is written of a tick is on the disk half a second of wall time later at most, also while
-/// the world is paused or a tick takes long.
+/// Output files of a run. The output of a tick is on the disk within half a second of wall time.
+/// This also holds while the world is paused or a tick takes long.
 class Recorders {
  public:
   /// Creates all files, so that a path that cannot be written is reported before the run.
@@ -39,7 +39,8 @@ class Recorders {
   void exchange(const world::State& state, const world::Observations& observations,
                 const world::Commands& commands, const std::vector<world::Metric>& metrics);
 
-  /// Writes what is not on the disk yet. An error is reported with the next tick. Any thread may call it.
+  /// Writes all output that is not on the disk yet. An error is reported with the next tick. Any
+  /// thread may call it.
   void flush();
 
   /// Completes every file except the summary and the report card, also if one of them fails.
@@ -72,7 +73,7 @@ class Recorders {
   std::string (*report_card_text_)(const reports::ReportCard& card) = nullptr;
   std::optional<recording::Images> images_;
   std::optional<Pictures> pictures_;
-  std::optional<Repeating> flushing_;  ///< the last: it uses the others
+  std::optional<PeriodicTask> flushing_;  ///< the last: it uses the others
 };
 
 }  // namespace ziggurat::run

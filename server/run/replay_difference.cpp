@@ -17,14 +17,14 @@
 namespace ziggurat::run {
 namespace {
 
-/// What links look like says nothing of what robots sense and show: these topics do.
+/// Compares the topics that show readings and device states of robots; poses of links do not.
 bool is_compared(channels::Kind kind) {
   return kind == channels::Kind::observation || kind == channels::Kind::poses ||
          kind == channels::Kind::detections || kind == channels::Kind::radio;
 }
 
-std::vector<std::pair<std::string, channels::Message>> messages_of(
-    supervision::World& world, channels::Channels& channels) {
+std::vector<std::pair<std::string, channels::Message>> messages_of(supervision::World& world,
+                                                                   channels::Channels& channels) {
   const simulation::Simulation& simulation = world.simulation;
   channels.populate({world.scene, world.path, world.scene_hash, world.seed, 0, simulation.layout(),
                      simulation.entities(), simulation.state()});
@@ -32,8 +32,11 @@ std::vector<std::pair<std::string, channels::Message>> messages_of(
   for (const channels::Channel& channel : channels.list()) {
     if (!is_compared(channel.kind)) continue;
     std::vector<channels::Message> messages;
-    channels.encode({simulation.state(), simulation.observations(), world.simulation.commands(),
-                     simulation.contacts(), {}},
+    channels.encode({simulation.state(),
+                     simulation.observations(),
+                     world.simulation.commands(),
+                     simulation.contacts(),
+                     {}},
                     channels::Pace::tick, std::array{channel.id}, messages);
     for (auto& message : messages) found.emplace_back(channel.topic, std::move(message));
   }
@@ -113,7 +116,9 @@ std::vector<std::string> likely_causes(const v1::RunStart& recorded) {
   compare("options of the compiler", then.options(), now.options);
   compare("C library", then.libm(), now.libm);
   compare("instructions of the processor", then.cpu_path(), now.cpu_path);
-  if (causes.empty()) causes.emplace_back("the same build recorded it: its file was changed, or this is a fault of the program");
+  if (causes.empty())
+    causes.emplace_back(
+        "the same build recorded it: its file was changed, or this is a fault of the program");
   return causes;
 }
 

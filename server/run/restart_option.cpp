@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "run/by_controller.h"
+#include "run/controller_option.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {

@@ -8,14 +8,12 @@
 #include <span>
 #include <utility>
 
-#include "network/listener.h"
 #include "processes/commands.h"
 #include "processes/python_package.h"
 #include "processes/scripts.h"
 #include "processes/spawned_scripts.h"
-#include "run/askers.h"
 #include "run/background.h"
-#include "run/clients_file.h"
+#include "run/client_options.h"
 #include "run/files.h"
 #include "run/gate_option.h"
 #include "run/loading.h"
@@ -38,7 +36,7 @@ void keep(const std::vector<world::Metric>& metrics, reports::Summary& summary) 
   }
 }
 
-/// Those of the last tick, and what controllers have set when they were told the end.
+/// Metrics of the last tick, and metrics that controllers set after the end of the run.
 std::vector<world::Metric> last_metrics(const network::Server& server, const Watch& watch,
                                         reports::Summary& summary) {
   std::vector<world::Metric> metrics = watch.measured();
@@ -61,9 +59,8 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       service_(service),
       signals_(signals),
       console_({options.quiet, options.json}),
-      past_(options.fork ? std::make_unique<Past>(options) : nullptr),
-      path_(past_ ? past_->scene_path()
-                  : existing_scene(options, console_)),
+      fork_(options.fork ? std::make_unique<Fork>(options) : nullptr),
+      path_(fork_ ? fork_->scene_path() : existing_scene(options, console_)),
       local_(signals.guardian()),
       config_(network_config(options, service == Service::serve, local_)),
       listening_(listen()),
@@ -73,10 +70,10 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       plan_(make_plan()),
       with_controllers_(!options.without_controllers && !(options.pictures && plan_.ticks == 0)),
       folder_(signals.guardian()),
-      scripts_(past_ ? past_->write_scripts(world_, folder_.path() + "/files")
+      scripts_(fork_ ? fork_->write_scripts(world_, folder_.path() + "/files")
                      : script_paths(world_.scene, world_.simulation.layout(), path_)),
       recorders_(options, world_),
-      recorded_(past_ ? nullptr
+      recorded_(fork_ ? nullptr
                       : start_recording(options, world_, files_, plan_.ticks.value_or(0),
                                         robots_without_controller(), nullptr, console_)),
       controllers_(start_controllers()),
@@ -86,22 +83,22 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       supervision_(supervision_settings(), world_, server_, callers_, population_),
       directing_(world_, server_, callers_, population_, console_),
       schedule_(plan_.real_time, world_.simulation.tick_length()),
-      showing_(make_showing(options, shown(world_, server_, callers_, supervision_, schedule_,
-                                           plan_.ticks.value_or(0)))),
+      live_view_(make_showing(options, shown(world_, server_, callers_, supervision_, schedule_,
+                                             plan_.ticks.value_or(0)))),
       watch_({options.metrics, options.insecure, options.fail_fast, service == Service::serve,
               plan_.ticks, restarts_of(options.restarts, world_.scene)},
-             world_, server_, controllers_, supervision_, signals, console_, showing_.get(),
+             world_, server_, controllers_, supervision_, signals, console_, live_view_.get(),
              [this](auto severity, auto name, auto text) {
-               if (showing_) showing_->log(severity, name, text);
+               if (live_view_) live_view_->log(severity, name, text);
                if (recorded_) recorded_->log(severity, name, text);
              }),
-      waits_for_viewer_(showing_ && !options.paused) {
-  callers_.tell_acts([this](const supervision::Act& act) {
-    if (recorded_) recorded_->act(act);
+      waits_for_viewer_(live_view_ && !options.paused) {
+  callers_.on_world_change([this](const supervision::WorldChange& change) {
+    if (recorded_) recorded_->record(change);
   });
   print_notices();
-  summary_.scene = path_;
-  summary_.robots = world_.simulation.layout().robots.size();
+  statistics_.summary.scene = path_;
+  statistics_.summary.robots = world_.simulation.layout().robots.size();
 }
 
 /// Reads the scene and builds the world, on a thread of its own.
@@ -113,12 +110,13 @@ supervision::World Run::read_world(const Tell& tell_clients) {
   };
   const auto tell_step = [&](simulation::Step step, std::size_t done, std::size_t all) {
     const bool is_placing = step == simulation::Step::placing;
-    const double from = is_placing ? before_placing : before_building, to = is_placing ? before_building : 1;
+    const double from = is_placing ? before_placing : before_building,
+                 to = is_placing ? before_building : 1;
     tell(from + (to - from) * static_cast<double>(done) / static_cast<double>(all),
          fmt::format("{} of {} entities are {}.", done, all, is_placing ? "placed" : "built"));
   };
   tell(0, "The scene is being read.");
-  if (past_) return past_->build(tell_step);
+  if (fork_) return fork_->build(tell_step);
   Options options = options_;
   if (!options.record.empty()) options.scene_file.open = files_.keep(options.scene_file.open);
   scene::OpenScene opened = load_scene(path_, options, console_);
@@ -127,12 +125,13 @@ supervision::World Run::read_world(const Tell& tell_clients) {
   return {path_, std::move(opened), seed, tell_step};
 }
 
-/// A killed program cannot remove the files of its sockets: the guardian has their names before they are made.
+/// A killed program cannot remove the files of its sockets: the guardian has their names before
+/// they are made.
 std::unique_ptr<network::Server> Run::listen() const {
   const processes::Guardian* const guardian = signals_.guardian();
   for (const std::string& endpoint : config_.endpoints) {
     const std::string file = network::file_of(endpoint);
-    if (guardian != nullptr && !file.empty()) guardian->remove_dead_socket(file, network::lock_of(file));
+    if (guardian != nullptr && !file.empty()) guardian->remove_dead_socket(file);
   }
   return std::make_unique<network::Server>(config_);
 }
@@ -143,14 +142,15 @@ std::unique_ptr<supervision::World> Run::load_world() {
   Background<supervision::World> loading([this](const Tell& tell) { return read_world(tell); });
   const std::array descriptors{signals_.descriptor(), loading.descriptor()};
   for (;;) {
-    const auto news = loading.news();
-    if (news.is_done) {
+    const auto status = loading.status();
+    if (status.is_done) {
       auto world = loading.take();
-      past_ ? past_->prepare(*world) : check_outputs(options_, world->scene, files_.names());
-      if (service_ == Service::serve) tell_how_to_connect(options_, server_.endpoints().front(), *world, console_);
+      fork_ ? fork_->prepare(*world) : check_outputs(options_, world->scene, files_.names());
+      if (service_ == Service::serve)
+        tell_how_to_connect(options_, server_.endpoints().front(), *world, console_);
       return world;
     }
-    server_.attend({news.progress, news.message}, {std::chrono::milliseconds{-1}, descriptors});
+    server_.attend({status.progress, status.message}, {std::chrono::milliseconds{-1}, descriptors});
     if (signals_.take().interruptions == 0) continue;
     listening_.reset();  // tells clients that wait
     local_.release();
@@ -163,10 +163,10 @@ Plan Run::make_plan() const {
   Plan plan;
   plan.ticks = options_.pictures ? last_tick(*options_.pictures, experiment)
                                  : tick_count(options_, world_.scene);
-  if (past_ && !options_.ticks && !options_.duration && past_->last_tick()) {
-    plan.ticks = past_->last_tick();
+  if (fork_ && !options_.ticks && !options_.duration && fork_->last_tick()) {
+    plan.ticks = fork_->last_tick();
   }
-  if (past_ && plan.ticks && *plan.ticks < options_.fork->at) {
+  if (fork_ && plan.ticks && *plan.ticks < options_.fork->at) {
     throw text::UsageError(fmt::format(
         "--at {} is after the end of the run at tick {}; write --ticks with a later end",
         options_.fork->at, *plan.ticks));
@@ -181,18 +181,20 @@ Plan Run::make_plan() const {
 network::Config Run::complete_config() {
   add_controllers(options_, world_.scene, config_);
   const auto& controllers = world_.scene.controllers;
-  const Askers askers = askers_of(options_, world_.scene, service_ == Service::serve, with_controllers_);
-  check_askers(options_, askers, config_);
-  check_gate(options_.gate, {std::span(config_.deadlines).first(controllers.size()), askers.clients,
-                             plan_.real_time.has_value()});
-  if (service_ == Service::run || options_.starts_directors) config_.private_endpoint = "ipc://" + folder_.path() + "/run";
+  const ExpectedClients clients =
+      expected_clients(options_, world_.scene, service_ == Service::serve, with_controllers_);
+  check_client_options(options_, clients, config_);
+  check_gate(options_.gate, {std::span(config_.deadlines).first(controllers.size()),
+                             clients.can_connect, plan_.real_time.has_value()});
+  if (service_ == Service::run || options_.starts_directors)
+    config_.private_endpoint = "ipc://" + folder_.path() + "/run";
   return config_;
 }
 
-/// Those whose Lua controller names no script, or all robots if controllers are not wanted. The
+/// Robots whose Lua controller names no script, or all robots if controllers are not wanted. The
 /// run does not wait for them.
 std::vector<std::size_t> Run::robots_without_controller() const {
-  if (past_) return past_->idle_robots(world_, scripts_);
+  if (fork_) return fork_->idle_robots(world_, scripts_);
   const auto& all = world_.simulation.layout().robots;
   std::vector<std::size_t> robots;
   for (std::size_t r = 0; r < all.size(); ++r) {
@@ -207,14 +209,15 @@ processes::Controllers Run::start_controllers() {
   run.is_hardware_in_the_loop = options_.hil;
   std::vector<scene::Director> directors;
   if (with_controllers_) {
-    directors = past_ ? past_->directors(world_, folder_.path() + "/files") : directors_of(world_);
+    directors = fork_ ? fork_->directors(world_, folder_.path() + "/files") : directors_of(world_);
   }
   run.directors = directors;
   server_.open(std::move(run), complete_config());
   server_.remove_robots(robots_without_controller());
   if (options_.starts_directors) check_programs(world_.scene);
   if (!with_controllers_ || (service_ == Service::serve && !options_.starts_directors)) return {};
-  return {world_.scene, world_.simulation.layout(), scripts_, launch_settings(std::move(directors))};
+  return {world_.scene, world_.simulation.layout(), scripts_,
+          launch_settings(std::move(directors))};
 }
 
 processes::LaunchSettings Run::launch_settings(std::vector<scene::Director> directors) const {
@@ -223,17 +226,17 @@ processes::LaunchSettings Run::launch_settings(std::vector<scene::Director> dire
                                      options_.lua_arguments,       signals_.guardian(),
                                      std::move(directors)};
   settings.only_directors = service_ == Service::serve;
-  settings.scene_folder = past_ ? folder_.path() + "/files" : processes::scene_folder(path_);
+  settings.scene_folder = fork_ ? folder_.path() + "/files" : processes::scene_folder(path_);
   settings.python_path = processes::python_path(folder_.path());
   const auto allow = [&](const std::string& folder) {
     settings.lua_arguments.insert(settings.lua_arguments.end(), {"--script-folder", folder});
   };
-  if (past_) allow(folder_.path() + "/files");
-  if (!past_) {
+  if (fork_) allow(folder_.path() + "/files");
+  if (!fork_) {
     for (const auto& folder : processes::folders_of(world_.scene, path_)) allow(folder.string());
   }
   for (const auto& folder : options_.spawned_script_folders) allow(folder);
-  const auto exceptions = exceptions_of(options_, past_ ? nullptr : &world_.scene, path_);
+  const auto exceptions = exceptions_of(options_, fork_ ? nullptr : &world_.scene, path_);
   settings.lua_arguments.insert(settings.lua_arguments.end(), exceptions.begin(), exceptions.end());
   return settings;
 }
@@ -245,31 +248,31 @@ supervision::Supervision::Settings Run::supervision_settings() {
 
 int Run::execute() {
   try {
-    summary_.ending = run_to_end();
+    statistics_.summary.ending = run_to_end();
     recorders_.close();
   } catch (const std::exception& error) {
     end_in_failure(error);
     throw;
   }
   complete_summary();
-  watch_.end_run(end_message(summary_));
-  const std::vector<world::Metric> metrics = last_metrics(server_, watch_, summary_);
+  watch_.end_run(end_message(statistics_.summary));
+  const std::vector<world::Metric> metrics = last_metrics(server_, watch_, statistics_.summary);
   if (recorded_) {
     recorded_->close(metrics);
-    summary_.recording_failure = recorded_->failure();
+    statistics_.summary.recording_failure = recorded_->failure();
   }
-  summary_.failures = watch_.reported().failures();
-  summary_.departures = watch_.reported().departures();
-  recorders_.write_summary(summary_);
+  statistics_.summary.failures = watch_.reported().failures();
+  statistics_.summary.departures = watch_.reported().departures();
+  recorders_.write_summary(statistics_.summary);
   for (const auto& picture : recorders_.pictures()) console_.result(picture);
   if (const auto missing = recorders_.missing_frames(); !missing.empty()) console_.warning(missing);
   const bool has_passed = report_hil();
   print_summary();
-  int code = exit_code_of(summary_);
+  int code = exit_code_of(statistics_.summary);
   if (code == reports::exit_code::finished && !has_passed) code = reports::exit_code::gate_missed;
-  const bool is_stopped =
-      summary_.ending == Ending::interrupted || summary_.ending == Ending::forced;
-  if (showing_ && !is_stopped) {
+  const bool is_stopped = statistics_.summary.ending == Ending::interrupted ||
+                          statistics_.summary.ending == Ending::forced;
+  if (live_view_ && !is_stopped) {
     console_.notice("the run is over; its last state is shown until Ctrl-C");
     console_.flush();
     watch_.show_end();
@@ -279,33 +282,33 @@ int Run::execute() {
 }
 
 /// A fork begins with the recorded run. Supervisors wait meanwhile.
-std::optional<Ending> Run::relive() {
+std::optional<Ending> Run::replay_to_begin() {
   callers_.hold(true);
-  const auto ending = past_->relive(world_, {server_, controllers_, watch_},
-                                    robots_without_controller(), folder_.path() + "/files",
-                                    signals_, console_);
+  const auto ending =
+      fork_->replay_to_begin(world_, {server_, controllers_, watch_}, robots_without_controller(),
+                             folder_.path() + "/files", signals_, console_);
   callers_.hold(false);
   if (ending) return ending;
   recorded_ = start_recording(options_, world_, files_, plan_.ticks.value_or(0),
-                              robots_without_controller(), past_.get(), console_);
+                              robots_without_controller(), fork_.get(), console_);
   if (options_.paused) server_.set_paused(true);
   return std::nullopt;
 }
 
 /// From the start to the end, again after each reset.
 Ending Run::run_to_end() {
-  if (past_) {
-    if (const auto ending = relive()) return *ending;
+  if (fork_) {
+    if (const auto ending = replay_to_begin()) return *ending;
   }
   for (;;) {
     std::optional<Ending> ending = wait([&] { return watch_.gather(); });
-    timer_.end_startup(summary_);
+    statistics_.timer.end_startup(statistics_.summary);
     if (!ending) {
       supervision_.gathered();
       ending = run_world();
     }
     if (ending != Ending::reset) return *ending;
-    timer_.end_startup(summary_);
+    statistics_.timer.end_startup(statistics_.summary);
   }
 }
 
@@ -319,40 +322,40 @@ Ending Run::run_world() {
     // Controllers compute while the files are written.
     server_.publish(simulation.observations(), simulation.state().tag_payloads, &truth);
     supervision_.published();
-    timer_.end_phase(Phase::exchange, summary_);
+    statistics_.timer.end_phase(Phase::exchange, statistics_.summary);
     recorders_.tick(simulation);
     if (recorded_) recorded_->tick();
-    if (showing_) showing_->tick(timer_.last_tick());
-    timer_.end_phase(Phase::recording, summary_);
+    if (live_view_) live_view_->tick(statistics_.timer.last_tick());
+    statistics_.timer.end_phase(Phase::recording, statistics_.summary);
 
     auto stopped = collect();
-    timer_.end_phase(Phase::exchange, summary_);
+    statistics_.timer.end_phase(Phase::exchange, statistics_.summary);
     const bool is_last = simulation.state().tick == plan_.ticks;
     if (!stopped && !is_last && (schedule_.is_paced() || waits_for_viewer_)) {
       stopped = pace();
       if (!stopped) stopped = collect();
-      timer_.end_phase(Phase::pacing, summary_);
+      statistics_.timer.end_phase(Phase::pacing, statistics_.summary);
     }
     if (stopped) return *stopped;
     radio_watch_.tick(simulation.observations(), simulation.commands());
     recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands(),
                         watch_.measured());
-    keep(watch_.measured(), summary_);
-    if (showing_) showing_->answered();
-    timer_.end_phase(Phase::recording, summary_);
-    summary_.result = directing_.result();
-    if (is_last || summary_.result) return Ending::finished;
+    keep(watch_.measured(), statistics_.summary);
+    if (live_view_) live_view_->answered();
+    statistics_.timer.end_phase(Phase::recording, statistics_.summary);
+    statistics_.summary.result = directing_.result();
+    if (is_last || statistics_.summary.result) return Ending::finished;
     directing_.act();
     if (recorded_) recorded_->step(watch_.measured());
-    simulation.list_contacts((showing_ && showing_->wants_contacts()) ||
+    simulation.list_contacts((live_view_ && live_view_->wants_contacts()) ||
                              (recorded_ && recorded_->wants_contacts()) ||
                              directing_.wants_contacts());
-    simulation.list_rays((showing_ && showing_->wants_rays()) ||
+    simulation.list_rays((live_view_ && live_view_->wants_rays()) ||
                          (options_.pictures && options_.pictures->view.layers.rays));
     simulation.step();
-    timer_.end_phase(Phase::physics, summary_);
+    statistics_.timer.end_phase(Phase::physics, statistics_.summary);
     print_troubles();
-    timer_.end_tick(supervision_, schedule_.is_paced());
+    statistics_.timer.end_tick(supervision_, schedule_.is_paced());
   }
 }
 
@@ -364,7 +367,7 @@ std::optional<Ending> Run::collect() {
     auto stopped =
         wait([&] { return watch_.collect(simulation.commands(), simulation.state().tick); });
     if (stopped) return stopped;
-  } while (server_.pause() == network::Pause::standing);
+  } while (server_.pause() == network::Pause::halted);
   return std::nullopt;
 }
 
@@ -372,22 +375,22 @@ std::optional<Ending> Run::collect() {
 std::optional<Ending> Run::pace() {
   const std::uint64_t tick = world_.simulation.state().tick;
   if (std::exchange(waits_for_viewer_, false)) {
-    const auto stopped =
-        wait([&] { return watch_.wait_for_viewer(world_.simulation.commands()); });
-    timer_.end_startup(summary_);
+    const auto stopped = wait([&] { return watch_.wait_for_viewer(world_.simulation.commands()); });
+    statistics_.timer.end_startup(statistics_.summary);
     if (stopped) return stopped;
     schedule_.begin(tick, supervision_.paused_for());
   }
   const auto moment = [&] { return schedule_.end_of(tick, supervision_.paused_for()); };
   if (!schedule_.is_paced()) return std::nullopt;
   const bool is_late = Watch::clock::now() > moment();
-  if (is_late) ++summary_.late_ticks;
+  if (is_late) ++statistics_.summary.late_ticks;
   const auto stopped =
       wait([&] { return watch_.sleep_until(moment, world_.simulation.commands()); });
   if (stopped || !config_.keeps_reactions) return stopped;
   const std::chrono::duration<double> late = Watch::clock::now() - moment();
   const auto next = static_cast<std::uint32_t>(tick + 1);
-  starts_.push_back({resets_, next, std::max(late.count(), 0.0), is_late});
+  statistics_.tick_starts.push_back(
+      {statistics_.resets, next, std::max(late.count(), 0.0), is_late});
   return std::nullopt;
 }
 
@@ -403,9 +406,9 @@ std::optional<Ending> Run::wait(const Wait& step) {
 bool Run::reset_world() {
   if (!supervision_.restart()) return false;
   watch_.forget_spawned();
-  ++resets_;
-  if (showing_) showing_->restarted();
-  summary_.metrics.clear();
+  ++statistics_.resets;
+  if (live_view_) live_view_->restarted();
+  statistics_.summary.metrics.clear();
   return true;
 }
 

@@ -15,15 +15,15 @@
 #include "processes/signals.h"
 #include "reports/console.h"
 #include "reports/summary.h"
+#include "run/fork.h"
+#include "run/live_view.h"
 #include "run/local_endpoints.h"
 #include "run/options.h"
-#include "run/past.h"
 #include "run/phase_timer.h"
 #include "run/radio_watch.h"
 #include "run/record.h"
 #include "run/recorders.h"
 #include "run/schedule.h"
-#include "run/showing.h"
 #include "run/watch.h"
 #include "supervision/directing.h"
 #include "supervision/supervision.h"
@@ -36,13 +36,23 @@ enum class Service {
   serve,  ///< controllers connect from outside
 };
 
-/// How long a run is, and how fast.
+/// Length of a run, and its speed.
 struct Plan {
   std::optional<std::uint64_t> ticks;  ///< nothing = until stopped
   std::optional<double> real_time;     ///< simulated seconds per second of wall time, if paced
 };
 
-/// The members stand in the order in which a run is set up.
+/// Statistics of a run, for its summary and its report card.
+struct RunStatistics {
+  reports::Summary summary;
+  PhaseTimer timer;
+  std::chrono::system_clock::time_point date =
+      std::chrono::system_clock::now();         ///< of the beginning
+  std::vector<reports::TickStart> tick_starts;  ///< of paced ticks
+  std::uint32_t resets = 0;
+};
+
+/// Run of a world. Its members are in the order in which a run is set up.
 class Run {
  public:
   /// Listens, loads the scene, creates the output files and starts the controllers.
@@ -73,7 +83,7 @@ class Run {
   void print_notices();
 
   // Running.
-  std::optional<Ending> relive();
+  std::optional<Ending> replay_to_begin();
   Ending run_to_end();
   Ending run_world();
   std::optional<Ending> collect();
@@ -93,9 +103,9 @@ class Run {
   const Service service_;
   processes::Signals& signals_;
   reports::Console console_;
-  const std::unique_ptr<Past> past_;  ///< null: the run begins at tick 0
-  const std::string path_;  ///< of the scene file
-  ReadFiles files_;  ///< of the scene
+  const std::unique_ptr<Fork> fork_;  ///< null: the run begins at tick 0
+  const std::string path_;            ///< of the scene file
+  ReadFiles files_;                   ///< of the scene
   LocalEndpoints local_;
   network::Config config_;
   std::unique_ptr<network::Server> listening_;
@@ -114,18 +124,14 @@ class Run {
   supervision::Supervision supervision_;
   supervision::Directing directing_;
   Schedule schedule_;
-  const std::unique_ptr<Showing> showing_;  ///< null: not shown
+  const std::unique_ptr<LiveView> live_view_;  ///< null: not shown
   Watch watch_;
-  reports::Summary summary_;
-  PhaseTimer timer_;
-  bool printed_miss_ = false, printed_slow_ = false;
-  bool waits_for_viewer_ = false;
+  RunStatistics statistics_;
   RadioWatch radio_watch_;
-
-  // For the report card.
-  const std::chrono::system_clock::time_point date_ = std::chrono::system_clock::now();
-  std::vector<reports::TickStart> starts_;  ///< of paced ticks
-  std::uint32_t resets_ = 0;
+  struct {
+    bool not_converged = false, slow = false;
+  } printed_;  ///< notices, which are printed once
+  bool waits_for_viewer_ = false;
 };
 
 }  // namespace ziggurat::run

@@ -23,12 +23,12 @@
 namespace ziggurat::run {
 namespace {
 
-/// Of controllers and directors that nothing gives a policy. Hardware in the loop does not wait: they hold
-/// their last command after nine tenths of a tick, and directors have no acts in it.
+/// Policy of controllers and directors without one of their own. Hardware in the loop does not
+/// wait. Controllers hold their last command after nine tenths of a tick, and directors have no
+/// acts in it.
 scene::DeadlinePolicy usual_policy(const Options& options, const scene::Scene& scene) {
   if (!options.hil) return {};
-  const double tick_ms =
-      1000.0 / scene.experiment.ticks_per_second / options.real_time.value_or(1);
+  const double tick_ms = 1000.0 / scene.experiment.ticks_per_second / options.real_time.value_or(1);
   return {scene::DeadlineAction::hold,
           static_cast<std::uint32_t>(std::max(1.0, std::floor(0.9 * tick_ms))), 0};
 }
@@ -45,10 +45,13 @@ std::string existing_scene(const Options& options, reports::Console& console) {
 
 network::Config network_config(const Options& options, bool is_serve, LocalEndpoints& local) {
   if (options.paused && options.endpoints.empty() && !is_serve && !options.view) {
-    throw text::UsageError("--paused needs --endpoint, where a supervisor can connect to resume, or --view");
+    throw text::UsageError(
+        "--paused needs --endpoint, where a supervisor can connect to resume, or --view");
   }
   if (!is_serve && !options.curve_secret.empty() && options.endpoints.empty()) {
-    throw text::UsageError("--curve-secret protects endpoints, and none is given; write --endpoint URL too, or leave it out");
+    throw text::UsageError(
+        "--curve-secret protects endpoints, and none is given; write --endpoint URL too, or leave "
+        "it out");
   }
   network::Config config;
   config.insecure = options.insecure;
@@ -80,24 +83,27 @@ void add_controllers(const Options& options, const scene::Scene& scene, network:
 void announce(const Options& options, const std::vector<std::string>& endpoints,
               reports::Console& console) {
   if (options.json) {
-    console.result(
-        reports::json_text({{"endpoint", endpoints.front()}, {"endpoints", endpoints}}));
+    console.result(reports::json_text({{"endpoint", endpoints.front()}, {"endpoints", endpoints}}));
   } else {
     for (const auto& endpoint : endpoints) console.result("endpoint " + endpoint);
   }
   console.offer();
 }
 
-void tell_how_to_connect(const Options& options, const std::string& endpoint, const supervision::World& world,
-                         reports::Console& console) {
+void tell_how_to_connect(const Options& options, const std::string& endpoint,
+                         const supervision::World& world, reports::Console& console) {
   const bool is_protected = !options.curve_secret.empty();
-  const std::string lua = fmt::format("connect with: ziggurat-lua --connect {}{}", endpoint,
-                                      is_protected ? " --server-key \"$(cat SERVER.public)\" --curve-secret FILE" : "");
-  const std::string place = fmt::format("{}ZIGGURAT_ENDPOINT={}",
-                                        is_protected ? "ZIGGURAT_SERVER_KEY=\"$(cat SERVER.public)\" ZIGGURAT_CURVE_SECRET=FILE " : "",
-                                        endpoint);
+  const std::string lua =
+      fmt::format("connect with: ziggurat-lua --connect {}{}", endpoint,
+                  is_protected ? " --server-key \"$(cat SERVER.public)\" --curve-secret FILE" : "");
+  const std::string place = fmt::format(
+      "{}ZIGGURAT_ENDPOINT={}",
+      is_protected ? "ZIGGURAT_SERVER_KEY=\"$(cat SERVER.public)\" ZIGGURAT_CURVE_SECRET=FILE "
+                   : "",
+      endpoint);
   const auto program = [&](const char* name, const std::string& id, const std::string& command) {
-    return fmt::format("connect with: {} {}={} {}", place, name, text::shell_word(id), command.empty() ? "PROGRAM" : command);
+    return fmt::format("connect with: {} {}={} {}", place, name, text::shell_word(id),
+                       command.empty() ? "PROGRAM" : command);
   };
   std::vector<std::string> hints;
   const auto add = [&](std::string hint) {
@@ -108,7 +114,9 @@ void tell_how_to_connect(const Options& options, const std::string& endpoint, co
   for (std::size_t c = 0; c < has_robots.size(); ++c) {
     const scene::Controller& controller = world.scene.controllers[c];
     if (!has_robots[c]) continue;
-    add(processes::runs_script(controller) ? lua : program("ZIGGURAT_CONTROLLER", controller.id, controller.command));
+    add(processes::runs_script(controller)
+            ? lua
+            : program("ZIGGURAT_CONTROLLER", controller.id, controller.command));
   }
   for (const scene::Director& director : world.scene.directors) {
     if (options.starts_directors) break;
@@ -135,10 +143,12 @@ void check_programs(const scene::Scene& scene) {
   std::vector<scene::Problem> problems;
   for (const scene::Director& director : scene.directors) {
     if (!director.script.empty() || !director.command.empty()) continue;
-    problems.push_back({scene::Problem::Severity::fault, scene::file_of(scene, director.where), director.where,
-                        fmt::format("director '{}' has no program that can be started; write script=\"FILE.lua\" or "
-                                    "command=\"PROGRAM\", or remove it",
-                                    director.id)});
+    problems.push_back(
+        {scene::Problem::Severity::fault, scene::file_of(scene, director.where), director.where,
+         fmt::format(
+             "director '{}' has no program that can be started; write script=\"FILE.lua\" or "
+             "command=\"PROGRAM\", or remove it",
+             director.id)});
   }
   if (!problems.empty()) throw scene::SceneError(std::move(problems));
 }
@@ -179,29 +189,29 @@ wire::End end_message(const reports::Summary& summary) {
   return end;
 }
 
-Showing::Run shown(supervision::World& world, network::Server& server, supervision::Callers& callers,
-                   supervision::Supervision& supervision, Schedule& schedule,
-                   std::uint64_t last_tick) {
-  Showing::Run watched{world, schedule, last_tick, {}, {}, {}, {}, {}, {}};
+LiveView::Run shown(supervision::World& world, network::Server& server,
+                    supervision::Callers& callers, supervision::Supervision& supervision,
+                    Schedule& schedule, std::uint64_t last_tick) {
+  LiveView::Run watched{world, schedule, last_tick, {}, {}, {}, {}, {}, {}};
   watched.connect = [&callers](supervision::LocalCalls calls) { callers.add(std::move(calls)); };
   watched.changes = [&callers] { return callers.changes(); };
-  watched.is_paused = [&server] { return server.pause() == network::Pause::standing; };
+  watched.is_paused = [&server] { return server.pause() == network::Pause::halted; };
   watched.paused_for = [&supervision] { return supervision.paused_for(); };
   watched.status = [&supervision] { return supervision.status(); };
   watched.controllers = [&server] { return server.performance().controllers; };
   return watched;
 }
 
-std::unique_ptr<Showing> make_showing(const Options& options, const Showing::Run& run) {
+std::unique_ptr<LiveView> make_showing(const Options& options, const LiveView::Run& run) {
   if (!options.view) return nullptr;
-  auto showing = std::make_unique<Showing>(options, run);
-  const std::string page = showing->page_address(), viewer = showing->viewer_address();
+  auto live_view = std::make_unique<LiveView>(options, run);
+  const std::string page = live_view->page_address(), viewer = live_view->viewer_address();
   const std::string text =
       options.json ? reports::json_text({{"view", page}, {"viewer", viewer}}) + "\n"
                    : "ziggurat: watch this run at " + page +
                          "\nziggurat: or open a Foxglove WebSocket connection to " + viewer + "\n";
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
-  return showing;
+  return live_view;
 }
 
 void end_while_loading() {

@@ -1,5 +1,5 @@
 #pragma once
-// What a run needs before it has a world, and what it tells clients at the start and at the end.
+// Setup of a run before it has a world, and messages to clients at its start and end.
 
 #include <cstdint>
 #include <memory>
@@ -9,9 +9,9 @@
 #include "network/server.h"
 #include "reports/console.h"
 #include "reports/summary.h"
+#include "run/live_view.h"
 #include "run/local_endpoints.h"
 #include "run/options.h"
-#include "run/showing.h"
 #include "scene/scene.h"
 #include "supervision/supervision.h"
 
@@ -22,7 +22,7 @@ namespace ziggurat::run {
 /// @throws text::UsageError, scene::SceneError
 std::string existing_scene(const Options& options, reports::Console& console);
 
-/// What the options say of the network, before the scene is read.
+/// Network configuration from the options, before the scene is read.
 /// @param is_serve  listens in a folder of this user if the options name no endpoint
 /// @param local     makes the folders of sockets
 /// @throws network::KeyError
@@ -36,21 +36,23 @@ void add_controllers(const Options& options, const scene::Scene& scene, network:
 void announce(const Options& options, const std::vector<std::string>& endpoints,
               reports::Console& console);
 
-/// A line on each kind of program that the world waits for: scripts, and the programs of controllers and directors.
-void tell_how_to_connect(const Options& options, const std::string& endpoint, const supervision::World& world,
-                         reports::Console& console);
+/// A line on each kind of program that the world waits for: scripts, and the programs of
+/// controllers and directors.
+void tell_how_to_connect(const Options& options, const std::string& endpoint,
+                         const supervision::World& world, reports::Console& console);
 
-/// What clients are told of a run. Refers to both.
+/// Description of a run for its clients. Refers to both arguments.
 /// @param scripts  per robot of the scene; empty = none
 wire::Run description_of(const supervision::World& world, const std::vector<std::string>& scripts);
 
-/// Checks that directors can be started. @throws scene::SceneError that names those without script and command
+/// Checks that directors can be started. @throws scene::SceneError that names those without script
+/// and command
 void check_programs(const scene::Scene& scene);
 
-/// Those of the scene, with the paths of their scripts.
+/// Directors of the scene, with the paths of their scripts.
 std::vector<scene::Director> directors_of(const supervision::World& world);
 
-/// What clients are told at the end of the run.
+/// Message to clients at the end of the run.
 wire::End end_message(const reports::Summary& summary);
 
 /// Ends the program on Ctrl-C before there is a world. The thread that loads it has nothing to
@@ -59,12 +61,12 @@ wire::End end_message(const reports::Summary& summary);
 
 /// A run as viewers see and change it. Everything must outlive what it is given to.
 /// @param last_tick  0: until stopped
-Showing::Run shown(supervision::World& world, network::Server& server, supervision::Callers& callers,
-                   supervision::Supervision& supervision, Schedule& schedule,
-                   std::uint64_t last_tick);
+LiveView::Run shown(supervision::World& world, network::Server& server,
+                    supervision::Callers& callers, supervision::Supervision& supervision,
+                    Schedule& schedule, std::uint64_t last_tick);
 
 /// Serves viewers, if the options ask for that. Prints the addresses on stderr also if the run is
 /// to be quiet: without them nothing can be seen.
-std::unique_ptr<Showing> make_showing(const Options& options, const Showing::Run& run);
+std::unique_ptr<LiveView> make_showing(const Options& options, const LiveView::Run& run);
 
 }  // namespace ziggurat::run

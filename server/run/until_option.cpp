@@ -26,8 +26,9 @@ void check_until(const replay::RecordingFile& file, std::uint64_t until) {
   } catch (const mcap::Damaged&) {
     return;
   }
-  throw text::UsageError(fmt::format("--until is {}, and {} has the ticks {} to {}; write one of them, or leave it out", until,
-                                     file.path(), least, greatest));
+  throw text::UsageError(fmt::format(
+      "--until is {}, and {} has the ticks {} to {}; write one of them, or leave it out", until,
+      file.path(), least, greatest));
 }
 
 }  // namespace ziggurat::run

@@ -35,7 +35,8 @@ std::vector<std::string> lost_directors(const std::vector<network::DirectorStatu
 /// Whether a place names a line, `FILE:LINE`.
 bool has_line(const std::string& place) {
   const auto colon = place.rfind(':');
-  return colon != std::string::npos && place.find_first_not_of("0123456789", colon + 1) == std::string::npos;
+  return colon != std::string::npos &&
+         place.find_first_not_of("0123456789", colon + 1) == std::string::npos;
 }
 
 /// "director 'judge'", for each that the tick waits for.
@@ -62,8 +63,9 @@ std::string by_controller(const supervision::World& world, const std::vector<std
   return text;
 }
 
-/// Whether this process is one to start again. Lua processes have robots of several controllers: the most
-/// that one of these may counts. Robots that came later have sessions of their own, and are not resumed.
+/// Whether this process is one to start again. Lua processes have robots of several controllers:
+/// the most that one of these may counts. Robots that came later have sessions of their own, and
+/// are not resumed.
 /// @param restarts  per controller; empty: none
 bool may_restart(const processes::ControllerProcess& process, const std::vector<unsigned>& restarts,
                  const world::Layout& layout) {
@@ -79,14 +81,17 @@ bool is_required(const network::RobotStatus& robot, bool gathered) {
   return !gathered || robot.deadline.action == scene::DeadlineAction::wait;
 }
 
-/// The robots of a program that has driven them and ended with exit code 0, without a Leave: they leave as if it had
-/// sent one. Empty if it is none.
-std::vector<std::size_t> left_by(const processes::ControllerProcess& ended, const std::vector<network::RobotStatus>& status) {
+/// The robots of a program that has driven them and ended with exit code 0, without a Leave: they
+/// leave as if it had sent one. Empty if it is none.
+std::vector<std::size_t> left_by(const processes::ControllerProcess& ended,
+                                 const std::vector<network::RobotStatus>& status) {
   std::vector<std::size_t> robots;
-  const bool has_begun = std::ranges::all_of(ended.robots, [&](std::size_t robot) { return status[robot].was_held; });
+  const bool has_begun =
+      std::ranges::all_of(ended.robots, [&](std::size_t robot) { return status[robot].was_held; });
   if (!ended.process.ended_well() || !has_begun) return robots;
-  std::ranges::copy_if(ended.robots, std::back_inserter(robots),
-                       [&](std::size_t robot) { return status[robot].membership == Membership::free; });
+  std::ranges::copy_if(ended.robots, std::back_inserter(robots), [&](std::size_t robot) {
+    return status[robot].membership == Membership::free;
+  });
   return robots;
 }
 
@@ -102,7 +107,7 @@ bool is_replaced(const processes::ControllerProcess& ended,
 
 Watch::Watch(const Settings& settings, const supervision::World& world, network::Server& server,
              processes::Controllers& controllers, supervision::Supervision& supervision,
-             processes::Signals& signals, reports::Console& console, Showing* showing,
+             processes::Signals& signals, reports::Console& console, LiveView* live_view,
              TellLine tell)
     : world_(world),
       server_(server),
@@ -111,9 +116,9 @@ Watch::Watch(const Settings& settings, const supervision::World& world, network:
       supervision_(supervision),
       signals_(signals),
       console_(console),
-      showing_(showing),
-      descriptors_(showing ? std::vector{signals.descriptor(), showing->descriptor()}
-                           : std::vector{signals.descriptor()}),
+      live_view_(live_view),
+      descriptors_(live_view ? std::vector{signals.descriptor(), live_view->descriptor()}
+                             : std::vector{signals.descriptor()}),
       fails_fast_(settings.fail_fast),
       waits_for_clients_(settings.waits_for_clients),
       last_tick_(settings.ticks),
@@ -159,16 +164,17 @@ std::optional<Ending> Watch::wait_for_viewer(world::Commands& commands) {
   console_.notice(wait_notice());
   console_.flush();
   const auto end = clock::now() + longest_wait_for_viewer;
-  return sleep_until([&] { return showing_->is_watched() ? clock::time_point() : end; }, commands);
+  return sleep_until([&] { return live_view_->is_watched() ? clock::time_point() : end; },
+                     commands);
 }
 
 void Watch::show_end() {
-  showing_->end();
+  live_view_->end();
   std::vector<pollfd> items;
   for (const int descriptor : descriptors_) items.push_back({descriptor, POLLIN, 0});
-  while (!showing_->shutdown_requested() && signals_.take().interruptions == 0) {
-    showing_->serve();
-    showing_->update();
+  while (!live_view_->shutdown_requested() && signals_.take().interruptions == 0) {
+    live_view_->serve();
+    live_view_->update();
     ::poll(items.data(), items.size(), static_cast<int>(usual_wait.count()));
   }
 }
@@ -183,7 +189,8 @@ std::optional<Ending> Watch::until(const Step& step) {
     if (!ending) ending = stopped_;
     if (!ending) ending = supervisor_request();
     const bool complete = outcome == network::Outcome::complete;
-    const bool may_have_lost = !complete || child_ended_ || missed_since_ || is_early_ || !restarted_.empty();
+    const bool may_have_lost =
+        !complete || child_ended_ || missed_since_ || is_early_ || !restarted_.empty();
     if (!ending && may_have_lost) ending = lost_controller();
     if (ending || complete) {
       peers_.print_log(tick_);
@@ -196,9 +203,9 @@ std::optional<Ending> Watch::until(const Step& step) {
 }
 
 void Watch::serve() {
-  if (showing_) showing_->serve();
+  if (live_view_) live_view_->serve();
   supervision_.serve();
-  if (showing_) showing_->update();
+  if (live_view_) live_view_->update();
   if (metrics_ && metrics_->needs_update()) metrics_->publish(supervision_.status());
 }
 
@@ -217,22 +224,25 @@ std::optional<Ending> Watch::supervisor_request() {
   return std::nullopt;
 }
 
-/// Whether an ended process leaves something undone: robots that the run can't go on without, or that it would have if
-/// it was started again.
-bool Watch::is_missed(const processes::ControllerProcess& process, const std::vector<network::RobotStatus>& status,
+/// Whether an ended process leaves something undone: robots that the run can't go on without, or
+/// that it would have if it was started again.
+bool Watch::is_missed(const processes::ControllerProcess& process,
+                      const std::vector<network::RobotStatus>& status,
                       const std::vector<std::string>& free_directors) const {
   if (std::ranges::find(free_directors, process.director) != free_directors.end()) return true;
   // One that was ended from outside took leave perhaps; its own failures are reported already.
   const bool was_ended = !process.process.ended_well() && !peers_.has_failure(process.robots);
   return std::ranges::any_of(process.robots, [&](std::size_t robot) {
     const bool is_held = status[robot].membership != Membership::gone;
-    return (is_held || was_ended) && (is_required(status[robot], gathered_) ||
-                                    (is_held && may_restart(process, restarts_, world_.simulation.layout())));
+    return (is_held || was_ended) &&
+           (is_required(status[robot], gathered_) ||
+            (is_held && may_restart(process, restarts_, world_.simulation.layout())));
   });
 }
 
-// Waits a little before it decides, for each process by itself: the last messages of one that ended, which may release
-// its robots, may still arrive; and a lost connection may be that of a process whose end is not known yet.
+// Waits a little before it decides, for each process by itself: the last messages of one that
+// ended, which may release its robots, may still arrive; and a lost connection may be that of a
+// process whose end is not known yet.
 std::optional<Ending> Watch::lost_controller() {
   child_ended_ = false;
   if (waits_for_clients_) return std::nullopt;
@@ -240,11 +250,11 @@ std::optional<Ending> Watch::lost_controller() {
   const auto status = server_.status();
   const auto directors = directors_.status();
   auto free_directors = lost_directors(directors, gathered_);
-  const auto ended = controllers_.ended([&](const auto& process) { return is_missed(process, status, free_directors); });
+  const auto ended = controllers_.ended(
+      [&](const auto& process) { return is_missed(process, status, free_directors); });
   auto lost = gathered_ ? unheld_robots() : std::vector<std::size_t>();
-  std::erase_if(restarted_, [&](std::size_t robot) {
-    return status[robot].membership != Membership::free;
-  });
+  std::erase_if(restarted_,
+                [&](std::size_t robot) { return status[robot].membership != Membership::free; });
   std::erase_if(lost, [&](std::size_t robot) {  // those whose controller is still to come
     return !status[robot].was_held || std::ranges::find(restarted_, robot) != restarted_.end();
   });
@@ -256,7 +266,9 @@ std::optional<Ending> Watch::lost_controller() {
     if (!each->missed_since) each->missed_since = now;
     if (now - *each->missed_since >= last_messages) return settle(*each, status);
     is_early_ = true;
-    std::erase_if(lost, [&](std::size_t robot) { return std::ranges::find(each->robots, robot) != each->robots.end(); });
+    std::erase_if(lost, [&](std::size_t robot) {
+      return std::ranges::find(each->robots, robot) != each->robots.end();
+    });
     std::erase(free_directors, each->director);
   }
   if (lost.empty() && free_directors.empty()) {
@@ -265,15 +277,17 @@ std::optional<Ending> Watch::lost_controller() {
   }
   if (!missed_since_) missed_since_ = now;
   if (now - *missed_since_ < last_messages) return std::nullopt;
-  vanished_ = !free_directors.empty()
-                  ? fmt::format("director '{}' disconnected at tick {}", free_directors.front(), tick_)
-                  : fmt::format("the controller of {} disconnected at tick {}", by_controller(world_, lost), tick_);
+  vanished_ = !free_directors.empty() ? fmt::format("director '{}' disconnected at tick {}",
+                                                    free_directors.front(), tick_)
+                                      : fmt::format("the controller of {} disconnected at tick {}",
+                                                    by_controller(world_, lost), tick_);
   return Ending::controller_vanished;
 }
 
-/// What an ended process means for the run: others have its robots, it has left by itself, it is started again, or the
-/// run ends.
-std::optional<Ending> Watch::settle(processes::ControllerProcess& ended, const std::vector<network::RobotStatus>& status) {
+/// Handles an ended process. Others have its robots, it has left by itself, it is started again, or
+/// the run ends.
+std::optional<Ending> Watch::settle(processes::ControllerProcess& ended,
+                                    const std::vector<network::RobotStatus>& status) {
   child_ended_ = true;  // another may have ended with it
   const auto left = gathered_ ? left_by(ended, status) : std::vector<std::size_t>();
   if (!left.empty()) {
@@ -287,7 +301,8 @@ std::optional<Ending> Watch::settle(processes::ControllerProcess& ended, const s
   ended.is_settled = !left.empty() || is_replaced(ended, status);
   if (ended.is_settled) return std::nullopt;
   const std::string when = gathered_ ? fmt::format("at tick {}", tick_) : "before the first tick";
-  vanished_ = processes::describe(ended, fmt::format("{} {}", ended.process.how_it_ended(), when), world_.simulation.layout());
+  vanished_ = processes::describe(ended, fmt::format("{} {}", ended.process.how_it_ended(), when),
+                                  world_.simulation.layout());
   if (const auto script = processes::busy_script(ended)) {  // of many robots one may be the reason
     vanished_ += fmt::format("; it ran the script of {}: {}", script->robot, script->place);
   }
@@ -295,17 +310,18 @@ std::optional<Ending> Watch::settle(processes::ControllerProcess& ended, const s
   return Ending::controller_vanished;
 }
 
-/// Starts an ended process again, if the options ask for it and one of its robots is still in the run. The
-/// sentence on its end is a notice then.
+/// Starts an ended process again, if the options ask for it and one of its robots is still in the
+/// run. The sentence on its end is a notice then.
 bool Watch::restart(const processes::ControllerProcess& ended) {
   const auto status = server_.status();
-  const auto robot = std::ranges::find_if(ended.robots, [&](std::size_t each) {
-    return status[each].membership != Membership::gone;
-  });
-  if (robot == ended.robots.end() || !may_restart(ended, restarts_, world_.simulation.layout())) return false;
+  const auto robot = std::ranges::find_if(
+      ended.robots, [&](std::size_t each) { return status[each].membership != Membership::gone; });
+  if (robot == ended.robots.end() || !may_restart(ended, restarts_, world_.simulation.layout()))
+    return false;
   const auto& started = controllers_.restart(ended, status[*robot].token);
   console_.notice(fmt::format("{}; started again (restart {}) as process {}",
-                              std::exchange(vanished_, {}), started.restarts, started.process.id()));
+                              std::exchange(vanished_, {}), started.restarts,
+                              started.process.id()));
   restarted_.insert(restarted_.end(), started.robots.begin(), started.robots.end());
   return true;
 }
@@ -330,7 +346,8 @@ std::vector<std::size_t> Watch::unheld_robots() const {
   std::vector<std::size_t> robots;
   const auto status = server_.status();
   for (std::size_t r = 0; r < status.size(); ++r) {
-    if (status[r].membership == Membership::free && is_required(status[r], gathered_)) robots.push_back(r);
+    if (status[r].membership == Membership::free && is_required(status[r], gathered_))
+      robots.push_back(r);
   }
   return robots;
 }
@@ -381,8 +398,9 @@ void Watch::report_awaited() {
   if (progress_.needs_update()) {
     progress_.show(tick_, waited > noticeable ? awaited() : std::string());
   }
-  const bool client_must_connect = std::ranges::any_of(
-      unheld_robots(), [&](std::size_t robot) { return !controllers_.have(robot); }) ||
+  const bool client_must_connect =
+      std::ranges::any_of(unheld_robots(),
+                          [&](std::size_t robot) { return !controllers_.have(robot); }) ||
       std::ranges::any_of(lost_directors(directors_.status(), gathered_),
                           [&](const auto& id) { return !controllers_.have_director(id); });
   if (!client_must_connect && waited < long_wait) return;

@@ -15,8 +15,8 @@
 #include "reports/metrics.h"
 #include "reports/progress.h"
 #include "reports/summary.h"
+#include "run/live_view.h"
 #include "run/peer_reports.h"
-#include "run/showing.h"
 #include "supervision/supervision.h"
 #include "supervision/world.h"
 #include "world/metric.h"
@@ -33,17 +33,17 @@ class Watch {
     bool fail_fast = false;          ///< the first failure or drop of a robot ends the run
     bool waits_for_clients = false;  ///< serve: a client that disconnected may connect again
     std::optional<std::uint64_t> ticks;  ///< of the whole run; none: until it is stopped
-    std::vector<unsigned> restarts;  ///< per controller of the scene: how often a process that died is
-                                     ///< started again at most; empty: never
+    std::vector<unsigned> restarts;  ///< per controller of the scene: how often a process that died
+                                     ///< is started again at most; empty: never
   };
 
   /// Everything but the settings must outlive this.
-  /// @param showing  serves viewers meanwhile; may be null
+  /// @param live_view  serves viewers meanwhile; may be null
   /// @param tell     takes the lines of controllers, too
   /// @throws text::UsageError or std::runtime_error if metrics cannot be served
   Watch(const Settings& settings, const supervision::World& world, network::Server& server,
         processes::Controllers& controllers, supervision::Supervision& supervision,
-        processes::Signals& signals, reports::Console& console, Showing* showing, TellLine tell);
+        processes::Signals& signals, reports::Console& console, LiveView* live_view, TellLine tell);
 
   // Each of the three waits for something and prints what controllers and peers report meanwhile.
   // Each returns nothing if it was completed, otherwise how the run ends.
@@ -52,12 +52,13 @@ class Watch {
   std::optional<reports::Ending> gather();
   /// Until every controller has answered `tick`.
   std::optional<reports::Ending> collect(world::Commands& commands, std::uint64_t tick);
-  /// That were set at that tick.
+  /// Metrics that were set at that tick.
   const std::vector<world::Metric>& measured() const { return measured_; }
   /// Until that moment, which may change. A client that connects meanwhile may answer the tick.
   std::optional<reports::Ending> sleep_until(const std::function<clock::time_point()>& moment,
                                              world::Commands& commands);
-  /// Until the first viewer is there, so that it sees the beginning; for longest_wait_for_viewer at most.
+  /// Until the first viewer is there, so that it sees the beginning; for longest_wait_for_viewer at
+  /// most.
   std::optional<reports::Ending> wait_for_viewer(world::Commands& commands);
   /// Shows the last state to viewers until an interruption, or until one of them ends it.
   void show_end();
@@ -72,7 +73,7 @@ class Watch {
     if (dropped_.size() > PeerReports::most_kept) dropped_.resize(PeerReports::most_kept);
   }
 
-  /// What controllers and other peers reported.
+  /// Reports of controllers and other peers.
   const PeerReports& reported() const { return peers_; }
   /// A sentence on each robot that a deadline took out of the run.
   const std::vector<std::string>& dropped() const { return dropped_; }
@@ -85,13 +86,14 @@ class Watch {
   std::optional<reports::Ending> until(const Step& step);
   std::optional<reports::Ending> interruption();
   std::optional<reports::Ending> supervisor_request();
-  bool is_missed(const processes::ControllerProcess& process, const std::vector<network::RobotStatus>& status,
+  bool is_missed(const processes::ControllerProcess& process,
+                 const std::vector<network::RobotStatus>& status,
                  const std::vector<std::string>& free_directors) const;
   std::optional<reports::Ending> lost_controller();
   std::optional<reports::Ending> settle(processes::ControllerProcess& ended,
                                         const std::vector<network::RobotStatus>& status);
   bool restart(const processes::ControllerProcess& ended);
-  /// What a notice on awaited robots names: more is printed once it is known.
+  /// Detail of a notice on awaited robots: more is printed once it is known.
   enum class Detail { robots, scripts, lines };
 
   void serve();
@@ -103,12 +105,12 @@ class Watch {
 
   const supervision::World& world_;
   network::Server& server_;
-  network::DirectorsDesk directors_;
+  network::ServerDirectors directors_;
   processes::Controllers& controllers_;
   supervision::Supervision& supervision_;
   processes::Signals& signals_;
   reports::Console& console_;
-  Showing* const showing_;
+  LiveView* const live_view_;
   const std::vector<int> descriptors_;  ///< that end a wait: of signals, and of viewers
   const bool fails_fast_, waits_for_clients_;
   const std::optional<std::uint64_t> last_tick_;
@@ -118,13 +120,15 @@ class Watch {
   reports::Progress progress_;
   bool gathered_ = false;
   std::uint64_t tick_ = 0;
-  std::vector<std::size_t> restarted_;  ///< robots whose process was started again and is still to connect
+  std::vector<std::size_t>
+      restarted_;  ///< robots whose process was started again and is still to connect
   std::vector<world::Metric> measured_;
   std::string vanished_;
   bool child_ended_ = false;                ///< one or more, since the last look
   std::optional<reports::Ending> stopped_;  ///< by a deadline or a failure
   std::vector<std::string> dropped_;
-  std::optional<clock::time_point> missed_since_;  ///< since when a controller of others seems to be lost
+  std::optional<clock::time_point>
+      missed_since_;       ///< since when a controller of others seems to be lost
   bool is_early_ = false;  ///< a process has ended whose last messages may still come
   clock::time_point waiting_since_{};
   std::string printed_;  ///< the robots that were last printed as awaited

@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* name_of_additions = "spawn";
 constexpr std::size_t most_attributes_added = 1000;  // of an element that is added
-constexpr std::size_t most_faults_of_addition = 20;    // it is read while the world waits
+constexpr std::size_t most_faults_of_addition = 20;  // it is read while the world waits
 
 void check_addition(Draft& draft, const Element& element, const Entity& entity,
                     const std::function<bool(const std::string&)>& is_taken) {
@@ -39,11 +39,10 @@ struct Additions::Parts {
 
 Additions::Additions() = default;
 Additions::Additions(Draft& draft)
-    : parts_(std::make_unique<Parts>(Parts{draft.options, draft.defaults, draft.has_engine,
-                                           std::move(draft.models), std::move(draft.model_ids),
-                                           std::move(draft.uses), std::move(draft.media),
-                                           std::move(draft.controllers),
-                                           std::move(draft.parameters)})) {}
+    : parts_(std::make_unique<Parts>(
+          Parts{draft.options, draft.defaults, draft.has_engine, std::move(draft.models),
+                std::move(draft.model_ids), std::move(draft.uses), std::move(draft.media),
+                std::move(draft.controllers), std::move(draft.parameters)})) {}
 Additions::~Additions() = default;
 Additions::Additions(Additions&&) noexcept = default;
 Additions& Additions::operator=(Additions&&) noexcept = default;
@@ -57,25 +56,28 @@ bool Addition::ok() const {
 Addition Additions::read(std::string text, const Scene& scene, std::size_t max_size,
                          const std::function<bool(const std::string&)>& is_taken,
                          const OpenFile& open) const {
-  return read_element(std::move(text), scene, max_size, open, [&](Draft& draft, Element& element, Entity& entity) {
-    entity = read_entity(draft, element, Placement::explicit_pose);
-    check_addition(draft, element, entity, is_taken);
-  });
+  return read_element(std::move(text), scene, max_size, open,
+                      [&](Draft& draft, Element& element, Entity& entity) {
+                        entity = read_entity(draft, element, Placement::explicit_pose);
+                        check_addition(draft, element, entity, is_taken);
+                      });
 }
 
 Addition Additions::read_shape(std::string text, const Scene& scene, std::size_t max_size,
                                const OpenFile& open) const {
-  return read_element(std::move(text), scene, max_size, open, [&](Draft& draft, Element& element, Entity& entity) {
-    if (is_single(*entity_kind(element.name())) && !element.has("model")) {
-      entity.kind = *entity_kind(element.name());
-      entity.links.emplace_back().geometry = scene::read_shape(draft, element, element.name());
-    } else {
-      entity = read_entity(draft, element, Placement::looked_at);
-    }
-  });
+  return read_element(
+      std::move(text), scene, max_size, open, [&](Draft& draft, Element& element, Entity& entity) {
+        if (is_single(*entity_kind(element.name())) && !element.has("model")) {
+          entity.kind = *entity_kind(element.name());
+          entity.links.emplace_back().geometry = scene::read_shape(draft, element, element.name());
+        } else {
+          entity = read_entity(draft, element, Placement::looked_at);
+        }
+      });
 }
 
-Addition Additions::read_element(std::string text, const Scene& scene, std::size_t max_size, const OpenFile& open,
+Addition Additions::read_element(std::string text, const Scene& scene, std::size_t max_size,
+                                 const OpenFile& open,
                                  const std::function<void(Draft&, Element&, Entity&)>& read) const {
   Addition addition;
   // A copy, because models and controllers note which of their faults have been reported.
@@ -92,11 +94,12 @@ Addition Additions::read_element(std::string text, const Scene& scene, std::size
     return addition;
   }
   if (text.find('<') == text.npos) {
-    addition.problems = {{Problem::Severity::fault,
-                          name_of_additions,
-                          {},
-                          "there is no element; write one, such as <box id=\"b\" size=\".1,.1,.1\" movable=\"true\" "
-                          "mass=\"1\"><body position=\"0,0,1\"/></box>"}};
+    addition.problems = {
+        {Problem::Severity::fault,
+         name_of_additions,
+         {},
+         "there is no element; write one, such as <box id=\"b\" size=\".1,.1,.1\" movable=\"true\" "
+         "mass=\"1\"><body position=\"0,0,1\"/></box>"}};
     return addition;
   }
   ReadOptions options = parts_->options;
@@ -131,11 +134,12 @@ Addition Additions::read_element(std::string text, const Scene& scene, std::size
   return addition;
 }
 
-std::function<Entity(const std::string& xml)> reader_of_spawned(const Additions& additions, const Scene& scene,
-                                                                OpenFile open) {
+std::function<Entity(const std::string& xml)> reader_of_spawned(const Additions& additions,
+                                                                const Scene& scene, OpenFile open) {
   constexpr std::size_t most = std::size_t{64} << 20;  // [bytes]
   return [&additions, &scene, open = std::move(open), left = most](const std::string& xml) mutable {
-    Addition addition = additions.read(xml, scene, left, [](const std::string&) { return false; }, open);
+    Addition addition = additions.read(
+        xml, scene, left, [](const std::string&) { return false; }, open);
     if (!addition.ok()) throw SceneError(std::move(addition.problems));
     left -= addition.size;
     return std::move(addition.entity);

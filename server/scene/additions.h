@@ -26,11 +26,11 @@ struct Addition {
   bool ok() const;                ///< no fault
 };
 
-/// What is needed to read later elements, beyond the plain data of Scene: models, the engine's
-/// defaults for all bodies, what controllers need.
+/// Context to read later elements, beyond the plain data of Scene: models, the engine's defaults
+/// for all bodies, and needs of controllers.
 class Additions {
  public:
-  /// Of no scene; only to be assigned another.
+  /// Makes an empty context, only to be assigned another.
   Additions();
   /// Takes from a scene that has been read what later elements need.
   explicit Additions(Draft& draft);
@@ -48,24 +48,26 @@ class Additions {
                 const std::function<bool(const std::string&)>& is_taken,
                 const OpenFile& open = open_no_file) const;
 
-  /// The same for what is looked at only: its id and <body> have no meaning and may be missing, and of a <box>,
-  /// <cylinder> or <sphere> its extents are enough.
+  /// The same for what is looked at only: its id and <body> have no meaning and may be missing, and
+  /// of a <box>, <cylinder> or <sphere> its extents are enough.
   Addition read_shape(std::string text, const Scene& scene, std::size_t max_size,
                       const OpenFile& open = open_no_file) const;
 
  private:
   struct Parts;
   /// @param read  reads the element that the document consists of
-  Addition read_element(std::string text, const Scene& scene, std::size_t max_size, const OpenFile& open,
+  Addition read_element(std::string text, const Scene& scene, std::size_t max_size,
+                        const OpenFile& open,
                         const std::function<void(Draft&, Element&, Entity&)>& read) const;
   std::unique_ptr<Parts> parts_;
 };
 
-/// Reads elements of entities that were spawned in a world before, which a snapshot has: all of them together at
-/// most 64 MiB, with their models written out. It throws SceneError for an element with faults.
+/// Reads elements of entities that were spawned in a world before, which a snapshot has: all of
+/// them together at most 64 MiB, with their models written out. It throws SceneError for an element
+/// with faults.
 /// @param additions, scene  must outlive it
-std::function<Entity(const std::string& xml)> reader_of_spawned(const Additions& additions, const Scene& scene,
-                                                                OpenFile open);
+std::function<Entity(const std::string& xml)> reader_of_spawned(const Additions& additions,
+                                                                const Scene& scene, OpenFile open);
 
 /// A scene, and what is needed to add elements to it.
 struct OpenScene {

@@ -14,11 +14,14 @@ void read_ground(Draft& draft, Element element) {
   const std::string source = element.required("source", Words{"image", "loop_functions"});
   if (source == "image") element.required("path", path);
   if (source == "loop_functions" && draft.options.lenient) {
-    draft.report.notice(element.where("source"),
-                        "<floor source=\"loop_functions\"> is white here: what a library would draw is not drawn");
+    draft.report.notice(
+        element.where("source"),
+        "<floor source=\"loop_functions\"> is white here: what a library would draw is not drawn");
   } else if (source == "loop_functions") {
-    element.fault_at("source", "is not supported: libraries are not loaded into the server; write source=\"image\" "
-                               "and a path, or run with --lenient, which makes the floor white");
+    element.fault_at(
+        "source",
+        "is not supported: libraries are not loaded into the server; write source=\"image\" "
+        "and a path, or run with --lenient, which makes the floor white");
   }
   element.optional("pixels_per_meter", positive);
   take_entity_id(draft, element, id);
@@ -51,7 +54,8 @@ void read_arena(Draft& draft, Element& root) {
   if (!arena) return;
   draft.scene.arena.size = arena->required("size", room, math::Vector3::Ones());
   if (draft.scene.arena.size.z() == 0) {
-    draft.report.notice(arena->where("size"), "an <arena> of height 0 is a flat world, without a ceiling");
+    draft.report.notice(arena->where("size"),
+                        "an <arena> of height 0 is a flat world, without a ceiling");
   }
   draft.scene.arena.center = arena->optional("center", position, math::Vector3::Zero());
   std::vector<Element> children = arena->children();

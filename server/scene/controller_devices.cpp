@@ -17,7 +17,7 @@ OneOf<JointMode> joint_modes() {
           {"disabled", JointMode::disabled}};
 }
 
-/// What is needed to read one device.
+/// Arguments to read one device.
 struct Enabling {
   Draft& draft;
   Element& element;
@@ -50,8 +50,9 @@ void read_joint_list(Element& element, Key key, Read read) {
     const std::string id = joint.required("id", identifier);
     const JointMode mode = joint.required("mode", joint_modes(), JointMode::disabled);
     if (!id.empty() && !ids.add(key(id, mode), joint.where())) {
-      joint.fault_at("id", fmt::format("is listed twice, first{}; list it once",
-                                       joint.report().place(ids.owner(key(id, mode)), joint.where())));
+      joint.fault_at("id",
+                     fmt::format("is listed twice, first{}; list it once",
+                                 joint.report().place(ids.owner(key(id, mode)), joint.where())));
     }
     read(joint, id, mode);
     joint.done();
@@ -66,9 +67,11 @@ void read_strength(Element& joint, JointActuator& actuator) {
   actuator.max_force = torque ? torque : force;
   actuator.max_impulse = joint.optional("max_impulse", non_negative, 0.0);
   constexpr std::array<std::string_view, 3> strengths{"max_force", "max_torque", "max_impulse"};
-  const auto given = std::ranges::count_if(strengths, [&](std::string_view name) { return joint.has(name.data()); });
+  const auto given = std::ranges::count_if(
+      strengths, [&](std::string_view name) { return joint.has(name.data()); });
   if (given == 0) missing_all(joint, strengths);
-  if (given > 1) joint.fault("has more than one of max_force, max_torque and max_impulse; write one");
+  if (given > 1)
+    joint.fault("has more than one of max_force, max_torque and max_impulse; write one");
 }
 
 void enable_joint_actuators(const Enabling& e) {
@@ -85,16 +88,17 @@ void enable_joint_sensors(const Enabling& e) {
   const auto once_in_each_mode = [](const std::string& id, JointMode mode) {
     return mode == JointMode::velocity ? id + "\n" : id;  // no id has a line break
   };
-  read_joint_list(e.element, once_in_each_mode, [&](Element& joint, const std::string& id, JointMode mode) {
-    if (!id.empty()) e.devices.joints.sensors.push_back({id, mode, joint.where()});
-  });
+  read_joint_list(e.element, once_in_each_mode,
+                  [&](Element& joint, const std::string& id, JointMode mode) {
+                    if (!id.empty()) e.devices.joints.sensors.push_back({id, mode, joint.where()});
+                  });
 }
 
 // --- devices modelled in Devices ----------------------------------------------------------------
 
 constexpr std::string_view own_medium = "the medium is that of the entity's own <devices>";
 
-/// What the controller enables of a kind that has both an actuator and a sensor.
+/// Settings of a kind that has both an actuator and a sensor; the first call enables it.
 template <class Use>
 Use& use_of(std::optional<Use>& use) {
   return use ? *use : use.emplace();
@@ -318,9 +322,10 @@ void read_device(const Enabling& e, const DeviceRow& row) {
   e.element.required("implementation", Words{row.implementation});
   if (!row.subject.empty()) {
     e.devices.to_come.emplace_back(row.name);
-    e.draft.report.warn(e.element.where(), row.subject,
-                        fmt::format("{} do not work yet: <{}> is checked, and its table in Lua is empty", row.subject,
-                                    row.name));
+    e.draft.report.warn(
+        e.element.where(), row.subject,
+        fmt::format("{} do not work yet: <{}> is checked, and its table in Lua is empty",
+                    row.subject, row.name));
   }
   if (row.is_carried) e.use.devices.push_back({std::string(row.name), e.element.where()});
   row.enable(e);

@@ -35,8 +35,8 @@ void note_type(Draft& draft, const Element& element) {
   for (const std::string_view ours : own) {
     if (text::edit_distance(element.name(), ours) > most_typos) continue;
     return draft.report.fault(
-        element.where(),
-        fmt::format("unknown element <{}> in <controllers>; did you mean <{}>?", element.name(), ours));
+        element.where(), fmt::format("unknown element <{}> in <controllers>; did you mean <{}>?",
+                                     element.name(), ours));
   }
   draft.report.notice(
       element.where(),
@@ -135,7 +135,7 @@ std::string_view kind_of(const Entity& entity) {
   return entity.kind == EntityKind::e_puck ? "e-puck" : "prototype";
 }
 
-/// What an entity needs for a device and does not have, or nothing.
+/// Part that an entity needs for a device and does not have, or nothing.
 std::optional<std::string> missing_for(const Entity& entity, const DeviceUse& use) {
   const bool prototype = entity.kind == EntityKind::prototype;
   const auto component = std::ranges::find(components, use.name, &Component::device);
@@ -169,11 +169,13 @@ struct Check {
     const auto found = joints.find(id);
     if (found == joints.end()) {
       std::vector<std::string> known;
-      for (std::size_t i = 0; i < std::min(entity.joints.size(), most_compared); ++i) known.push_back(entity.joints[i].id);
+      for (std::size_t i = 0; i < std::min(entity.joints.size(), most_compared); ++i)
+        known.push_back(entity.joints[i].id);
       blame(where,
             fmt::format("joint {} does not exist in {} {}; {}", in_quotes(id), kind_of(entity),
                         in_quotes(entity.id),
-                        known.empty() ? "it has none; write <joints> into it" : draft.report.advice(id, known)),
+                        known.empty() ? "it has none; write <joints> into it"
+                                      : draft.report.advice(id, known)),
             {"joints", "joint", "links", "link", "id", duplicate});
       return;
     }
@@ -194,12 +196,12 @@ struct Check {
   /// A force is for a prismatic joint, a torque for a revolute one.
   void check_strength(const JointActuator& actuator, const Joint& joint) const {
     const bool revolute = joint.type == JointType::revolute;
-    if (!actuator.max_force || !has_coordinate(joint.type) || actuator.is_torque == revolute) return;
+    if (!actuator.max_force || !has_coordinate(joint.type) || actuator.is_torque == revolute)
+      return;
     blame(actuator.where,
           fmt::format("joint {} of {} {} is {}; write {} instead of {}", in_quotes(joint.id),
                       kind_of(entity), in_quotes(entity.id), revolute ? "revolute" : "prismatic",
-                      revolute ? "max_torque" : "max_force",
-                      revolute ? "max_force" : "max_torque"),
+                      revolute ? "max_torque" : "max_force", revolute ? "max_force" : "max_torque"),
           {joint_type});
   }
 
@@ -220,9 +222,10 @@ struct Check {
     for (const AnchorUse& device : use.anchors) {
       const std::string& anchor = device.anchor;
       if (anchor.empty() || anchor == "origin" || draft.anchors.contains(anchor)) continue;
-      blame(device.where, fmt::format("anchor {} of {} does not exist in {} {}; {}",
-                                      in_quotes(anchor), device.device, kind_of(entity),
-                                      in_quotes(entity.id), draft.report.advice(anchor, anchor_names(draft))),
+      blame(device.where,
+            fmt::format("anchor {} of {} does not exist in {} {}; {}", in_quotes(anchor),
+                        device.device, kind_of(entity), in_quotes(entity.id),
+                        draft.report.advice(anchor, anchor_names(draft))),
             {"links", "link", "id", duplicate});
     }
   }
@@ -326,12 +329,13 @@ std::optional<ControllerChoice> read_controller_choice(Draft& draft, Element& el
   if (!draft.controllers.contains(choice.id)) {
     std::vector<std::string> known;
     const auto& all = draft.scene.controllers;
-    for (std::size_t i = 0; i < std::min(all.size(), most_compared); ++i) known.push_back(all[i].id);
+    for (std::size_t i = 0; i < std::min(all.size(), most_compared); ++i)
+      known.push_back(all[i].id);
     choice.unknown = {
         user->where("config"),
-        user->sentence("config", known.empty()
-                                     ? "names no controller; write it in <controllers>"
-                                     : "names no controller; " + draft.report.advice(choice.id, known)),
+        user->sentence("config", known.empty() ? "names no controller; write it in <controllers>"
+                                               : "names no controller; " +
+                                                     draft.report.advice(choice.id, known)),
         {"controllers", "lua_controller", "external_controller", "include", "id"}};
   }
   return choice;

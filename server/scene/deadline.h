@@ -1,5 +1,5 @@
 #pragma once
-// What happens when a controller does not answer in time.
+// Deadline policies: the consequence when a controller does not answer in time.
 
 #include <cstdint>
 #include <optional>

@@ -68,19 +68,23 @@ void read_tags(Draft& draft, Element& container, Entity& entity) {
   });
 }
 
-/// The medium of the radios of an entity: that of their container, or as other versions have it of each radio.
+/// The medium of the radios of an entity: that of their container, or as other versions have it of
+/// each radio.
 void read_radios(Draft& draft, Element& container, Entity& entity) {
   auto& medium = entity.devices.radio_medium;
   const std::vector<Element> written = container.children();
-  const bool each = !container.has("medium") &&
-                    std::ranges::any_of(written, [](const Element& radio) { return radio.has("medium"); });
+  const bool each =
+      !container.has("medium") &&
+      std::ranges::any_of(written, [](const Element& radio) { return radio.has("medium"); });
   if (!each) medium = read_medium(draft, container, MediumKind::radio);
   entity.devices.radios =
       read_container<Radio>(container, "radio", [&](Element& element, std::string id) {
         if (each) {
           const auto own = read_medium(draft, element, MediumKind::radio);
           if (medium && own && own != medium) {
-            element.fault_at("medium", "is another than that of the radios before; those of an entity share one");
+            element.fault_at(
+                "medium",
+                "is another than that of the radios before; those of an entity share one");
           }
           if (own) medium = own;
         }
@@ -118,14 +122,17 @@ Magnet read_magnet(Draft& draft, Element& element, std::string id) {
   const auto passive_field = element.optional("passive_field", vector3);
   const auto moment = element.optional("moment", vector3);
   const auto remanence = element.optional("remanence", vector3);
-  const auto given = std::ranges::count_if(strengths, [&](std::string_view name) { return element.has(name.data()); });
+  const auto given = std::ranges::count_if(
+      strengths, [&](std::string_view name) { return element.has(name.data()); });
   if (given == 0) missing_all(element, strengths);
   if (given > 1) {
     element.fault("gives its strength twice; keep one of passive_field, moment and remanence");
   }
   if (element.has("remanence") && !magnet.shape) {
-    element.fault_at("remanence",
-                     "needs a volume; write shape=\"box\", \"cylinder\" or \"sphere\" with its lengths", {"shape"});
+    element.fault_at(
+        "remanence",
+        "needs a volume; write shape=\"box\", \"cylinder\" or \"sphere\" with its lengths",
+        {"shape"});
   }
   magnet.passive_field = passive_field.value_or(math::Vector3::Zero());
   magnet.moment = moment.value_or(math::Vector3::Zero());
@@ -141,7 +148,7 @@ void read_magnets(Draft& draft, Element& container, Entity& entity) {
       });
 }
 
-/// What a sensor perceives; an element that leaves it open takes it from the next outer one.
+/// Perception of a sensor; an element that leaves it open takes it from the next outer one.
 struct Perception {
   std::optional<bool> sees_floor;
   std::optional<Response> response;
@@ -294,7 +301,7 @@ Anchor read_anchor(Draft& draft, Element& element) {
 }
 
 std::vector<std::string> anchor_names(const Draft& draft) {
-  // Of links with the same id only the first is an anchor: their numbers may have gaps.
+  // Links with the same id have one anchor, that of the first: their numbers may have gaps.
   std::map<std::size_t, std::string> by_link;
   for (const auto& [id, link] : draft.anchors) {
     if (link <= most_compared) by_link.emplace(link, id);
@@ -349,9 +356,10 @@ void read_devices(Draft& draft, Element& element, Entity& entity) {
   for (Element& container : devices->children()) {
     const std::string kind(container.name());
     if (!seen.add(kind, container.where())) {
-      container.fault(fmt::format("is the second of its kind, after the one{}; write all devices of a "
-                                  "kind into one element",
-                                  draft.report.place(seen.owner(kind), container.where())));
+      container.fault(
+          fmt::format("is the second of its kind, after the one{}; write all devices of a "
+                      "kind into one element",
+                      draft.report.place(seen.owner(kind), container.where())));
       continue;
     }
     read_device_container(draft, container, entity);

@@ -13,7 +13,7 @@
 
 namespace ziggurat::scene {
 
-/// Where a device is fixed: a link, or the entity's origin frame.
+/// Mount of a device: a link, or the entity's origin frame.
 struct Anchor {
   static constexpr int origin = -1;
   int link = origin;  ///< index into Entity::links, or `origin`
@@ -80,8 +80,8 @@ struct Magnet {
   math::Vector3 remanence = math::Vector3::Zero();  ///< likewise, times the shape's volume [T]
 };
 
-/// What a proximity sensor reads at a distance, from its data sheet: straight lines between
-/// the points, level outside of them.
+/// Reading of a proximity sensor over distance, from its data sheet: straight lines between the
+/// points, level outside of them.
 struct Response {
   struct Point {
     double distance = 0;  ///< [m], >= 0
@@ -122,8 +122,8 @@ struct Battery {
   Location where;
 };
 
-/// What an entity carries. Containers keep document order. A container's medium is an index
-/// into Scene::media.
+/// Devices of an entity. Containers keep document order. A container's medium is an index into
+/// Scene::media.
 struct Devices {
   std::vector<Led> leds;
   std::optional<std::size_t> led_medium;
@@ -262,7 +262,7 @@ struct CamerasUse {
   std::vector<Camera> cameras;
 };
 
-/// What a controller's <actuators> and <sensors> enable. Kinds without settings are a bool.
+/// Devices that a controller's <actuators> and <sensors> enable. Kinds without settings are a bool.
 struct ControllerDevices {
   JointsUse joints;
   std::optional<RadiosUse> radios;
@@ -279,7 +279,8 @@ struct ControllerDevices {
   std::optional<CamerasUse> cameras;
   std::vector<Imu> imus;
   std::vector<ContactSensor> contact_sensors;
-  std::vector<std::string> to_come;  ///< elements of devices that have no readings and do nothing yet
+  std::vector<std::string>
+      to_come;  ///< elements of devices that have no readings and do nothing yet
   /// About what those that are fixed to an anchor take in each robot [bytes].
   std::size_t mounted_memory = 0;
 };

@@ -1,4 +1,5 @@
-// <director>, and <loop_functions> as one: programs that watch the world and act on it between ticks.
+// <director>, and <loop_functions> as one: programs that watch the world and act on it between
+// ticks.
 
 #include <utility>
 
@@ -33,19 +34,22 @@ void read_director(Draft& draft, Element& element, Director director) {
   directors.push_back(std::move(director));
 }
 
-/// That of a scene for ARGoS is a library, which a server does not load.
+/// Loop functions of a scene for ARGoS are a library, which a server does not load.
 void read_loop_functions(Draft& draft, Element& element) {
   const bool is_library = element.has("library") || !element.has("script");
   if (is_library && draft.options.lenient) {
-    return draft.report.notice(element.where(),
-                               "<loop_functions> has no effect: libraries are not loaded into the server, and what "
-                               "this one would do at the start and at each tick is not done");
+    return draft.report.notice(
+        element.where(),
+        "<loop_functions> has no effect: libraries are not loaded into the server, and what "
+        "this one would do at the start and at each tick is not done");
   }
   element.without_effect("label", text, "a director has an id");
   if (is_library) {
     return element.fault(
-        "has no script, and libraries are not loaded into the server; write its rule as a Lua script "
-        "and name it in <director id=\"…\" script=\"…\"/>, or write a director in C++ or Python and "
+        "has no script, and libraries are not loaded into the server; write its rule as a Lua "
+        "script "
+        "and name it in <director id=\"…\" script=\"…\"/>, or write a director in C++ or Python "
+        "and "
         "name it in command=\"…\"; --lenient runs the scene without it");
   }
   Director director;

@@ -27,11 +27,11 @@ void read_uniform(Element& element, Triple triple, Generator& out) {
 /// @param triple  reads a position, or the degrees of an orientation
 Generator read_generator(Element element, Triple triple) {
   Generator out;
-  const auto method = needed(
-      element, "method", OneOf<DistributionMethod>{{"uniform", DistributionMethod::uniform},
-                                          {"gaussian", DistributionMethod::gaussian},
-                                          {"constant", DistributionMethod::constant},
-                                          {"grid", DistributionMethod::grid}});
+  const auto method = needed(element, "method",
+                             OneOf<DistributionMethod>{{"uniform", DistributionMethod::uniform},
+                                                       {"gaussian", DistributionMethod::gaussian},
+                                                       {"constant", DistributionMethod::constant},
+                                                       {"grid", DistributionMethod::grid}});
   if (!method) return out;
   out.method = *method;
   switch (out.method) {
@@ -94,10 +94,11 @@ void take_ids(Draft& draft, Element& pattern, const std::string& id, const Distr
   for (unsigned i = 0; i < out.quantity; ++i) {
     const std::string copy = id + std::to_string(out.base_num + i);
     if (draft.entity_ids.add(copy, pattern.where())) continue;
-    pattern.fault_at("id", fmt::format("makes a copy called {}, which is the id of another entity{}; "
-                                       "choose another id or base_num",
-                                       in_quotes(copy),
-                                       draft.report.place(draft.entity_ids.owner(copy), pattern.where())));
+    pattern.fault_at(
+        "id", fmt::format("makes a copy called {}, which is the id of another entity{}; "
+                          "choose another id or base_num",
+                          in_quotes(copy),
+                          draft.report.place(draft.entity_ids.owner(copy), pattern.where())));
     return;
   }
 }

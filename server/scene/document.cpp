@@ -14,8 +14,9 @@ namespace ziggurat::scene {
 namespace {
 
 constexpr std::size_t smallest_average_element = 32;  // [bytes], with its closing tag
-constexpr std::size_t of_set_attribute = 64;          // of an attribute that a setting sets, beside its value
-constexpr std::size_t most_attributes = 100'000;      // of an element
+constexpr std::size_t of_set_attribute =
+    64;  // of an attribute that a setting sets, beside its value
+constexpr std::size_t most_attributes = 100'000;  // of an element
 
 /// The offset of the first byte that is not well-formed UTF-8, or npos.
 std::size_t first_bad_utf8(std::string_view text) {
@@ -45,7 +46,8 @@ std::size_t first_bad_utf8(std::string_view text) {
 }
 
 /// Encodings that the parser reads: what is not ASCII must be UTF-8.
-constexpr std::array<std::string_view, 6> known_encodings{"utf-8", "utf8", "us-ascii", "ascii", "iso-8859-1", "latin1"};
+constexpr std::array<std::string_view, 6> known_encodings{"utf-8", "utf8",       "us-ascii",
+                                                          "ascii", "iso-8859-1", "latin1"};
 
 /// The encoding that the declaration of a text names, a part of it; empty if it names none.
 std::string_view declared_encoding(std::string_view source) {
@@ -60,8 +62,12 @@ std::string_view declared_encoding(std::string_view source) {
 }
 
 bool is_known_encoding(std::string_view name) {
-  const auto is_same = [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b + ('a' - 'A') : b); };
-  return std::ranges::any_of(known_encodings, [&](std::string_view known) { return std::ranges::equal(known, name, is_same); });
+  const auto is_same = [](char a, char b) {
+    return a == (b >= 'A' && b <= 'Z' ? b + ('a' - 'A') : b);
+  };
+  return std::ranges::any_of(known_encodings, [&](std::string_view known) {
+    return std::ranges::equal(known, name, is_same);
+  });
 }
 
 /// The fault for an error of the parser.
@@ -96,7 +102,8 @@ std::string complaint(const pugi::xml_parse_result& result, bool at_end) {
 }  // namespace
 
 ReadBudget budget_for(std::size_t max_size) {
-  return {max_size, 2 * std::max<std::size_t>(1'000'000, max_size / smallest_average_element), most_attributes, false};
+  return {max_size, 2 * std::max<std::size_t>(1'000'000, max_size / smallest_average_element),
+          most_attributes, false};
 }
 
 Document::Document(std::string text, std::size_t file, bool lenient, ReadBudget& budget,
@@ -131,17 +138,21 @@ bool Document::check_text() {
   budget_.tags -= tags;
   if (const std::size_t nul = source_.find('\0'); nul != std::string::npos) {
     const bool is_recording = source_.starts_with("\x89MCAP0\r\n");
-    report_.fault(at(nul), is_recording ? "this is a recording, not a scene; 'ziggurat replay' repeats it"
-                                        : "this is binary data, not a scene; write an XML file in UTF-8");
+    report_.fault(at(nul), is_recording
+                               ? "this is a recording, not a scene; 'ziggurat replay' repeats it"
+                               : "this is binary data, not a scene; write an XML file in UTF-8");
     return false;
   }
   if (const std::size_t bad = first_bad_utf8(source_); bad != std::string_view::npos) {
     report_.fault(at(bad), "this is not UTF-8; save the file in UTF-8");
     return false;
   }
-  if (const auto encoding = declared_encoding(source_); !encoding.empty() && !is_known_encoding(encoding)) {
-    report_.fault(at(static_cast<std::size_t>(encoding.data() - source_.data())),
-                  fmt::format("encoding={} is not read; save the file in UTF-8 and write encoding=\"UTF-8\"", in_quotes(encoding)));
+  if (const auto encoding = declared_encoding(source_);
+      !encoding.empty() && !is_known_encoding(encoding)) {
+    report_.fault(
+        at(static_cast<std::size_t>(encoding.data() - source_.data())),
+        fmt::format("encoding={} is not read; save the file in UTF-8 and write encoding=\"UTF-8\"",
+                    in_quotes(encoding)));
     return false;
   }
   return true;
@@ -166,14 +177,17 @@ void Document::parse() {
     return;
   }
   const Unescaped unescaped = find_unescaped(source_);
-  if (unescaped.fault) report_.fault(at(unescaped.fault->offset), "malformed XML: " + unescaped.fault->text);
+  if (unescaped.fault)
+    report_.fault(at(unescaped.fault->offset), "malformed XML: " + unescaped.fault->text);
   if (unescaped.dashes) {
-    report_.warn(at(*unescaped.dashes), "dashes",
-                 "-- inside a comment, which other programs that read XML refuse; write it without");
+    report_.warn(
+        at(*unescaped.dashes), "dashes",
+        "-- inside a comment, which other programs that read XML refuse; write it without");
   }
   if (unescaped.declaration) {
     report_.warn(at(*unescaped.declaration), "declaration",
-                 "<?xml … ?> behind the beginning of the file, which other programs that read XML refuse; let the file "
+                 "<?xml … ?> behind the beginning of the file, which other programs that read XML "
+                 "refuse; let the file "
                  "begin with it, or remove it");
   }
   check_outside();
@@ -193,7 +207,8 @@ bool Document::check_attributes(std::size_t most) const {
     pugi::xml_node found;
     bool for_each(pugi::xml_node& node) override {
       const auto attributes = node.attributes();
-      if (static_cast<std::size_t>(std::distance(attributes.begin(), attributes.end())) <= most) return true;
+      if (static_cast<std::size_t>(std::distance(attributes.begin(), attributes.end())) <= most)
+        return true;
       found = node;
       return false;
     }
@@ -201,8 +216,9 @@ bool Document::check_attributes(std::size_t most) const {
   pugi::xml_node all = tree_;
   all.traverse(search);
   if (!search.found) return true;
-  report_.fault(locate(search.found.name() - 1),
-                fmt::format("<{}> has more than {} attributes; write fewer", search.found.name(), most));
+  report_.fault(
+      locate(search.found.name() - 1),
+      fmt::format("<{}> has more than {} attributes; write fewer", search.found.name(), most));
   return false;
 }
 
@@ -265,15 +281,17 @@ Location Document::locate_value(const pugi::xml_attribute& attribute) const {
 
 Value<std::size_t> Document::set(const Setting& setting) {
   if (!root_) return std::size_t{0};
-  if (budget_.bytes < of_set_attribute) return Wrong{"is one too many: the scene is too large; raise --max-scene-size"};
+  if (budget_.bytes < of_set_attribute)
+    return Wrong{"is one too many: the scene is too large; raise --max-scene-size"};
   auto found = attributes_at(root_, setting.path);
   if (const Wrong* wrong = std::get_if<1>(&found)) return *wrong;
   const std::size_t size = std::get<0>(found).size() * (of_set_attribute + setting.value.size());
   if (size > budget_.bytes) {
     budget_.bytes = 0;
-    return Wrong{fmt::format("matches {} attributes, with whose values the scene is too large; name fewer, or raise "
-                             "--max-scene-size",
-                             std::get<0>(found).size())};
+    return Wrong{fmt::format(
+        "matches {} attributes, with whose values the scene is too large; name fewer, or raise "
+        "--max-scene-size",
+        std::get<0>(found).size())};
   }
   budget_.bytes -= size;
   for (Attribute& each : std::get<0>(found)) {
@@ -303,7 +321,9 @@ std::string Document::origin(const pugi::xml_attribute& attribute) const {
 Value<std::string> Document::value(const pugi::xml_attribute& attribute) const {
   const std::string_view text = trimmed(attribute.value());
   if (parameters_ == nullptr || text.find("${") == std::string_view::npos) return std::string(text);
-  const Wrong too_large{"makes the scene too large, with its parameters written out; use shorter values, or raise --max-scene-size"};
+  const Wrong too_large{
+      "makes the scene too large, with its parameters written out; use shorter values, or raise "
+      "--max-scene-size"};
   if (budget_.is_spent) return too_large;
   auto expanded = expand(text, *parameters_);
   const std::string* result = std::get_if<std::string>(&expanded);

@@ -1,6 +1,6 @@
 #pragma once
-// A scene file as XML: elements and attributes with their line and column, and what the command line
-// set in it.
+// A scene file as XML: elements and attributes with their line and column, and what the command
+// line set in it.
 
 #include <cstddef>
 #include <pugixml.hpp>
@@ -17,12 +17,12 @@
 
 namespace ziggurat::scene {
 
-/// What a scene and its includes may still take.
+/// Budget that a scene and its includes may still use.
 struct ReadBudget {
   std::size_t bytes = 0;
   std::size_t tags = 0;        ///< opening and closing ones
   std::size_t attributes = 0;  ///< of each element
-  bool is_spent = false;   ///< a value with parameters was too large
+  bool is_spent = false;       ///< a value with parameters was too large
 };
 
 /// The budget of a scene of at most so many bytes.
@@ -33,7 +33,8 @@ class Document {
  public:
   /// Parses; what is wrong with the text itself (not UTF-8, malformed, …) is a fault.
   /// @param file  its index in Scene::files
-  /// @param budget  at least the text's size; the text, settings and values of parameters are taken from it; must
+  /// @param budget  at least the text's size; the text, settings and values of parameters are taken
+  /// from it; must
   ///     outlive this
   /// @param parameters  what ${name} stands for; must outlive this; null: none
   Document(std::string text, std::size_t file, bool lenient, ReadBudget& budget, Report& report,
@@ -48,18 +49,18 @@ class Document {
   /// @param setting  must outlive this
   Value<std::size_t> set(const Setting& setting);
 
-  /// Where a character of the parsed text stands.
+  /// Location of a character of the parsed text.
   Location locate(const char* character) const;
-  /// Where an attribute's name stands, or its element if the attribute was set.
+  /// Location of an attribute's name, or of its element if the attribute was set.
   Location locate(const pugi::xml_attribute& attribute) const;
-  /// Where its value begins; the same.
+  /// Location of its value; the same.
   Location locate_value(const pugi::xml_attribute& attribute) const;
 
   /// The attribute's text as written, before character references are replaced.
   std::string_view raw(const pugi::xml_attribute& attribute) const;
   /// The setting that set it, or null.
   const Setting* setting_of(const pugi::xml_attribute& attribute) const;
-  /// How the attribute got its value, if not as written: continues a message.
+  /// Origin of an attribute's value, if not as written: continues a message.
   std::string origin(const pugi::xml_attribute& attribute) const;
   /// Its value with parameters, which count as if they were written out, trimmed.
   Value<std::string> value(const pugi::xml_attribute& attribute) const;

@@ -48,7 +48,7 @@ struct PendingFault {
   std::vector<std::string_view> causes = {};  ///< as of Report::fault
 };
 
-/// What must be known of a controller when an entity uses it.
+/// Properties of a controller that matter when an entity uses it.
 struct ControllerUse {
   bool has_actuators = false, has_sensors = false, has_params = false;
   std::vector<DeviceUse> devices;
@@ -65,13 +65,13 @@ struct ControllerChoice {
   Location params_where;
 };
 
-/// What the entities of a model have in common.
+/// Common part of the entities of a model.
 struct Model {
   Entity entity;  ///< without id, pose and controller
   std::unordered_map<std::string, std::size_t> anchors;
   std::optional<ControllerChoice> controller;
   std::vector<PendingFault> missing_parts;
-  std::size_t size = 0;  ///< as written [bytes]
+  std::size_t size = 0;            ///< as written [bytes]
   std::vector<std::string> names;  ///< of the attributes and children that its element may have
 };
 
@@ -97,7 +97,6 @@ struct Draft {
   std::unordered_map<std::string, std::size_t> model_ids;  ///< id -> index
   BodyDefaults defaults;
   bool has_engine = false;
-  bool told_of_sweeps = false;  ///< that some attributes have no effect with solver="sweeps"
   std::vector<ControllerUse> uses;                           ///< of Scene::controllers, same order
   std::unordered_map<std::string, std::size_t> media;        ///< id -> index
   std::unordered_map<std::string, std::size_t> controllers;  ///< id -> index
@@ -176,7 +175,8 @@ const Controller* controller_of(const Draft& draft, const Entity& entity);
 
 // --- entities -----------------------------------------------------------------------------------
 
-/// How an entity is written: in the arena, as the pattern of a <distribute>, or without a place or id that counts.
+/// Placement of an entity as written: in the arena, as the pattern of a <distribute>, or without a
+/// place or id that counts.
 enum class Placement { explicit_pose, distributed, looked_at };
 
 /// Reads <box>, <cylinder>, <sphere>, <prototype>, <foot-bot> or <e-puck>.

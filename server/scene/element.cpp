@@ -47,8 +47,8 @@ void check_references(const Document& document, std::string_view element,
 /// `name="value" of <element> <text>`.
 std::string sentence_on(const Document& document, std::string_view element, std::string_view name,
                         const pugi::xml_attribute& attribute, std::string_view text) {
-  return fmt::format("{}={} of <{}> {}{}", name, in_quotes(trimmed(attribute.value())), element, text,
-                     document.origin(attribute));
+  return fmt::format("{}={} of <{}> {}{}", name, in_quotes(trimmed(attribute.value())), element,
+                     text, document.origin(attribute));
 }
 
 /// The attribute's value; nothing, after a fault, if it has none.
@@ -57,8 +57,9 @@ std::optional<std::string> take_value(const Document& document, std::string_view
   check_references(document, element, attribute);
   auto value = document.value(attribute);
   if (const Wrong* wrong = std::get_if<1>(&value)) {
-    document.report().fault(document.locate_value(attribute),
-                            sentence_on(document, element, attribute.name(), attribute, wrong->text));
+    document.report().fault(
+        document.locate_value(attribute),
+        sentence_on(document, element, attribute.name(), attribute, wrong->text));
     return std::nullopt;
   }
   return std::get<0>(std::move(value));
@@ -97,24 +98,27 @@ void report_unknown_attribute(const Document& document, std::string_view element
   const std::string_view name = attribute.name();
   const std::string value = in_quotes(attribute.value());
   if (!elsewhere.empty()) {
-    return report.fault(
-        at, fmt::format("the attribute {}={} can't stand in this <{}>: {}", name, value, element, elsewhere));
+    return report.fault(at, fmt::format("the attribute {}={} can't stand in this <{}>: {}", name,
+                                        value, element, elsewhere));
   }
   if (const OldWord* old = old_attribute(element, name)) {
-    return report.notice(at, old->now.empty() ? notice_of(*old, element)
-                                              : fmt::format("{} of <{}> has no effect beside {}, which is the same",
-                                                            name, element, old->now));
+    return report.notice(
+        at, old->now.empty() ? notice_of(*old, element)
+                             : fmt::format("{} of <{}> has no effect beside {}, which is the same",
+                                           name, element, old->now));
   }
   if (document.lenient()) {
-    return report.notice(at, fmt::format("unknown attribute {} of <{}> has no effect; {}", in_quotes(name),
-                                         element, advice(name, known)));
+    return report.notice(at, fmt::format("unknown attribute {} of <{}> has no effect; {}",
+                                         in_quotes(name), element, advice(name, known)));
   }
   const auto meant = nearest(name, known);
   const auto home = home_of_attribute(name);
   const bool is_of_other = home && home != element && !meant;
-  report.fault(at, fmt::format("<{}> has an unknown attribute {}={}; {}{} (--lenient ignores it)", element, name, value,
-                               is_of_other ? fmt::format("a <{}> has it", *home) : advice(name, known),
-                               document.origin(attribute)));
+  report.fault(
+      at,
+      fmt::format("<{}> has an unknown attribute {}={}; {}{} (--lenient ignores it)", element, name,
+                  value, is_of_other ? fmt::format("a <{}> has it", *home) : advice(name, known),
+                  document.origin(attribute)));
   if (meant) report.left_out(*meant);
 }
 
@@ -123,6 +127,10 @@ void report_unknown_attribute(const Document& document, std::string_view element
 Location Element::where() const { return document_->locate(node_.name() - 1); }
 
 bool Element::has(const char* attribute) const { return !find(node_, name_, attribute).empty(); }
+
+std::string_view written(const Element& element, const char* attribute) {
+  return find(element.node_, element.name_, attribute).value();
+}
 
 Location Element::where(const char* attribute) const {
   const pugi::xml_attribute found = find(node_, name_, attribute);
@@ -254,29 +262,32 @@ void Element::unknown_in(std::string_view parent, std::span<const std::string_vi
   if (const auto robot = robot_of_device(name())) {
     const std::string_view general = name().substr(name().find('_') + 1);
     const bool is_known = std::ranges::find(known, general) != known.end();
-    report().fault(where(), fmt::format("<{}> is a device of the {}, which is not modelled here; {}", name(), *robot,
-                                        is_known ? fmt::format("remove it, or write <{}>", general) : "remove it"));
+    report().fault(
+        where(),
+        fmt::format("<{}> is a device of the {}, which is not modelled here; {}", name(), *robot,
+                    is_known ? fmt::format("remove it, or write <{}>", general) : "remove it"));
     return;
   }
   const auto meant = nearest(name(), known);
   if (const auto home = home_of(name()); home && *home != parent && !meant) {
-    report().fault(where(), fmt::format("<{}> can't stand in <{}>; write it into <{}>", name(), parent,
-                                        *home));
+    report().fault(where(), fmt::format("<{}> can't stand in <{}>; write it into <{}>", name(),
+                                        parent, *home));
     report().left_out(*home);
     report().left_out(name());
     return;
   }
-  report().fault(where(), known.empty()
-                              ? fmt::format("unknown element <{}> in <{}>, which has no elements",
-                                            name(), parent)
-                              : fmt::format("unknown element <{}> in <{}>; {}", name(), parent,
-                                            advice(name(), known)));
+  report().fault(
+      where(),
+      known.empty()
+          ? fmt::format("unknown element <{}> in <{}>, which has no elements", name(), parent)
+          : fmt::format("unknown element <{}> in <{}>; {}", name(), parent, advice(name(), known)));
   if (meant) report().left_out(*meant);
 }
 
 std::string Element::sentence(const char* attribute, std::string_view text) const {
   const pugi::xml_attribute found = find(node_, name_, attribute);
-  return sentence_on(*document_, this->name(), found.empty() ? attribute : found.name(), found, text);
+  return sentence_on(*document_, this->name(), found.empty() ? attribute : found.name(), found,
+                     text);
 }
 
 void Element::fault_at(const char* attribute, std::string_view text,
@@ -289,12 +300,13 @@ void Element::fault(std::string_view text, std::vector<std::string_view> causes)
 }
 
 void missing(const Element& element, const char* attribute, std::string_view example) {
-  element.fault(fmt::format("lacks the attribute {0}; write {0}=\"{1}\"", attribute, example), {attribute});
+  element.fault(fmt::format("lacks the attribute {0}; write {0}=\"{1}\"", attribute, example),
+                {attribute});
 }
 
 void missing_all(const Element& element, std::span<const std::string_view> attributes) {
   element.fault(fmt::format("lacks the attribute {}; write one", fmt::join(attributes, " or ")),
-        {attributes.begin(), attributes.end()});
+                {attributes.begin(), attributes.end()});
 }
 
 std::size_t Element::size() const {

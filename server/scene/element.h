@@ -35,7 +35,7 @@ T blank() {
   }
 }
 
-/// What may be written for a value, if that is one of a few words.
+/// Words that a value may have, if it is one of a few.
 template <class Read>
 std::string example_of(const Read& read) {
   if constexpr (requires { read.words(); }) {
@@ -60,11 +60,13 @@ class Element {
   Location where() const;
   Report& report() const { return document_->report(); }
 
-  /// Where an attribute's value begins, or the element if it has none of that name.
+  /// Location of an attribute's value, or of the element if it has none of that name.
   Location where(const char* attribute) const;
   bool has(const char* attribute) const;
+  /// Its value as it is written, without reading it; empty if there is none of that name.
+  friend std::string_view written(const Element& element, const char* attribute);
 
-  /// What a reader of values returns.
+  /// Result type of a reader of values.
   template <class Read>
   using ValueOf = std::variant_alternative_t<0, std::invoke_result_t<Read, std::string_view>>;
 
@@ -128,7 +130,7 @@ class Element {
 
   /// `attribute="value" of <element> <text>`.
   std::string sentence(const char* attribute, std::string_view text) const;
-  /// That sentence, at the value.
+  /// Reports that sentence, at the value.
   /// @param causes  as of Report::fault
   void fault_at(const char* attribute, std::string_view text,
                 std::vector<std::string_view> causes = {}) const;
@@ -136,7 +138,7 @@ class Element {
   /// @param causes  as of Report::fault
   void fault(std::string_view text, std::vector<std::string_view> causes = {}) const;
 
-  /// Of the element with all that is in it, white space and comments aside [bytes].
+  /// Size of the element with its content, without white space and comments [bytes].
   std::size_t size() const;
 
  private:
@@ -151,6 +153,8 @@ class Element {
   bool any_child_ = false;
   bool any_text_ = false;
 };
+
+std::string_view written(const Element& element, const char* attribute);
 
 /// Reports that an element lacks an attribute. @param example  of its value
 void missing(const Element& element, const char* attribute, std::string_view example);

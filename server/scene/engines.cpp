@@ -13,8 +13,7 @@ namespace {
 constexpr unsigned most_iterations = 1'000'000;  // substeps of a tick
 constexpr unsigned many_iterations = 10'000;     // beyond which a scene is doubted
 constexpr double strong_gravity = 1000;          // likewise [m/s^2]
-constexpr unsigned most_solver_iterations = 10'000;
-constexpr double usual_gravity = 10.0;  // [m/s^2], the dialect's default of `g`
+constexpr double usual_gravity = 10.0;           // [m/s^2], the dialect's default of `g`
 constexpr std::array<std::string_view, 3> engine_names{"dynamics3d", "dynamics2d", "pointmass3d"};
 
 void read_floor(Draft& draft, Element floor) {
@@ -28,12 +27,18 @@ void read_gravity(Draft& draft, Element gravity) {
   const double g = gravity.optional("g", number, usual_gravity);
   draft.scene.physics.gravity = g;
   if (std::abs(g) > strong_gravity) {
-    draft.report.warn(gravity.where("g"), "strong gravity",
-                      gravity.sentence("g", "is stronger than 1000 m/s^2, a hundred times what the Earth's is; write g=\"9.8\""));
+    draft.report.warn(
+        gravity.where("g"), "strong gravity",
+        gravity.sentence(
+            "g",
+            "is stronger than 1000 m/s^2, a hundred times what the Earth's is; write g=\"9.8\""));
   } else if (g < 0) {
-    draft.report.warn(gravity.where("g"), "gravity",
-                      gravity.sentence("g", fmt::format("lets everything fall up: g is the acceleration downwards; "
-                                                        "write g=\"{:.6g}\"", -g)));
+    draft.report.warn(
+        gravity.where("g"), "gravity",
+        gravity.sentence("g",
+                         fmt::format("lets everything fall up: g is the acceleration downwards; "
+                                     "write g=\"{:.6g}\"",
+                                     -g)));
   }
   gravity.done();
 }
@@ -57,21 +62,13 @@ void read_magnetism(Draft& draft, Element magnetism) {
 
 void read_dynamics3d(Draft& draft, Element& engine) {
   Physics& physics = draft.scene.physics;
-  const Clock written =
+  const Clock of_scene =
       engine.optional("clock", OneOf<Clock>{{"nominal", Clock::nominal}, {"beta50", Clock::beta50}},
                       Clock::nominal);
-  physics.clock = draft.options.clock.value_or(written);
-  physics.solver = engine.optional(
-      "solver", OneOf<Solver>{{"newton", Solver::newton}, {"sweeps", Solver::sweeps}},
-      usual_solver(physics.clock));
+  physics.clock = draft.options.clock.value_or(of_scene);
+  const std::string_view solver = written(engine, "solver");
+  physics.had_second_core = solver.empty() ? physics.clock == Clock::beta50 : solver == "sweeps";
   physics.max_substep = engine.optional("max_substep", duration);
-  physics.solver_iterations =
-      engine.optional("solver_iterations", Whole{1, most_solver_iterations});
-  if (physics.solver_iterations && physics.solver == Solver::newton) {
-    draft.report.notice(engine.where(),
-                        "solver_iterations has no effect with solver=\"newton\", which runs until "
-                        "it converges; remove it, or write solver=\"sweeps\"");
-  }
   draft.defaults.friction = engine.optional("friction", non_negative);
   draft.defaults.rolling_friction = engine.optional("rolling_friction", non_negative);
   draft.defaults.spinning_friction = engine.optional("spinning_friction", non_negative);
@@ -84,7 +81,7 @@ void read_dynamics3d(Draft& draft, Element& engine) {
   engine.done();
 }
 
-/// How much force and torque the ground of a <dynamics2d> brakes with.
+/// Reads the force and torque with which the ground of a <dynamics2d> brakes.
 void read_ground(Element friction, Plane& plane) {
   plane.box.max_force = friction.optional("box_linear_friction", non_negative, plane.box.max_force);
   plane.box.max_torque =
@@ -137,13 +134,6 @@ Surface read_surface(Draft& draft, Element& element, const Surface& usual) {
                        d.spinning_friction.value_or(usual.spinning_friction)),
       element.optional("restitution", non_negative, d.restitution.value_or(usual.restitution))};
   if (out.restitution > 1) element.fault_at("restitution", "is over 1; write a number from 0 to 1");
-  const bool ignored = out.spinning_friction > 0 || out.restitution > 0;
-  if (ignored && draft.scene.physics.solver == Solver::sweeps && !draft.told_of_sweeps) {
-    draft.told_of_sweeps = true;
-    draft.report.notice(element.where(),
-                          "spinning_friction and restitution have no effect with "
-                          "solver=\"sweeps\"; write solver=\"newton\" on <dynamics3d>");
-  }
   return out;
 }
 
@@ -161,7 +151,7 @@ void read_engines(Draft& draft, Element& root) {
   if (!engines) return;
   Physics& physics = draft.scene.physics;
   physics.clock = draft.options.clock.value_or(Clock::nominal);
-  physics.solver = usual_solver(physics.clock);
+  physics.had_second_core = physics.clock == Clock::beta50;
   Ids ids;
   bool has_dynamics3d = false;
   for (Element& engine : engines->children()) {
@@ -173,8 +163,10 @@ void read_engines(Draft& draft, Element& root) {
     const std::string id = engine.required("id", identifier);
     const unsigned iterations = engine.optional("iterations", Whole{1, most_iterations}, 10);
     if (iterations > many_iterations) {
-      draft.report.warn(engine.where("iterations"), "iterations",
-                        engine.sentence("iterations", "are so many substeps of each tick, which takes long; write 10 to 1000"));
+      draft.report.warn(
+          engine.where("iterations"), "iterations",
+          engine.sentence("iterations",
+                          "are so many substeps of each tick, which takes long; write 10 to 1000"));
     }
     take_id(engine, ids, id, "engine");
     if (three && has_dynamics3d) {

@@ -50,7 +50,7 @@ void read_prototype(Draft& draft, Element& element, Entity& entity) {
   read_devices(draft, element, entity);
 }
 
-/// What the ids of copies begin with: empty, they are numbered alone.
+/// Beginning of the ids of copies; empty: they are numbers alone.
 Value<std::string> start_of_ids(std::string_view text) {
   return text.empty() ? Value<std::string>(std::string()) : identifier(text);
 }
@@ -123,10 +123,11 @@ void doubt_angles(Element& element, const char* attribute) {
     begin = end + 1;
     const auto degrees = degrees_of_radians(angle);
     if (!degrees) continue;
-    element.report().warn(element.where(attribute), "radians",
-                          element.sentence(attribute, fmt::format("looks like radians, and angles are "
-                                                                  "in degrees; write {} for {}",
-                                                                  *degrees, angle)));
+    element.report().warn(
+        element.where(attribute), "radians",
+        element.sentence(attribute, fmt::format("looks like radians, and angles are "
+                                                "in degrees; write {} for {}",
+                                                *degrees, angle)));
     return;
   }
 }
@@ -138,8 +139,8 @@ math::Pose read_pose(Element& element) {
 }
 
 math::Pose read_body(Element& element, Placement placement) {
-  auto body =
-      placement == Placement::explicit_pose ? element.required_child("body") : element.child("body");
+  auto body = placement == Placement::explicit_pose ? element.required_child("body")
+                                                    : element.child("body");
   if (!body) return {};
   if (placement == Placement::distributed && (body->has("position") || body->has("orientation"))) {
     body->report().notice(body->where(),
@@ -192,7 +193,8 @@ Entity read_entity(Draft& draft, Element& element, Placement placement) {
     if (controller) give_controller(draft, *controller, entity);
   }
   const std::size_t of_model = entity.model ? draft.models[*entity.model].size : 0;
-  take_memory(draft, element, memory_of(entity, controller_of(draft, entity)), element.size() + of_model);
+  take_memory(draft, element, memory_of(entity, controller_of(draft, entity)),
+              element.size() + of_model);
   check_use(draft, entity);
   if (entity.model) {
     element.done(elsewhere, draft.models[*entity.model].names);

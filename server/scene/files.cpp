@@ -109,16 +109,19 @@ std::optional<std::string> fault_of_file(const fs::path& path) {
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) {
     const fs::path scene = path.string() + ".argos";
-    if (fs::is_regular_file(scene, error)) return fmt::format("does not exist; write {}", scene.string());
+    if (fs::is_regular_file(scene, error))
+      return fmt::format("does not exist; write {}", scene.string());
     return "does not exist; check its path";
   }
   if (error) return fmt::format("cannot be read: {}", error.message());
-  if (status.type() == fs::file_type::directory) return "is a folder; write the path of a file in it";
+  if (status.type() == fs::file_type::directory)
+    return "is a folder; write the path of a file in it";
   if (status.type() != fs::file_type::regular) return "is not a regular file; check its path";
   const int opened = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (opened < 0) {
     const int reason = errno;
-    return fmt::format("cannot be read: {}{}", std::strerror(reason), reason == EACCES ? "; check its permissions" : "");
+    return fmt::format("cannot be read: {}{}", std::strerror(reason),
+                       reason == EACCES ? "; check its permissions" : "");
   }
   ::close(opened);
   return std::nullopt;

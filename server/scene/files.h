@@ -19,8 +19,8 @@ struct File {
 using OpenFile = std::function<std::variant<File, std::string>(const std::filesystem::path&,
                                                                std::size_t max_size)>;
 
-/// Why nothing can be read from a path that a person gave, as `does not exist; …`; none if there is a regular
-/// file. To open a pipe would wait for its writer, and a device may have no end.
+/// Why nothing can be read from a path that a person gave, as `does not exist; …`; none if there is
+/// a regular file. To open a pipe would wait for its writer, and a device may have no end.
 std::optional<std::string> fault_of_file(const std::filesystem::path& path);
 
 /// From disk, regular files only.

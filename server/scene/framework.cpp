@@ -24,9 +24,11 @@ void read_experiment(Element experiment, Experiment& out) {
              std::abs(ticks - whole) > 1e-9 * std::max(1.0, ticks)) {
     experiment.report().notice(
         experiment.where("length"),
-        experiment.sentence("length", fmt::format("is {:.9g} ticks of 1/{} s: the run has {:.0f}, and ends after {:.9g} s",
-                                                  ticks, out.ticks_per_second, std::floor(ticks),
-                                                  std::floor(ticks) / out.ticks_per_second)));
+        experiment.sentence(
+            "length",
+            fmt::format("is {:.9g} ticks of 1/{} s: the run has {:.0f}, and ends after {:.9g} s",
+                        ticks, out.ticks_per_second, std::floor(ticks),
+                        std::floor(ticks) / out.ticks_per_second)));
   }
   experiment.done();
 }

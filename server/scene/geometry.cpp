@@ -8,7 +8,7 @@ namespace {
 
 using math::Vector3;
 
-/// Of what stands on the origin with half extents x and y.
+/// Bounds of a shape on the origin with half extents x and y.
 Bounds standing(double x, double y, double height) { return {{-x, -y, 0}, {x, y, height}}; }
 
 Bounds bounds_of(const Box& box) {

@@ -62,7 +62,7 @@ struct Bounds {
 };
 Bounds bounds(const Geometry& geometry);
 
-/// How far a shape reaches from its frame's origin along a unit direction of that frame [m].
+/// Support distance of a shape from its frame's origin, along a unit direction of that frame [m].
 double reach(const Geometry& geometry, const math::Vector3& direction);
 
 /// The hull of points, or why there is none, as `has no volume; …`.

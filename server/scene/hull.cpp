@@ -16,7 +16,7 @@ namespace {
 using Eigen::Matrix3d;
 using math::Vector3;
 
-/// What flat faces may be off by, relative to the hull's size.
+/// Tolerance of flat faces, relative to the hull's size.
 constexpr double flat = 1e-9;
 
 /// Twice the area of a polygon along its normal (M. Newell's sum).

@@ -22,7 +22,7 @@ double velocity_of(const Joint& joint, const LinkMotion& parent, const LinkMotio
   if (joint.type == JointType::revolute) {
     return (child.angular_velocity - parent.angular_velocity).dot(axis);
   }
-  // Of the same point as part of the child, and of the parent.
+  // Velocities of the same point as part of the child, and of the parent.
   const math::Vector3 point = (child.pose * joint.child_frame).position;
   const auto velocity_at = [&](const LinkMotion& link) -> math::Vector3 {
     return link.velocity + link.angular_velocity.cross(point - link.pose.position);

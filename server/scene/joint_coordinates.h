@@ -11,7 +11,7 @@ namespace ziggurat::scene {
 /// @return [m], or [rad] in [-pi, pi]: whole turns can't be seen
 double position_of(const Joint& joint, const math::Pose& parent, const math::Pose& child);
 
-/// Of a link's frame.
+/// Motion of a link's frame.
 struct LinkMotion {
   math::Pose pose;                                         ///< X_WL
   math::Vector3 velocity = math::Vector3::Zero();          ///< of the frame's origin, in W [m/s]

@@ -72,9 +72,12 @@ void read_axis_and_limit(Element& element, Joint& joint) {
     const double unit = joint.type == JointType::revolute ? std::numbers::pi / 180.0 : 1.0;
     joint.limit = JointLimit{limit->first * unit, limit->second * unit};
     if (joint.limit->lower > 0 || joint.limit->upper < 0) {
-      element.report().warn(element.where("limit"), "limits without 0",
-                            element.sentence("limit", "leaves out 0, where the joint is assembled: it is moved into its limits as the run "
-                                                      "begins; measure limits from the assembled pose"));
+      element.report().warn(
+          element.where("limit"), "limits without 0",
+          element.sentence(
+              "limit",
+              "leaves out 0, where the joint is assembled: it is moved into its limits as the run "
+              "begins; measure limits from the assembled pose"));
     }
   }
 }
@@ -87,10 +90,11 @@ std::optional<Joint> read_joint(const Draft& draft, Element& element, Ids& ids) 
   joint.id = element.optional("id", identifier, "");
   if (!named) joint.id = ids.next("joint", joint.where);
   if (named) take_id(element, ids, joint.id, "joint");
-  const auto type = needed(element, "type", OneOf<JointType>{{"fixed", JointType::fixed},
-                                                            {"spherical", JointType::spherical},
-                                                            {"prismatic", JointType::prismatic},
-                                                            {"revolute", JointType::revolute}});
+  const auto type = needed(element, "type",
+                           OneOf<JointType>{{"fixed", JointType::fixed},
+                                            {"spherical", JointType::spherical},
+                                            {"prismatic", JointType::prismatic},
+                                            {"revolute", JointType::revolute}});
   joint.type = type.value_or(JointType::revolute);  // for which nothing more is refused
   if (type) {
     read_axis_and_limit(element, joint);
@@ -109,14 +113,15 @@ std::optional<Joint> read_joint(const Draft& draft, Element& element, Ids& ids) 
 
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 
-/// What to do with a joint whose child has a place in the tree already.
+/// Advice for a joint whose child has a place in the tree already.
 std::string_view advice_on_closing(const Entity& entity, const Joint& joint) {
   const bool is_parent_placed = joint.parent == entity.reference_link ||
                                 std::ranges::any_of(entity.joints, [&](const Joint& other) {
                                   return &other != &joint && other.child == joint.parent;
                                 });
   if (!is_parent_placed) return "swap its parent and child";
-  return "links form a tree, in which no loop of joints can be closed: leave this joint out, and let a controller "
+  return "links form a tree, in which no loop of joints can be closed: leave this joint out, and "
+         "let a controller "
          "drive the others so that both ends stay together, or hold them together with magnets";
 }
 
@@ -129,13 +134,14 @@ std::vector<std::size_t> incoming_joints(Report& report, const Entity& entity, b
     if (joint.child == entity.reference_link) {
       sound = false;
       report.fault(joint.where,
-                   fmt::format("joint {} has the reference link {} as its child; {}", in_quotes(joint.id), child,
-                               advice_on_closing(entity, joint)));
+                   fmt::format("joint {} has the reference link {} as its child; {}",
+                               in_quotes(joint.id), child, advice_on_closing(entity, joint)));
     } else if (incoming[joint.child] != none) {
       sound = false;
       report.fault(joint.where,
-                   fmt::format("joint {} gives link {} a second parent, after joint {}; {}", in_quotes(joint.id),
-                               child, in_quotes(entity.joints[incoming[joint.child]].id),
+                   fmt::format("joint {} gives link {} a second parent, after joint {}; {}",
+                               in_quotes(joint.id), child,
+                               in_quotes(entity.joints[incoming[joint.child]].id),
                                advice_on_closing(entity, joint)));
     } else {
       incoming[joint.child] = i;
@@ -170,7 +176,8 @@ void report_unreached(Report& report, const Entity& entity,
       const Joint& joint = entity.joints[incoming[link]];
       report.fault(
           joint.where,
-          fmt::format("joint {0} is part of a loop that never meets the reference link {1}; links form a tree: leave "
+          fmt::format("joint {0} is part of a loop that never meets the reference link {1}; links "
+                      "form a tree: leave "
                       "this joint out, and let one from {1} lead to its child",
                       in_quotes(joint.id), in_quotes(entity.links[entity.reference_link].id)));
     }
@@ -187,7 +194,7 @@ void order_joints(Report& report, Entity& entity) {
   for (std::size_t i = 0; i < entity.joints.size(); ++i) {
     if (incoming[entity.joints[i].child] == i) outgoing[entity.joints[i].parent].push_back(i);
   }
-  // Of the joints whose parent is placed, the first in the document comes next.
+  // Joints whose parent is placed come next, in document order.
   std::priority_queue<std::size_t, std::vector<std::size_t>, std::greater<>> next;
   for (const std::size_t i : outgoing[entity.reference_link]) next.push(i);
   std::vector<Joint> ordered;

@@ -122,13 +122,15 @@ class Scanner {
     if (last.name == name) return;
     const bool is_outer = std::ranges::find(open_, name, &Open::name) != open_.end();
     if (is_outer) {
-      return fail(last.offset, fmt::format("<{0}> is not closed before </{1}> at line {2}; write </{0}>, "
-                                           "or /> at the end of <{0} …> if nothing is in it",
-                                           last.name, name, line_of(begin)));
+      return fail(last.offset,
+                  fmt::format("<{0}> is not closed before </{1}> at line {2}; write </{0}>, "
+                              "or /> at the end of <{0} …> if nothing is in it",
+                              last.name, name, line_of(begin)));
     }
-    fail(begin, fmt::format("</{0}> does not close <{1}> of line {2}; write </{1}>{3}", text::shortened(name), last.name,
-                            line_of(last.offset),
-                            is_nearly(name, last.name) ? fmt::format(", or <{}> there", name) : std::string()));
+    fail(begin, fmt::format("</{0}> does not close <{1}> of line {2}; write </{1}>{3}",
+                            text::shortened(name), last.name, line_of(last.offset),
+                            is_nearly(name, last.name) ? fmt::format(", or <{}> there", name)
+                                                       : std::string()));
   }
 
   void opening_tag() {
@@ -147,7 +149,8 @@ class Scanner {
       if (next() == '\0') return fail_at_end(name, begin);
       if (next() == '<' || next() == '/') {
         return fail(begin, fmt::format("the tag <{}> is not finished; write > or /> behind its "
-                                       "attributes", name));
+                                       "attributes",
+                                       name));
       }
       attribute(name);
     }
@@ -163,8 +166,8 @@ class Scanner {
     skip_white();
     if (next() == '\0') return fail_at_end(element, begin);
     if (next() != '=') {
-      return fail(begin, fmt::format("the attribute {0} of <{1}> has no value; write {0}=\"…\"", name,
-                                     element));
+      return fail(begin, fmt::format("the attribute {0} of <{1}> has no value; write {0}=\"…\"",
+                                     name, element));
     }
     advance(1);
     skip_white();
@@ -179,8 +182,10 @@ class Scanner {
       const std::size_t end = source_.find_first_of(" \t\r\n\"'/<>", begin);
       const std::string_view word = source_.substr(begin, std::min(end, begin + 60) - begin);
       const std::string_view bare = without_curly_quotes(word);
-      return fail(begin, fmt::format("the value of {0} in <{1}> has {3}; write {0}=\"{2}\"", name, element, bare,
-                                     bare == word ? "no quotes" : "curly quotes, which are none in XML"));
+      return fail(
+          begin,
+          fmt::format("the value of {0} in <{1}> has {3}; write {0}=\"{2}\"", name, element, bare,
+                      bare == word ? "no quotes" : "curly quotes, which are none in XML"));
     }
     const std::size_t end = source_.find(quote, begin + 1);
     const std::string_view text = source_.substr(begin + 1, end - begin - 1);
@@ -190,8 +195,10 @@ class Scanner {
     if (ends_well) return;
     const bool runs_on = end == npos || text.find('<') != npos || trimmed(text).ends_with('=');
     if (runs_on) {
-      return fail(begin, fmt::format("the value of {0} in <{1}> has no closing quote; write {2} behind "
-                                     "it, as in {0}={2}…{2}", name, element, quote));
+      return fail(begin,
+                  fmt::format("the value of {0} in <{1}> has no closing quote; write {2} behind "
+                              "it, as in {0}={2}…{2}",
+                              name, element, quote));
     }
     fail(at_, fmt::format("{} stands directly behind the value of {} in <{}>; write a space in "
                           "between, or one quote less",
@@ -199,16 +206,18 @@ class Scanner {
   }
 
   void fail_at_end(std::string_view element, std::size_t offset) {
-    fail(source_.size(), fmt::format("the file ends too early, in the tag <{}> of line {}; complete it, "
-                                     "and close every element that was opened",
-                                     element, line_of(offset)));
+    fail(source_.size(),
+         fmt::format("the file ends too early, in the tag <{}> of line {}; complete it, "
+                     "and close every element that was opened",
+                     element, line_of(offset)));
   }
 
   std::string unclosed() const {
     const Open& last = open_.back();
-    return fmt::format("the file ends too early; close every element that was opened, first <{}> of "
-                       "line {}",
-                       last.name, line_of(last.offset));
+    return fmt::format(
+        "the file ends too early; close every element that was opened, first <{}> of "
+        "line {}",
+        last.name, line_of(last.offset));
   }
 
   std::string_view word() {
@@ -238,7 +247,8 @@ std::size_t end_of_tag(std::string_view source, std::size_t at, std::optional<Ma
     const std::size_t begin = at + 1, end = source.find(source[at], begin);
     if (end == npos) return npos;
     const std::size_t literal = source.substr(begin, end - begin).find('<');
-    if (!fault && literal != npos) fault = Malformed{begin + literal, "< inside a value; write &lt; for a literal <"};
+    if (!fault && literal != npos)
+      fault = Malformed{begin + literal, "< inside a value; write &lt; for a literal <"};
     at = end + 1;
   }
   return at;
@@ -247,7 +257,8 @@ std::size_t end_of_tag(std::string_view source, std::size_t at, std::optional<Ma
 /// Whether an instruction is the XML declaration; XML keeps the name in upper case for itself, too.
 bool is_declaration(std::string_view instruction) {
   const std::string_view name = instruction.substr(2, instruction.find_first_of(" \t\r\n?", 2) - 2);
-  return name.size() == 3 && (name[0] | 32) == 'x' && (name[1] | 32) == 'm' && (name[2] | 32) == 'l';
+  return name.size() == 3 && (name[0] | 32) == 'x' && (name[1] | 32) == 'm' &&
+         (name[2] | 32) == 'l';
 }
 
 }  // namespace

@@ -26,10 +26,11 @@ std::optional<Malformed> find_malformed(std::string_view source);
 struct Unescaped {
   std::optional<Malformed> fault;     ///< the first < inside an attribute's value
   std::optional<std::size_t> dashes;  ///< offset of the first -- inside a comment
-  std::optional<std::size_t> declaration;  ///< offset of the first <?xml that is not the text's beginning
+  std::optional<std::size_t>
+      declaration;  ///< offset of the first <?xml that is not the text's beginning
 };
 
-/// What is no XML by its standard, though the parser reads it.
+/// Finds text that is not XML by its standard, although the parser reads it.
 /// @param source  that the parser has read without error
 Unescaped find_unescaped(std::string_view source);
 

@@ -1,6 +1,7 @@
 #pragma once
-// About how much memory the parts of a scene take: in the scene itself, in the world that is built from it and
-// in what is told of it. Counted while a scene is read, so that one that would take too much is refused before.
+// About how much memory the parts of a scene take: in the scene itself, in the world that is built
+// from it and in what is told of it. Counted while a scene is read, so that one that would take too
+// much is refused before.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,15 +19,15 @@ class Element;
 constexpr std::size_t memory_per_byte = 64;
 
 std::size_t memory_of(const Params& params);
-/// Of a device that a controller fixes to an anchor, in each robot.
+/// Memory of a device that a controller fixes to an anchor, in each robot.
 std::size_t memory_of_mounted(const std::string& id);
-/// What a robot takes for the devices that its controller enables.
+/// Memory of a robot for the devices that its controller enables.
 std::size_t memory_of(const ControllerDevices& devices);
 /// @param controller  its own, or null
 std::size_t memory_of(const Entity& entity, const Controller* controller);
 
-/// Takes from the budget of the scene what an element takes beyond its own text. If that is too much, a fault,
-/// and TooManyFaults.
+/// Takes from the budget of the scene what an element takes beyond its own text. If that is too
+/// much, a fault, and TooManyFaults.
 /// @param memory   of what the element describes [bytes]
 /// @param written  what was taken from the budget for it before [bytes]
 void take_memory(Draft& draft, const Element& element, std::size_t memory, std::size_t written);

@@ -37,7 +37,8 @@ bool has_three_numbers(std::string_view text) {
   return true;
 }
 
-/// A line of a vertex that is cut off, or not written as one: its library would take 0 for what is missing.
+/// A line of a vertex that is cut off, or not written as one: its library would take 0 for what is
+/// missing.
 std::optional<std::string> fault_of_obj(std::string_view text) {
   for (std::size_t line = 1; !text.empty(); ++line) {
     const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
@@ -45,8 +46,11 @@ std::optional<std::string> fault_of_obj(std::string_view text) {
     words.remove_prefix(std::min(words.find_first_not_of(" \t"), words.size()));
     const bool is_vertex = words.starts_with("v ") || words.starts_with("v\t");
     if (is_vertex && !has_three_numbers(words.substr(2))) {
-      return fmt::format("is no whole .obj file: the vertex in line {} has no three numbers; write v X Y Z, or copy the "
-                         "file anew", line);
+      return fmt::format(
+          "is no whole .obj file: the vertex in line {} has no three numbers; write v X Y Z, or "
+          "copy the "
+          "file anew",
+          line);
     }
     text.remove_prefix(std::min(end + (text.substr(end).starts_with("\r\n") ? 2 : 1), text.size()));
   }
@@ -103,15 +107,19 @@ Points read_binary_stl(const std::string& bytes) {
 std::string fault_of_binary_stl(const std::string& bytes) {
   constexpr const char* advice = "export it or copy it anew";
   if (bytes.size() < stl_header) {
-    return fmt::format("is no whole STL file: it ends within its header, after {} of {} bytes; {}", bytes.size(), stl_header, advice);
+    return fmt::format("is no whole STL file: it ends within its header, after {} of {} bytes; {}",
+                       bytes.size(), stl_header, advice);
   }
   const std::uint64_t triangles = little_endian<std::uint32_t>(&bytes[80]);
   const std::uint64_t found = (bytes.size() - stl_header) / stl_triangle;
   if (found < triangles) {
-    return fmt::format("is no whole STL file: it ends within triangle {} of {}; {}", found + 1, triangles, advice);
+    return fmt::format("is no whole STL file: it ends within triangle {} of {}; {}", found + 1,
+                       triangles, advice);
   }
-  return fmt::format("is no STL file that can be read: its header tells of {} triangles, and {} bytes stand behind them; {}",
-                     triangles, bytes.size() - stl_header - triangles * stl_triangle, advice);
+  return fmt::format(
+      "is no STL file that can be read: its header tells of {} triangles, and {} bytes stand "
+      "behind them; {}",
+      triangles, bytes.size() - stl_header - triangles * stl_triangle, advice);
 }
 
 /// Each line `vertex x y z`.
@@ -123,13 +131,17 @@ Read read_text_stl(const std::string& text) {
     if (word != "vertex") continue;
     Vector3 point;
     if (!(words >> point.x() >> point.y() >> point.z())) {
-      return fmt::format("is no whole STL file: vertex {} has no three numbers; write vertex X Y Z, or copy the file anew",
-                         points.size() + 1);
+      return fmt::format(
+          "is no whole STL file: vertex {} has no three numbers; write vertex X Y Z, or copy the "
+          "file anew",
+          points.size() + 1);
     }
     points.push_back(point);
   }
   if (points.size() % 3 != 0) {
-    return fmt::format("is no whole STL file: it ends within triangle {}; export it or copy it anew", points.size() / 3 + 1);
+    return fmt::format(
+        "is no whole STL file: it ends within triangle {}; export it or copy it anew",
+        points.size() / 3 + 1);
   }
   return points;
 }

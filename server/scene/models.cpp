@@ -56,7 +56,8 @@ std::optional<std::size_t> find_model(const Draft& draft, const Element& element
   if (found == draft.model_ids.end()) {
     std::vector<std::string> known;
     const auto& all = draft.scene.models;
-    for (std::size_t i = 0; i < std::min(all.size(), most_compared); ++i) known.push_back(all[i].id);
+    for (std::size_t i = 0; i < std::min(all.size(), most_compared); ++i)
+      known.push_back(all[i].id);
     element.fault_at("model",
                      known.empty()
                          ? "names no model; define it in <models>, or <include> a file that does"

@@ -65,7 +65,7 @@ constexpr auto attribute_homes = std::to_array<Reason>({
     {"restitution", "link"},
 });
 
-/// What the names of their devices begin with.
+/// Beginnings of the names of their devices.
 constexpr auto foreign_robots = std::to_array<Reason>({
     {"eyebot_", "eye-bot"},
     {"kilobot_", "kilobot"},
@@ -121,7 +121,8 @@ std::string list_known(std::span<const std::string_view> candidates) {
     if (listed.size() > most_listed) break;
   }
   std::string list;
-  for (const std::string_view each : std::span(listed).first(std::min(most_listed, listed.size()))) {
+  for (const std::string_view each :
+       std::span(listed).first(std::min(most_listed, listed.size()))) {
     list += (list.empty() ? "" : ", ") + std::string(each.substr(0, longest_compared));
   }
   return fmt::format("known here: {}{}", list, listed.size() > most_listed ? ", …" : "");

@@ -12,7 +12,7 @@
 
 namespace ziggurat::scene {
 
-/// How many candidates are compared with a name: more need not be collected.
+/// Most candidates that are compared with a name: more need not be collected.
 constexpr std::size_t most_compared = 256;
 
 /// The candidate that was probably meant, if one is near enough; the first of equally near ones.
@@ -36,7 +36,8 @@ constexpr std::string_view joint_type = "the type of a joint";
 /// Why an element known elsewhere is not supported here, or nothing if the name means nothing.
 std::optional<std::string_view> unsupported_element(std::string_view name);
 
-/// The robot that a sensor or actuator of that name belongs to, if it is one that does not exist here.
+/// The robot that a sensor or actuator of that name belongs to, if it is one that does not exist
+/// here.
 std::optional<std::string_view> robot_of_device(std::string_view name);
 
 /// The element that has an attribute which others are given by mistake.

@@ -16,16 +16,21 @@ constexpr std::string_view no_index = "bodies are found by their place without a
 constexpr std::string_view ground = "write it on <friction> in it";
 constexpr std::string_view noise_of_sight = "write noise_std_dev";
 constexpr std::string_view noise_of_wheels =
-    "write vel_noise_range and dist_noise_range on the sensor, bias_stddev and factor_stddev on the actuator";
-constexpr std::string_view noise_of_place = "write pos_noise_range, angle_noise_range and axis_noise_range";
+    "write vel_noise_range and dist_noise_range on the sensor, bias_stddev and factor_stddev on "
+    "the actuator";
+constexpr std::string_view noise_of_place =
+    "write pos_noise_range, angle_noise_range and axis_noise_range";
 constexpr std::string_view new_name = "that is its name here";
 constexpr std::string_view radios = "scripts use robot.radios";
+constexpr std::string_view one_solver = "there is one solver, which runs until it converges";
 
 constexpr auto words = std::to_array<OldWord>({
     {attribute, "arena", "positional_index", "", "", no_index},
     {attribute, "arena", "positional_grid_size", "", "", no_index},
     {attribute, "dynamics3d", "default_friction", "", "friction", new_name},
     {attribute, "dynamics3d", "debug_file", "", "", "record the run instead"},
+    {attribute, "dynamics3d", "solver", "", "", one_solver},
+    {attribute, "dynamics3d", "solver_iterations", "", "", one_solver},
     {attribute, "dynamics2d", "box_linear_friction", "", "", ground},
     {attribute, "dynamics2d", "box_angular_friction", "", "", ground},
     {attribute, "dynamics2d", "cylinder_linear_friction", "", "", ground},
@@ -47,15 +52,18 @@ constexpr auto words = std::to_array<OldWord>({
     {attribute, "positioning", "noise_level", "", "", noise_of_place},
     {attribute, "footbot_distance_scanner", "noise_range", "", "", "write noise_level"},
     {attribute, "", "show_rays", "", "", "the device has no rays"},
-    {attribute, "", "virtual_magnetism", "", "", "write <magnetism/> into <dynamics3d>, and <magnets>"},
+    {attribute, "", "virtual_magnetism", "", "",
+     "write <magnetism/> into <dynamics3d>, and <magnets>"},
     {element, "media", "simple_radio", "", "radio", new_name},
     {element, "devices", "simple_radios", "", "radios", new_name},
     {element, "actuators", "simple_radios", "", "radios", radios},
     {element, "sensors", "simple_radios", "", "radios", radios},
     {element, "dynamics3d", "srocs", "", "", "write <magnetism/>, and <magnets>"},
-    {element, "", "virtual_magnetism", "", "", "write <magnetism/> into <dynamics3d>, and <magnets>"},
+    {element, "", "virtual_magnetism", "", "",
+     "write <magnetism/> into <dynamics3d>, and <magnets>"},
     {value, "link", "geometry", "convex_hull", "hull", new_name},
-    {value, "range_and_bearing", "index", "dummy", "grid", "devices are found by their place anyway"},
+    {value, "range_and_bearing", "index", "dummy", "grid",
+     "devices are found by their place anyway"},
 });
 
 const OldWord* find(OldWord::Kind kind, std::string_view home, auto fits) {
@@ -80,14 +88,17 @@ const OldWord* old_element(std::string_view home, std::string_view name) {
 }
 
 const OldWord* old_value(std::string_view home, std::string_view name, std::string_view text) {
-  return find(value, home, [&](const OldWord& word) { return word.word == name && word.value == text; });
+  return find(value, home,
+              [&](const OldWord& word) { return word.word == name && word.value == text; });
 }
 
 std::string notice_of(const OldWord& word, std::string_view home) {
-  const bool is_element = word.kind == OldWord::Kind::element, is_value = word.kind == OldWord::Kind::value;
+  const bool is_element = word.kind == OldWord::Kind::element,
+             is_value = word.kind == OldWord::Kind::value;
   const std::string what = is_element ? fmt::format("<{}> in <{}>", word.word, home)
-                           : is_value ? fmt::format("{}=\"{}\" of <{}>", word.word, word.value, home)
-                                      : fmt::format("{} of <{}>", word.word, home);
+                           : is_value
+                               ? fmt::format("{}=\"{}\" of <{}>", word.word, word.value, home)
+                               : fmt::format("{} of <{}>", word.word, home);
   if (word.now.empty()) return fmt::format("{} has no effect here: {}", what, word.why);
   const std::string now = is_element ? fmt::format("<{}>", word.now)
                           : is_value ? fmt::format("\"{}\"", word.now)

@@ -1,6 +1,6 @@
 #pragma once
-// Old words of the dialect: attributes, elements and values that other versions of it have, and what they
-// are here. None of them is a fault; each is a notice.
+// Old words of the dialect: attributes, elements and values that other versions of it have, and
+// what they are here. None of them is a fault; each is a notice.
 
 #include <string>
 #include <string_view>
@@ -18,13 +18,13 @@ struct OldWord {
   std::string_view why;    ///< of that; continues the notice
 };
 
-/// What an attribute of that name is in an element; null: nothing that is known.
+/// Meaning of an attribute of that name in an element; null: it is unknown.
 const OldWord* old_attribute(std::string_view home, std::string_view name);
 /// The attribute of other versions that is read as this one; null: none.
 const OldWord* old_name_of(std::string_view home, std::string_view attribute);
-/// What an element of that name is in another; null: nothing that is known.
+/// Meaning of an element of that name in another; null: it is unknown.
 const OldWord* old_element(std::string_view home, std::string_view name);
-/// What a value of an attribute is read as; null: as itself.
+/// Value that stands for this value of an attribute; null: it stands for itself.
 const OldWord* old_value(std::string_view home, std::string_view attribute, std::string_view value);
 
 /// The notice: `index="dummy" of <led> is read as "grid": …`.

@@ -23,9 +23,11 @@ std::vector<std::string> names_of(const Parameters& parameters) {
 
 Wrong unknown(std::string_view name, const Parameters& parameters) {
   if (parameters.is_open()) {
-    return {fmt::format("uses ${{{}}}, and values in <parameters> are not made of other parameters; write the value itself, or $${{ "
-                        "for a literal ${{",
-                        text::shortened(name))};
+    return {
+        fmt::format("uses ${{{}}}, and values in <parameters> are not made of other parameters; "
+                    "write the value itself, or $${{ "
+                    "for a literal ${{",
+                    text::shortened(name))};
   }
   return {parameters.empty()
               ? fmt::format("uses ${{{0}}}, and the scene has no parameters; write <parameters "
@@ -35,9 +37,12 @@ Wrong unknown(std::string_view name, const Parameters& parameters) {
                             advice(name, names_of(parameters)))};
 }
 
-bool is_number(std::string_view text) { return std::holds_alternative<double>(number(trimmed(text))); }
+bool is_number(std::string_view text) {
+  return std::holds_alternative<double>(number(trimmed(text)));
+}
 
-/// "1|2|3" for "1,2,3", "1;2;3" or "1 2 3", as a sweep is told of several values; empty if these are no numbers.
+/// "1|2|3" for "1,2,3", "1;2;3" or "1 2 3", as a sweep is told of several values; empty if these
+/// are no numbers.
 std::string as_values(std::string_view text) {
   constexpr std::string_view separators = ",; \t";
   std::string values;
@@ -54,20 +59,24 @@ std::string as_values(std::string_view text) {
 
 bool is_range(std::string_view text) {
   const std::size_t dots = text.find("..");
-  return dots != std::string_view::npos && is_number(text.substr(0, dots)) && is_number(text.substr(dots + 2));
+  return dots != std::string_view::npos && is_number(text.substr(0, dots)) &&
+         is_number(text.substr(dots + 2));
 }
 
-/// Where the scene has one number, several are probably meant for as many runs.
+/// Warns about several numbers for a parameter with one number in the scene: probably as many runs
+/// are meant.
 /// @param given  by the command line
 std::string doubt(const Parameter& declared, const std::string& given) {
   if (!is_number(declared.value)) return {};
   std::string values = as_values(given);
   if (values.empty() && is_range(given)) values = "1|2|3";
   if (values.empty()) return {};
-  return fmt::format("--param {0}={1} is one value, the text {2}, where the scene has the number {3}; for a run with each of "
-                     "several write: ziggurat sweep … --param '{0}={4}'",
-                     text::shortened(declared.name), text::shortened(given), in_quotes(given),
-                     text::shortened(declared.value), text::shortened(values));
+  return fmt::format(
+      "--param {0}={1} is one value, the text {2}, where the scene has the number {3}; for a run "
+      "with each of "
+      "several write: ziggurat sweep … --param '{0}={4}'",
+      text::shortened(declared.name), text::shortened(given), in_quotes(given),
+      text::shortened(declared.value), text::shortened(values));
 }
 
 }  // namespace
@@ -78,7 +87,8 @@ const Parameter* Parameters::find(std::string_view name) const {
 }
 
 void Parameters::declare(std::string name, std::string value) {
-  if (index_.emplace(name, list_.size()).second) list_.push_back({std::move(name), std::move(value)});
+  if (index_.emplace(name, list_.size()).second)
+    list_.push_back({std::move(name), std::move(value)});
 }
 
 bool Parameters::give(std::string_view name, std::string value) {
@@ -93,7 +103,8 @@ Value<std::string> expand(std::string_view text, const Parameters& parameters) {
   std::string result;
   for (std::size_t begin = 0;;) {
     const std::size_t found = text.find("${", begin);
-    const bool is_literal = found != std::string_view::npos && found > begin && text[found - 1] == '$';
+    const bool is_literal =
+        found != std::string_view::npos && found > begin && text[found - 1] == '$';
     result += text.substr(begin, is_literal ? found - 1 - begin : found - begin);
     if (result.size() > longest_text) {
       return Wrong{fmt::format("has more than {} bytes with its parameters", longest_text)};
@@ -153,7 +164,8 @@ void read_parameters(Draft& draft, Element& root) {
             ? fmt::format("--param {0}={1}: the scene has no parameters; write <parameters "
                           "{0}=\"{1}\"/> into <argos-configuration>",
                           text::shortened(name), text::shortened(value))
-            : fmt::format("--param {}={}: the scene has no such parameter; {}", text::shortened(name), text::shortened(value),
+            : fmt::format("--param {}={}: the scene has no such parameter; {}",
+                          text::shortened(name), text::shortened(value),
                           advice(name, names_of(draft.parameters))));
   }
 }

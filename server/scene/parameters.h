@@ -1,6 +1,6 @@
 #pragma once
-// Parameters of a scene: `<parameters gain="0.5"/>` declares them with their usual values, `--param`
-// gives others, and `${gain}` in any attribute stands for the value.
+// Parameters of a scene: `<parameters gain="0.5"/>` declares them with their usual values,
+// `--param` gives others, and `${gain}` in any attribute stands for the value.
 
 #include <cstddef>
 #include <string>
@@ -31,7 +31,7 @@ class Parameters {
   /// While they are declared, none can be used.
   void set_open(bool is_open) { is_open_ = is_open; }
   bool is_open() const { return is_open_; }
-  /// Of several with the same name, the first counts.
+  /// Declares a parameter; the first of several with the same name counts.
   void declare(std::string name, std::string value);
   /// A value of the command line. @returns whether a parameter has that name
   bool give(std::string_view name, std::string value);
@@ -45,11 +45,11 @@ class Parameters {
 /// Names and values, as of <params>.
 using Params = std::vector<std::pair<std::string, std::string>>;
 
-/// What an attribute's text means: each `${name}` replaced, and `$${` is `${`.
+/// Value of an attribute's text: each `${name}` is replaced, and `$${` is `${`.
 Value<std::string> expand(std::string_view text, const Parameters& parameters);
 
-/// What a controller gets: its <params>, with what the command line gives for the same names, and
-/// the other parameters behind them.
+/// Parameters of a controller. Values of the command line replace those of its <params>; the other
+/// parameters follow.
 Params with_parameters(Params params, const Parameters& parameters);
 
 }  // namespace ziggurat::scene

@@ -45,23 +45,28 @@ bool is_nearly_usual(std::string_view name) {
 bool check_root(const Element& root, const pugi::xml_node& node) {
   for (const auto& [name, format] : foreign_roots) {
     if (root.name() != name || node.child("arena")) continue;
-    root.fault(fmt::format("is the root of {}, which cannot be read; a scene begins with "
-                           "<argos-configuration>, and its robots are written as <prototype>",
-                           format));
+    root.fault(
+        fmt::format("is the root of {}, which cannot be read; a scene begins with "
+                    "<argos-configuration>, and its robots are written as <prototype>",
+                    format));
     return false;
   }
   const bool has_models = node.child("models") || root.name() == "models";
-  const bool has_scene = node.child("arena") || node.child("framework") || node.child("physics_engines");
+  const bool has_scene =
+      node.child("arena") || node.child("framework") || node.child("physics_engines");
   if (has_scene) return true;
   if (has_models) {
-    root.fault("has models for scenes, but is no scene itself; run a scene with "
-               "<include file=\"…\"/> of this file");
+    root.fault(
+        "has models for scenes, but is no scene itself; run a scene with "
+        "<include file=\"…\"/> of this file");
     return false;
   }
   const bool may_be_one = root.name() == "argos" || is_nearly_usual(root.name());
   if (may_be_one || node.child("controllers") || node.child("media")) return true;
-  root.fault("is no scene: it has neither <framework> nor <arena>; a scene begins with <argos-configuration>, "
-             "which has both");
+  root.fault(
+      "is no scene: it has neither <framework> nor <arena>; a scene begins with "
+      "<argos-configuration>, "
+      "which has both");
   return false;
 }
 
@@ -69,7 +74,8 @@ bool check_root(const Element& root, const pugi::xml_node& node) {
 void doubt_root(Draft& draft, const Element& root) {
   if (root.name() == usual_root || !is_nearly_usual(root.name())) return;
   draft.report.warn(root.where(), "root",
-                    fmt::format("the root element is <{}>; did you mean <{}>? It is read as one", root.name(), usual_root));
+                    fmt::format("the root element is <{}>; did you mean <{}>? It is read as one",
+                                root.name(), usual_root));
 }
 
 /// Reports the settings that set nothing, and those that set more than one attribute.
@@ -83,8 +89,8 @@ void check_settings(Draft& draft, const Document& document) {
     }
     const std::size_t count = std::get<0>(draft.set[i]);
     if (count == 0) {
-      draft.report.fault({}, fmt::format("{}: the path {}", option,
-                                         why_nothing(document.root(), setting.path)));
+      draft.report.fault(
+          {}, fmt::format("{}: the path {}", option, why_nothing(document.root(), setting.path)));
     } else if (count > 1) {
       draft.report.notice({}, fmt::format("{} sets {} attributes", option, count));
     }
@@ -129,8 +135,10 @@ constexpr std::size_t most_settings = 256;
 
 ReadResult read(File file, const std::string& name, const ReadOptions& options) {
   if (options.variation.settings.size() > most_settings) {
-    return refuse(name, fmt::format("--set is given {} times; at most {} are allowed, so change the scene itself",
-                                    options.variation.settings.size(), most_settings));
+    return refuse(
+        name,
+        fmt::format("--set is given {} times; at most {} are allowed, so change the scene itself",
+                    options.variation.settings.size(), most_settings));
   }
   ReadResult result;
   result.scene.variation = options.variation;

@@ -18,21 +18,19 @@ constexpr std::size_t most_advised = 50;  // comparing long names with many take
 void Report::fault(Location where, std::string text, std::vector<std::string_view> causes) {
   if (!subject.empty()) text += fmt::format(" (in {})", subject);
   const std::string& file = files_[where.file];
-  entries_.push_back(
-      {{Problem::Severity::fault, file, where, std::move(text)}, std::move(causes)});
+  entries_.push_back({{Problem::Severity::fault, file, where, std::move(text)}, std::move(causes)});
   if (++faults_ < most_faults_) return;
-  entries_.push_back(
-      {{Problem::Severity::fault, file, where,
-        fmt::format("{} faults; the rest of the file was not read", faults_)},
-       {}});
+  entries_.push_back({{Problem::Severity::fault, file, where,
+                       fmt::format("{} faults; the rest of the file was not read", faults_)},
+                      {}});
   throw TooManyFaults{};
 }
 
 void Report::notice(Location where, std::string text) {
   if (noticed_.size() > most_notices || !noticed_.insert(text).second) return;
-  if (noticed_.size() > most_notices) text = fmt::format("{} notices; others are not told", most_notices);
-  entries_.push_back(
-      {{Problem::Severity::notice, files_[where.file], where, std::move(text)}, {}});
+  if (noticed_.size() > most_notices)
+    text = fmt::format("{} notices; others are not told", most_notices);
+  entries_.push_back({{Problem::Severity::notice, files_[where.file], where, std::move(text)}, {}});
 }
 
 void Report::warn(Location where, std::string_view kind, std::string text) {

@@ -1,9 +1,9 @@
 #pragma once
-// What a scene file may say, as plain data: everything resolved to SI units, radians and
-// quaternions, names resolved to indices, defaults filled in. Degrees and XML end in the reader.
+// Content of a scene file as plain data. Everything is resolved to SI units, radians and
+// quaternions, names to indices, and defaults are filled in. Degrees and XML end in the reader.
 //
-// Frames: Z up, right-handed. W world, E entity origin, L link,
-// J joint. scene/geometry.h says where shapes have their frames.
+// Frames: Z up, right-handed. W world, E entity origin, L link, J joint. scene/geometry.h gives the
+// frames of shapes.
 
 #include <array>
 #include <cstddef>
@@ -25,29 +25,12 @@ namespace ziggurat::scene {
 
 // --- time -------------------------------------------------------------------------------------
 
-/// How much physical time a tick's substeps add up to.
+/// Physical time of a tick, as the sum of its substeps.
 enum class Clock {
   nominal,  ///< a tick is 1/ticks_per_second s, in `iterations` equal substeps
   beta50,   ///< `iterations` substeps of 1/(ticks_per_second * iterations^2) s: the slow clock
             ///< of ARGoS 3.0.0-beta50, for scenes whose parameters were tuned under it
 };
-
-/// What moves bodies on.
-enum class Solver {
-  sweeps,  ///< Bullet's multi-bodies, and sweeps over rows of joints and contacts
-  newton,  ///< equations of motion of our own, contacts by Newton's method
-};
-
-/// What moves bodies where a scene names no solver. Recorded runs under the slow clock are
-/// reproduced by sweeps.
-constexpr Solver usual_solver(Clock clock) {
-  return clock == Clock::beta50 ? Solver::sweeps : Solver::newton;
-}
-
-/// As in a scene file.
-constexpr const char* to_text(Solver solver) {
-  return solver == Solver::newton ? "newton" : "sweeps";
-}
 
 struct Experiment {
   unsigned ticks_per_second = 10;  ///< >= 1
@@ -58,7 +41,7 @@ struct Experiment {
 
 // --- bodies -----------------------------------------------------------------------------------
 
-/// How a surface rubs and bounces.
+/// Friction and restitution of a surface.
 struct Surface {
   double friction = 0.5;           ///< Coulomb coefficient; two surfaces combine by product
   double rolling_friction = 0.0;   ///< [m]: resisting torque per normal force; by sum
@@ -70,8 +53,8 @@ struct Surface {
 struct Damping {
   double linear = 0.0;   ///< k for the velocity [1/s and 1/m]
   double angular = 0.0;  ///< k for the angular velocity [1/s and 1]
-  /// Whether each is only what the dialect takes where the file says nothing: without effect with
-  /// solver="newton" at the nominal clock.
+  /// Whether each is only what the dialect takes where the file says nothing: without effect at the
+  /// nominal clock.
   bool usual_linear = false, usual_angular = false;
 };
 
@@ -121,8 +104,8 @@ constexpr bool is_single(EntityKind kind) {
   return kind == EntityKind::box || kind == EntityKind::cylinder || kind == EntityKind::sphere;
 }
 
-/// What holds a body upright and to a motion over the ground: driven wheels, or the friction of
-/// the ground in a two-dimensional engine, which only brakes.
+/// Traction that keeps a body upright and holds its motion over the ground. It is that of driven
+/// wheels, or the braking friction of the ground in a two-dimensional engine.
 struct Traction {
   double max_force = 0;   ///< along its x axis, and as much across it [N]
   double max_torque = 0;  ///< about z [N m]
@@ -198,9 +181,10 @@ struct Physics {
   std::string id;
   unsigned iterations = 10;  ///< substeps per tick, >= 1
   Clock clock = Clock::nominal;
-  Solver solver = usual_solver(clock);
-  std::optional<double> max_substep;          ///< [s]: longer substeps are split inside
-  std::optional<unsigned> solver_iterations;  ///< constraint solver sweeps per substep
+  /// Whether earlier versions moved it by a second core: by solver="sweeps", or under beta50
+  /// without a solver. A recording of theirs can't be repeated.
+  bool had_second_core = false;
+  std::optional<double> max_substep;  ///< [s]: longer substeps are split inside
   std::optional<Floor> floor;
   std::optional<double> gravity;  ///< downward acceleration [m/s^2]
   std::optional<Magnetism> magnetism;

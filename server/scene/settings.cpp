@@ -14,7 +14,7 @@
 namespace ziggurat::scene {
 namespace {
 
-/// Where a character stands first outside of brackets and quotes, or npos.
+/// Position of a character's first occurrence outside of brackets and quotes, or npos.
 std::size_t find_outside(std::string_view text, char wanted, std::size_t begin = 0) {
   int depth = 0;
   char quote = 0;
@@ -61,16 +61,19 @@ Ending ending_of(const std::string& path) {
 
 constexpr std::size_t longest_path = 1024;  // [bytes]
 
-/// Whether a condition takes a time in proportion to what stands below its element: it compares paths down from
-/// there with fixed values.
+/// Whether a condition takes a time in proportion to what stands below its element: it compares
+/// paths down from there with fixed values.
 bool is_cheap(std::string_view condition) {
   static const std::regex cheap = [] {
     const std::string more = R"([^\s\[\]()'"/@=<>!|,*+$:])", name = R"((?![-.0-9]))" + more + "+";
-    const std::string step = "(?:" + name + R"(|\*|\.(?!\.)))", attribute = "@(?:" + name + R"(|\*))";
-    const std::string path = "(?:" + attribute + "|" + step + "(?:/" + step + ")*(?:/" + attribute + ")?)";
+    const std::string step = "(?:" + name + R"(|\*|\.(?!\.)))",
+                      attribute = "@(?:" + name + R"(|\*))";
+    const std::string path =
+        "(?:" + attribute + "|" + step + "(?:/" + step + ")*(?:/" + attribute + ")?)";
     const std::string value = R"((?:'[^']*'|"[^"]*"|-?[0-9]+(?:\.[0-9]+)?))";
-    const std::string call = R"((?:position\(\)|last\(\)|count\()" + path + R"(\)|(?:starts-with|contains)\()" +
-                             path + R"(,\s*)" + value + R"(\)))";
+    const std::string call = R"((?:position\(\)|last\(\)|count\()" + path +
+                             R"(\)|(?:starts-with|contains)\()" + path + R"(,\s*)" + value +
+                             R"(\)))";
     const std::string comparison =
         "(?:(?:" + call + "|" + path + ")(?:\\s*(?:=|!=|<=?|>=?)\\s*" + value + ")?|[0-9]+)";
     const std::string term = "(?:" + comparison + "|not\\(" + comparison + "\\))";
@@ -79,11 +82,13 @@ bool is_cheap(std::string_view condition) {
   return std::regex_match(condition.begin(), condition.end(), cheap);
 }
 
-/// Conditions in conditions or with far paths, axes, several `//` and many `..`, as in `*/../*/../*`, take a time
-/// that grows with a power of the scene's size or of the path's.
+/// Refuses paths whose cost grows with a power of the scene's size or of their length. They are
+/// conditions in conditions or with far paths, axes, several `//`, and many `..` as in
+/// `*/../*/../*`.
 std::optional<Wrong> check_cost(std::string_view path) {
   if (path.size() > longest_path) {
-    return Wrong{fmt::format("has {} characters; at most {} are allowed", path.size(), longest_path)};
+    return Wrong{
+        fmt::format("has {} characters; at most {} are allowed", path.size(), longest_path)};
   }
   constexpr std::size_t most_upward = 3;
   std::size_t begin = 0, anywhere = 0, upward = 0;  // of the condition; number of // and of ..
@@ -96,16 +101,20 @@ std::optional<Wrong> check_cost(std::string_view path) {
     } else if (c == '"' || c == '\'') {
       quote = c;
     } else if (path.substr(i, 2) == "::") {
-      return Wrong{"has an axis (::); write element names, * and .. between /, or // before the first"};
+      return Wrong{
+          "has an axis (::); write element names, * and .. between /, or // before the first"};
     } else if (c == '[') {
-      if (is_condition) return Wrong{"has [conditions] in [conditions]; write several after another: a[@x][b/@y]"};
+      if (is_condition)
+        return Wrong{"has [conditions] in [conditions]; write several after another: a[@x][b/@y]"};
       is_condition = true;
       begin = i + 1;
     } else if (c == ']' && is_condition) {
       is_condition = false;
       if (const auto condition = path.substr(begin, i - begin); !is_cheap(condition)) {
-        return Wrong{fmt::format("has the condition [{}]; write paths below the element, without // and .., and compare "
-                                 "them with values: [@x='1' and b/@y]", text::shortened(condition))};
+        return Wrong{fmt::format(
+            "has the condition [{}]; write paths below the element, without // and .., and compare "
+            "them with values: [@x='1' and b/@y]",
+            text::shortened(condition))};
       }
     } else if (!is_condition && path.substr(i, 2) == "//" && ++anywhere > 1) {
       return Wrong{"has // more than once; write the names of the elements between"};
@@ -158,7 +167,8 @@ Value<Setting> to_setting(std::string_view text) {
   if (equals == std::string_view::npos || trimmed(text.substr(0, equals)).empty()) {
     return Wrong{"is no setting; write PATH=VALUE, for example 'arena/@size=2,2,1'"};
   }
-  return Setting{std::string(trimmed(text.substr(0, equals))), std::string(text.substr(equals + 1))};
+  return Setting{std::string(trimmed(text.substr(0, equals))),
+                 std::string(text.substr(equals + 1))};
 }
 
 Value<std::pair<std::string, std::string>> to_parameter(std::string_view text) {
@@ -171,12 +181,14 @@ Value<std::pair<std::string, std::string>> to_parameter(std::string_view text) {
 }
 
 std::string to_string(const Setting& setting) {
-  return fmt::format("--set '{}={}'", text::shortened(setting.path), text::shortened(setting.value));
+  return fmt::format("--set '{}={}'", text::shortened(setting.path),
+                     text::shortened(setting.value));
 }
 
 std::string to_text(const Variation& variation) {
   std::string text;
-  for (const auto& [path, value] : variation.settings) text += fmt::format("set {}={}\n", path, value);
+  for (const auto& [path, value] : variation.settings)
+    text += fmt::format("set {}={}\n", path, value);
   for (const auto& [name, value] : variation.parameters) {
     text += fmt::format("param {}={}\n", name, value);
   }
@@ -222,9 +234,10 @@ std::string why_nothing(const pugi::xml_node& root, const std::string& path) {
     if (end == path.size() && ending_of(path).name.empty()) {
       const auto attributes = names_in(std::get<0>(parents), true);
       const bool is_one = std::ranges::find(attributes, name) != attributes.end();
-      return fmt::format("matches nothing: {} {}", in_quotes(step),
-                         is_one ? fmt::format("is an attribute, and its name begins with @: write @{}", name)
-                                : "is no element, and the path names no attribute: let it end with /@NAME");
+      return fmt::format(
+          "matches nothing: {} {}", in_quotes(step),
+          is_one ? fmt::format("is an attribute, and its name begins with @: write @{}", name)
+                 : "is no element, and the path names no attribute: let it end with /@NAME");
     }
     return fmt::format("matches nothing: there is no {}{}", in_quotes(step),
                        is_known ? "" : "; " + advice(name, known));

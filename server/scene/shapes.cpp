@@ -68,8 +68,9 @@ std::vector<math::Vector3> read_vertices(Draft& draft, Element& hull) {
   auto opened = draft.options.open(path, most);
   if (std::string* why = std::get_if<std::string>(&opened)) {
     if (most == most_mesh_bytes && *why == too_large(most)) {
-      *why = fmt::format("is larger than {} MiB; write one with fewer triangles (a hull has at most {} corners)",
-                         most_mesh_bytes >> 20, Hull::most_vertices);
+      *why = fmt::format(
+          "is larger than {} MiB; write one with fewer triangles (a hull has at most {} corners)",
+          most_mesh_bytes >> 20, Hull::most_vertices);
     }
     hull.fault_at("file", fmt::format("names {}, which {}", in_quotes(path.string()), *why));
     return {};
@@ -100,8 +101,9 @@ std::vector<math::Vector3> points_in_text(const Element& link, std::string_view 
     auto point = left.front() == '(' && end != left.npos ? position(left.substr(1, end - 1))
                                                          : Wrong{"is no list of points"};
     if (const Wrong* wrong = std::get_if<Wrong>(&point)) {
-      link.fault(fmt::format("has the text {}, which {}; write (x,y,z)(x,y,z)…, or <hull> with a <vertex> for each",
-                             in_quotes(left), wrong->text));
+      link.fault(fmt::format(
+          "has the text {}, which {}; write (x,y,z)(x,y,z)…, or <hull> with a <vertex> for each",
+          in_quotes(left), wrong->text));
       return {};
     }
     points.push_back(std::get<0>(point));
@@ -119,7 +121,8 @@ Hull hull_of(const Element& from, const std::vector<math::Vector3>& points) {
 }
 
 Hull read_hull(Draft& draft, Element& element) {
-  if (const std::string_view text = trimmed(element.take_text()); !text.empty() && !element.child("hull")) {
+  if (const std::string_view text = trimmed(element.take_text());
+      !text.empty() && !element.child("hull")) {
     const auto points = points_in_text(element, text);
     return points.empty() ? unit_hull() : hull_of(element, points);
   }
@@ -171,7 +174,9 @@ Geometry read_geometry(Draft& draft, Element& link) {
   const Geometry geometry = read_shape(draft, link, *name);
   constexpr std::string_view why = "the geometry has no such extent";
   const std::vector<std::string> asked = link.asked();
-  const auto was_asked = [&](const char* attribute) { return std::ranges::find(asked, attribute) != asked.end(); };
+  const auto was_asked = [&](const char* attribute) {
+    return std::ranges::find(asked, attribute) != asked.end();
+  };
   if (!was_asked("size")) link.without_effect("size", vector3, why);
   for (const char* extent : {"radius", "height"}) {
     if (!was_asked(extent)) link.without_effect(extent, number, why);

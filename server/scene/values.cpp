@@ -171,10 +171,14 @@ Value<double> length(std::string_view text) {
   if (!v || (*v >= shortest_length && *v <= longest_length)) return value;
   if (*v < 0) return Wrong{"is not positive; write a length from 1e-6 to 1e6 m"};
   if (*v < shortest_length) {
-    return Wrong{"is below 1e-6 m, the least length of a scene: what has no extent has no inertia and touches "
-                 "nothing; write 1e-6 to 1e6 m"};
+    return Wrong{
+        "is below 1e-6 m, the least length of a scene: what has no extent has no inertia and "
+        "touches "
+        "nothing; write 1e-6 to 1e6 m"};
   }
-  return Wrong{"is above 1e6 m, the largest length of a scene: beyond, contacts are inexact; write 1e-6 to 1e6 m"};
+  return Wrong{
+      "is above 1e6 m, the largest length of a scene: beyond, contacts are inexact; write 1e-6 to "
+      "1e6 m"};
 }
 
 Value<double> mass(std::string_view text) {

@@ -1,6 +1,6 @@
 #pragma once
-// What the values of attributes mean: text in, SI units, radians and quaternions out.
-// Every function takes the text with the white space around it removed.
+// Readers of attributes' values: text in, SI units, radians and quaternions out. Every function
+// takes the text with the white space around it removed.
 
 #include <array>
 #include <cstdint>

@@ -1,5 +1,5 @@
 #pragma once
-// How a run differs from what its scene file says, apart from options with a name of their own.
+// Variation of a run against its scene file, apart from options with a name of their own.
 
 #include <string>
 #include <utility>

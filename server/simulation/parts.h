@@ -9,7 +9,7 @@
 #include "devices/devices.h"
 #include "math/archive.h"
 #include "media/devices_index.h"
-#include "physics/ray.h"
+#include "physics/collision/ray.h"
 #include "physics/world.h"
 #include "simulation/simulation.h"
 
@@ -28,26 +28,21 @@ struct Simulation::Parts {
     return {layout, state, observations, commands, physics, rays, *index, all};
   }
   void list_contacts(bool wanted);
-  void look_around();  // rays and index take the poses of the state
+  void look_around();          // rays and index take the poses of the state
   bool looks_are_old = false;  // they have not since something was moved, added or removed
   /// @throws std::runtime_error that names the first entity whose state is not finite then
   void step();
   void move(std::size_t entity, const math::Pose& pose);
 
-  /// All that the next step reads. @pre has_archive; @throws math::ArchiveError
+  /// All that the next step reads. @throws math::ArchiveError
   void archive(math::Archive& archive);
   /// Does again what was done to a world that began as this one did. With another seed than the
   /// snapshot's random streams stay at their begin.
-  void repeat(const scene::Scene& scene, const Snapshot& snapshot, world::Layout& grown,
-              const std::function<void()>& tell);
+  void repeat(const scene::Scene& scene, const Snapshot& snapshot, world::Layout& grown);
   std::vector<std::byte> with_own_streams(const std::vector<std::byte>& given);
   void repeat_edit(const scene::Scene& scene, const WorldEdit& edit, world::Layout& grown);
-  /// Writes down what the coming step takes, if only repeating gives the state again.
-  void note_commands();
-  void note_move(std::size_t entity, const math::Pose& pose);
 
   std::uint64_t seed;
-  bool has_archive;  // otherwise only the same steps again give the same state
   unsigned ticks_per_second;
   unsigned substeps;
   double substep;  // [s]
@@ -67,8 +62,6 @@ struct Simulation::Parts {
   std::size_t in_physics = 0, in_rays = 0;  // entities
   History history;
   std::size_t archive_size = 0;  // of the last snapshot [bytes]
-  std::vector<std::byte> commanded;   // of the last step that was written down
-  std::vector<std::byte> commanding;  // of the coming one; its memory is kept
 };
 
 }  // namespace ziggurat::simulation

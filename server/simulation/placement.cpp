@@ -94,15 +94,17 @@ class Search {
 
 /// Why it ends before 'max_trials' says; empty if it does not.
 std::string limit_of(const Search& search) {
-  if (search.is_out_of_attempts()) return fmt::format(", and a scene has {} in all", search.limits.attempts);
+  if (search.is_out_of_attempts())
+    return fmt::format(", and a scene has {} in all", search.limits.attempts);
   if (search.is_out_of_effort()) return ", each so long that a scene has no more";
   return {};
 }
 
 /// @param tried   for this entity
 /// @param placed  entities of this group
-[[noreturn]] void no_place(const Search& search, const scene::Distribution& group, const std::string& id,
-                           std::size_t tried, unsigned placed, const std::string& other) {
+[[noreturn]] void no_place(const Search& search, const scene::Distribution& group,
+                           const std::string& id, std::size_t tried, unsigned placed,
+                           const std::string& other) {
   const bool is_grid = group.position.method == scene::DistributionMethod::grid;
   const std::string limit = limit_of(search);
   scene::Problem problem;
@@ -110,12 +112,14 @@ std::string limit_of(const Search& search) {
   problem.where = group.where;
   if (is_grid) {
     problem.text = fmt::format(
-        "<distribute>: '{}' overlaps '{}' in its grid cell, after {} of {} were placed; make 'distances' larger or "
+        "<distribute>: '{}' overlaps '{}' in its grid cell, after {} of {} were placed; make "
+        "'distances' larger or "
         "move what stands in the way",
         id, other, placed, group.quantity);
   } else {
     problem.text = fmt::format(
-        "<distribute>: no free place for '{}' in {} attempts{}, after {} of {} were placed (the last attempt "
+        "<distribute>: no free place for '{}' in {} attempts{}, after {} of {} were placed (the "
+        "last attempt "
         "overlapped '{}'); widen the range{} place fewer{}",
         id, tried, limit, placed, group.quantity, other, limit.empty() ? "," : " or",
         limit.empty() ? " or raise 'max_trials'" : "");
@@ -124,13 +128,15 @@ std::string limit_of(const Search& search) {
 }
 
 /// Ends a search that takes too long though it finds places.
-void check_effort(const Search& search, const scene::Distribution& group, unsigned placed, std::size_t effort) {
+void check_effort(const Search& search, const scene::Distribution& group, unsigned placed,
+                  std::size_t effort) {
   if (effort < search.limits.all_effort) return;
   scene::Problem problem;
   problem.file = search.scene.files.empty() ? "" : search.scene.files[group.where.file];
   problem.where = group.where;
   problem.text = fmt::format(
-      "<distribute>: it takes too long to find places, after {} of {} were found: too many bodies, or parts of them, are "
+      "<distribute>: it takes too long to find places, after {} of {} were found: too many bodies, "
+      "or parts of them, are "
       "near each other, or are long and thin; place fewer, or farther apart",
       placed, group.quantity);
   throw scene::SceneError({problem});
@@ -165,8 +171,8 @@ void distribute(Search& search, const scene::Distribution& group, math::RandomSt
 
 }  // namespace
 
-std::vector<scene::Entity> place_entities(const scene::Scene& scene, std::uint64_t seed, const TellStep& tell,
-                                 SearchLimits limits) {
+std::vector<scene::Entity> place_entities(const scene::Scene& scene, std::uint64_t seed,
+                                          const TellStep& tell, SearchLimits limits) {
   std::vector<scene::Entity> entities = scene.entities;
   physics::Placement placement;
   if (!scene.distributions.empty()) {

@@ -18,10 +18,10 @@ namespace {
 
 using math::Vector3;
 
-constexpr std::size_t most_compared = 5000;  // placed entities, for overlaps
-constexpr std::size_t most_pairs = 100'000'000;  // of what may fall with what may hold it
-constexpr std::size_t most_effort = 10'000'000;  // of physics::Placement
-constexpr double deep = 1e-3;                // in the floor [m]
+constexpr std::size_t most_compared = 5000;            // placed entities, for overlaps
+constexpr std::size_t most_pairs = 100'000'000;        // of what may fall with what may hold it
+constexpr std::size_t most_effort = 10'000'000;        // of physics::Placement
+constexpr double deep = 1e-3;                          // in the floor [m]
 constexpr double huge_movable = 10, huge_fixed = 100;  // times the arena's longest side
 constexpr double far_joint = 10;                       // the same, from its links
 constexpr double long_limit = 50;  // of a prismatic joint, times the entity's size
@@ -66,7 +66,8 @@ class SceneWarnings {
       for (std::size_t l = 0; l < entities_[e].links.size(); ++l) {
         const scene::Link& link = entities_[e].links[l];
         if (!link.collides) continue;
-        extent.add(extent_of(link, simulation.state().links[layout_.entities[e].links.begin + l].pose));
+        extent.add(
+            extent_of(link, simulation.state().links[layout_.entities[e].links.begin + l].pose));
       }
     }
   }
@@ -83,7 +84,8 @@ class SceneWarnings {
     check_magnets();
     check_packets();
     std::vector<scene::Problem> problems;
-    for (Kind* kind : {&size_, &far_, &proportion_, &overlap_, &in_floor_, &outside_, &falls_, &floats_, &no_force_, &deaf_}) {
+    for (Kind* kind : {&size_, &far_, &proportion_, &overlap_, &in_floor_, &outside_, &falls_,
+                       &floats_, &no_force_, &deaf_}) {
       if (!kind->first) continue;
       if (kind->more > 0) kind->first->text += fmt::format("; and {} more like this", kind->more);
       problems.push_back(std::move(*kind->first));
@@ -138,10 +140,12 @@ class SceneWarnings {
     const double arena = scene_.arena.size.maxCoeff();
     for (const scene::Entity& entity : entities_) {
       for (const scene::Joint& joint : entity.joints) {
-        const double distance = std::max(joint.parent_frame.position.norm(), joint.child_frame.position.norm());
+        const double distance =
+            std::max(joint.parent_frame.position.norm(), joint.child_frame.position.norm());
         if (!(distance > arena * far_joint)) continue;
         doubt(far_, entity,
-              fmt::format("has joint {} {:.6g} m away from its link, {:.3g} times the arena; lengths are in metres",
+              fmt::format("has joint {} {:.6g} m away from its link, {:.3g} times the arena; "
+                          "lengths are in metres",
                           scene::in_quotes(joint.id), distance, distance / arena));
         break;
       }
@@ -162,8 +166,9 @@ class SceneWarnings {
       }
       if (next > 0 && longest > long_link * next) {
         doubt(proportion_, entity,
-              fmt::format("has link {} of {:.6g} m, {:.3g} times its next longest; lengths are in metres",
-                          scene::in_quotes(of->id), longest, longest / next));
+              fmt::format(
+                  "has link {} of {:.6g} m, {:.3g} times its next longest; lengths are in metres",
+                  scene::in_quotes(of->id), longest, longest / next));
         continue;
       }
       for (const scene::Joint& joint : entity.joints) {
@@ -171,7 +176,8 @@ class SceneWarnings {
         const double limit = std::max(std::abs(joint.limit->lower), std::abs(joint.limit->upper));
         if (!(limit > long_limit * size)) continue;
         doubt(proportion_, entity,
-              fmt::format("has joint {} with a limit of {:.6g} m, {:.3g} times the length of all of its links; limits of "
+              fmt::format("has joint {} with a limit of {:.6g} m, {:.3g} times the length of all "
+                          "of its links; limits of "
                           "prismatic joints are in metres",
                           scene::in_quotes(joint.id), limit, limit / size));
         break;
@@ -265,7 +271,8 @@ class SceneWarnings {
       }
       if (stands) continue;
       doubt(floats_, entities_[e],
-            "floats in the air: the scene has no gravity; write <gravity/> into <dynamics3d>, or <gravity g=\"0\"/> if "
+            "floats in the air: the scene has no gravity; write <gravity/> into <dynamics3d>, or "
+            "<gravity g=\"0\"/> if "
             "that is meant");
     }
   }
@@ -280,12 +287,15 @@ class SceneWarnings {
   void check_packets() {
     std::map<std::size_t, const world::RangeAndBearingLayout*> first;  // of each medium
     for (const world::RangeAndBearingLayout& device : layout_.range_and_bearing) {
-      const world::RangeAndBearingLayout& other = *first.emplace(device.medium, &device).first->second;
+      const world::RangeAndBearingLayout& other =
+          *first.emplace(device.medium, &device).first->second;
       if (other.data.count == device.data.count) continue;
       doubt(deaf_, entities_[device.mount.entity],
-            fmt::format("sends {} bytes by range and bearing, and {} on the same medium {}: they never hear each other; "
+            fmt::format("sends {} bytes by range and bearing, and {} on the same medium {}: they "
+                        "never hear each other; "
                         "give them the same size (data_size, of robots rab_data_size)",
-                        device.data.count, scene::in_quotes(entities_[other.mount.entity].id), other.data.count));
+                        device.data.count, scene::in_quotes(entities_[other.mount.entity].id),
+                        other.data.count));
     }
     if (deaf_.first) deaf_.first->severity = scene::Problem::Severity::notice;
   }
@@ -294,7 +304,8 @@ class SceneWarnings {
     if (scene_.physics.magnetism) return;
     for (const scene::Entity& entity : entities_) {
       if (entity.devices.magnets.empty()) continue;
-      doubt(no_force_, entity, "has magnets that have no force; write <magnetism/> into <dynamics3d>");
+      doubt(no_force_, entity,
+            "has magnets that have no force; write <magnetism/> into <dynamics3d>");
     }
   }
 
@@ -307,7 +318,8 @@ class SceneWarnings {
 
 }  // namespace
 
-std::vector<scene::Problem> scene_warnings(const scene::Scene& scene, const Simulation& simulation) {
+std::vector<scene::Problem> scene_warnings(const scene::Scene& scene,
+                                           const Simulation& simulation) {
   return SceneWarnings(scene, simulation).find();
 }
 

@@ -13,8 +13,8 @@ void show(Simulation& to, std::uint64_t tick, std::span<const world::LinkState> 
   Simulation::Parts& p = *to.parts_;
   world::State& state = p.state;
   if (links.size() != state.links.size()) {
-    throw SnapshotError(fmt::format("there are poses of {} links, and the world has {}", links.size(),
-                                    state.links.size()));
+    throw SnapshotError(fmt::format("there are poses of {} links, and the world has {}",
+                                    links.size(), state.links.size()));
   }
   p.physics.read(state);  // as built: where each origin is in its reference link
   for (std::size_t i = 0; i < state.origins.size(); ++i) {

@@ -11,8 +11,8 @@
 
 namespace ziggurat::simulation {
 
-/// Puts recorded poses and velocities in the place of computed ones, with the LEDs and payloads that are
-/// commanded; from then on it can't be stepped. What robots sense stays as it is.
+/// Puts recorded poses and velocities in the place of computed ones, with the LEDs and payloads
+/// that are commanded; from then on it can't be stepped. What robots sense stays as it is.
 /// @param links  for each of Layout::links
 /// @throws SnapshotError if they do not fit this world
 void show(Simulation& to, std::uint64_t tick, std::span<const world::LinkState> links);

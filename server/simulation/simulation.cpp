@@ -72,7 +72,6 @@ class Simulation::Growing {
 
 Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, world::Layout& made)
     : seed(options.seed),
-      has_archive(scene.physics.solver == scene::Solver::newton),
       ticks_per_second(scene.experiment.ticks_per_second),
       substeps(scene.physics.iterations),
       substep(substep_length(scene)),
@@ -136,7 +135,8 @@ void Simulation::Parts::remove(std::size_t entity) {
   std::erase_if(commands.radio_messages.entries, [&](const auto& message) {
     return layout.radios[message.radio].mount.entity == entity;
   });
-  std::erase_if(commands.pushes, [&](const auto& push) { return layout.links[push.link].entity == entity; });
+  std::erase_if(commands.pushes,
+                [&](const auto& push) { return layout.links[push.link].entity == entity; });
   looks_are_old = true;
 }
 
@@ -167,12 +167,10 @@ void Simulation::Parts::move(std::size_t entity, const math::Pose& pose) {
   looks_are_old = true;
 }
 
-void Simulation::move(std::size_t entity, const math::Pose& pose) {
-  parts_->move(entity, pose);
-  parts_->note_move(entity, pose);
-}
+void Simulation::move(std::size_t entity, const math::Pose& pose) { parts_->move(entity, pose); }
 
-std::optional<std::size_t> overlapped_by(const Simulation& in, const scene::Entity& entity, const math::Pose& pose,
+std::optional<std::size_t> overlapped_by(const Simulation& in, const scene::Entity& entity,
+                                         const math::Pose& pose,
                                          std::optional<std::size_t> except) {
   return in.parts_->physics.overlapped_by(entity, pose, except);
 }
@@ -186,17 +184,18 @@ void Simulation::spawn(const scene::Scene& scene, const scene::Entity& entity, s
                                entity.id, layout_->entities[*other].id);
     throw scene::SceneError({problem});
   }
-  WorldEdit edit{WorldEdit::Kind::spawn, parts_->state.tick, layout_->entities.size(), {},
-          std::make_shared<const scene::Entity>(entity), std::move(xml)};
+  WorldEdit edit{WorldEdit::Kind::spawn, parts_->state.tick, layout_->entities.size(),
+                 std::make_shared<const scene::Entity>(entity), std::move(xml)};
   auto& edits = parts_->history.edits;
-  if (edits.size() == edits.capacity()) edits.reserve(2 * edits.size() + 1);  // what is done can be written down
+  if (edits.size() == edits.capacity())
+    edits.reserve(2 * edits.size() + 1);  // what is done can be written down
   parts_->spawn(scene, entity, *layout_);
   edits.push_back(std::move(edit));
 }
 
 void Simulation::remove(std::size_t entity) {
   parts_->remove(entity);
-  parts_->history.edits.push_back({WorldEdit::Kind::remove, parts_->state.tick, entity, {}, {}, {}});
+  parts_->history.edits.push_back({WorldEdit::Kind::remove, parts_->state.tick, entity, {}, {}});
 }
 
 const world::Layout& Simulation::layout() const { return *layout_; }
@@ -205,10 +204,7 @@ const world::State& Simulation::state() const { return parts_->state; }
 const world::Observations& Simulation::observations() const { return parts_->observations; }
 world::Commands& Simulation::commands() { return parts_->commands; }
 
-void Simulation::step() {
-  parts_->note_commands();
-  parts_->step();
-}
+void Simulation::step() { parts_->step(); }
 
 void Simulation::Parts::step() {
   devices::Tick now = tick();
@@ -255,11 +251,10 @@ std::vector<std::string> Simulation::notices() const {
   return {fmt::format(
       "two bodies like '{}' bonded by their magnets swing too fast for substeps of {:.3g} s, and "
       "may "
-      "gain energy (substep times rate is {:.2f}; it is safe below {}); write {}more iterations, "
-      "or "
+      "gain energy (substep times rate is {:.2f}; it is safe below {}); write more iterations, or "
       "max_substep=\"{:.2g}\" on <dynamics3d>",
       parts_->layout.entities[bond.entity].id, bond.substep, bond.product, bond.safe,
-      bond.divisible ? "solver=\"newton\", " : "", 0.9 * bond.substep * bond.safe / bond.product)};
+      0.9 * bond.substep * bond.safe / bond.product)};
 }
 
 std::optional<std::string> slow_notice(const Simulation& simulation) {
@@ -268,8 +263,10 @@ std::optional<std::string> slow_notice(const Simulation& simulation) {
   const physics::Convergence convergence = parts.physics.convergence();
   if (convergence.divided < often) return std::nullopt;
   return fmt::format(
-      "'{}' makes the run slow: its substeps of {:.3g} s are divided into {} parts and more, because it is pulled harder, "
-      "or turns faster, than they can follow; make the masses that hang on its joints lighter, or its links heavier",
+      "'{}' makes the run slow: its substeps of {:.3g} s are divided into {} parts and more, "
+      "because it is pulled harder, "
+      "or turns faster, than they can follow; make the masses that hang on its joints lighter, or "
+      "its links heavier",
       parts.layout.entities[convergence.divided_entity].id, parts.substep, physics::many_parts);
 }
 

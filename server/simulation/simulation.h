@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "physics/values.h"
+#include "physics/bodies/values.h"
 #include "scene/scene.h"
 #include "simulation/placement.h"
 #include "simulation/snapshot.h"
@@ -67,14 +67,15 @@ class Simulation {
   /// @param entity  into Layout::entities, one that is present
   void remove(std::size_t entity);
 
-  /// Whether contacts() lists contacts; that costs time. Not at first, and not after a reset; after a
-  /// restore as before it. No result depends on it.
+  /// Whether contacts() lists contacts; that costs time. Not at first, and not after a reset; after
+  /// a restore as before it. No result depends on it.
   void list_contacts(bool wanted);
   /// Contacts of the last substep; empty unless they are listed.
   const std::vector<world::Contact>& contacts() const;
 
-  /// Whether rays() lists the rays of all devices from the next tick on, whether they have `show_rays`
-  /// or not; that costs time. Not at first, and not after a reset. No result depends on it.
+  /// Whether rays() lists the rays of all devices from the next tick on, whether they have
+  /// `show_rays` or not; that costs time. Not at first, and not after a reset. No result depends on
+  /// it.
   void list_rays(bool wanted);
   /// Rays of the last tick; empty unless they are listed.
   const std::vector<world::Ray>& rays() const;
@@ -86,23 +87,22 @@ class Simulation {
   /// Hash of the last tick's state and observations.
   std::uint64_t hash() const;
 
-  /// The world as it is, commands included. @throws SnapshotError if that can't be had
+  /// The world as it is, commands included.
   Snapshot snapshot() const;
   /// Puts the world back: what follows is what followed the snapshot, bit for bit, with the same
   /// commands. Entities that came since are gone, those that went are back.
   /// @param scene  the one that both were made from
-  /// @param seed   given: the snapshot is of a scene that may have other values, but the same entities and
-  ///               devices; this is the seed from then on, not 0. With another one than the snapshot's all
-  ///               that is random is drawn anew
-  /// @param tell  called before each tick of a run that is repeated for it; may be empty
-  /// @throws SnapshotError if it does not fit, or with a seed if its state can't be copied; then
-  ///         nothing changes
+  /// @param seed   given: the snapshot is of a scene that may have other values, but the same
+  /// entities and
+  ///               devices; this is the seed from then on, not 0. With another one than the
+  ///               snapshot's all that is random is drawn anew
+  /// @throws SnapshotError if it does not fit; then nothing changes
   void restore(const scene::Scene& scene, const Snapshot& snapshot,
-               std::optional<std::uint64_t> seed = {}, const std::function<void()>& tell = {});
+               std::optional<std::uint64_t> seed = {});
   /// History of the world since the start, as far as snapshots need it.
   const History& history() const;
-  /// The first field in which the state differs from that of a snapshot: empty if none does, or if
-  /// the state can't be copied.
+  /// The first field in which the state differs from that of a snapshot: empty if none
+  /// does.
   std::string first_difference(const Snapshot& snapshot) const;
 
   /// Notices to the scene's author before the run: sentences, usually none.
@@ -119,11 +119,13 @@ class Simulation {
   friend void repeat(Simulation& to, const scene::Scene& scene, const WorldEdit& act);
 
   // joints.h
-  friend std::optional<JointFault> fault_of(const Simulation& world, std::size_t entity, const JointMotion& wanted);
+  friend std::optional<JointFault> fault_of(const Simulation& world, std::size_t entity,
+                                            const JointMotion& wanted);
   friend void set_joint(Simulation& to, std::size_t entity, const JointMotion& wanted);
 
   friend std::optional<std::size_t> overlapped_by(const Simulation& in, const scene::Entity& entity,
-                                                  const math::Pose& pose, std::optional<std::size_t> except);
+                                                  const math::Pose& pose,
+                                                  std::optional<std::size_t> except);
   friend std::optional<std::string> slow_notice(const Simulation& simulation);
 
  private:
@@ -133,10 +135,12 @@ class Simulation {
   std::unique_ptr<Parts> parts_;
 };
 
-/// The first entity that another would overlap at a pose of its origin, joints as assembled; nothing if the place is free.
-/// The floor does not count; touching is not overlapping, nor are 0.1 mm, as bodies at rest may be in each other.
+/// The first entity that another would overlap at a pose of its origin, joints as assembled;
+/// nothing if the place is free. The floor does not count; touching is not overlapping, nor are 0.1
+/// mm, as bodies at rest may be in each other.
 /// @param except  into Layout::entities: does not count
-std::optional<std::size_t> overlapped_by(const Simulation& in, const scene::Entity& entity, const math::Pose& pose,
+std::optional<std::size_t> overlapped_by(const Simulation& in, const scene::Entity& entity,
+                                         const math::Pose& pose,
                                          std::optional<std::size_t> except = {});
 
 /// Notice to the scene's author about a slow run: a sentence if substeps were divided often.

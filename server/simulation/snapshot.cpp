@@ -11,9 +11,6 @@
 namespace ziggurat::simulation {
 namespace {
 
-/// Size of all commands that are kept to repeat a run [bytes].
-constexpr std::size_t longest_history = std::size_t{256} << 20;
-
 /// Whether two worlds of one scene and seed have the same entities in the same places.
 bool same_entities(const History& one, const History& other) {
   return std::ranges::equal(one.edits, other.edits, [](const WorldEdit& a, const WorldEdit& b) {
@@ -21,29 +18,21 @@ bool same_entities(const History& one, const History& other) {
   });
 }
 
-void write_commands(const world::Layout& layout, world::Commands& commands,
-                    std::vector<std::byte>& bytes) {
-  bytes.clear();
-  auto archive = math::Archive::writer(bytes);
-  world::archive(archive, layout, commands);
-}
-
-void read_commands(std::span<const std::byte> bytes, const world::Layout& layout,
-                   world::Commands& commands) {
-  auto archive = math::Archive::reader(bytes);
-  world::archive(archive, layout, commands);
-}
-
 }  // namespace
 
 std::optional<std::string> fault_of_snapshot_name(std::string_view name) {
   constexpr std::size_t longest = 64;
   const auto is_allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '.';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+           c == '_' || c == '.';
   };
-  const bool is_name = !name.empty() && name.size() <= longest && name[0] != '.' && std::ranges::all_of(name, is_allowed);
+  const bool is_name = !name.empty() && name.size() <= longest && name[0] != '.' &&
+                       std::ranges::all_of(name, is_allowed);
   if (is_name) return std::nullopt;
-  return fmt::format("The name of a snapshot has 1 to {} letters, digits, '-', '_' and '.', and does not begin with '.'", longest);
+  return fmt::format(
+      "The name of a snapshot has 1 to {} letters, digits, '-', '_' and '.', and does not begin "
+      "with '.'",
+      longest);
 }
 
 std::size_t common_robots(const History& now, const History& then, const world::Layout& layout) {
@@ -60,9 +49,9 @@ std::size_t common_robots(const History& now, const History& then, const world::
 }
 
 std::size_t Snapshot::size() const {
-  std::size_t size = state.size() + commands.size() + history.size;
+  std::size_t size = state.size();
   for (const WorldEdit& edit : history.edits) size += sizeof edit + edit.xml.size();
-  return size + history.commands.size() * sizeof(Commanded);
+  return size;
 }
 
 void Simulation::Parts::archive(math::Archive& archive) {
@@ -77,67 +66,32 @@ void Simulation::Parts::archive(math::Archive& archive) {
   look_around();
 }
 
-/// A run that goes on for longer than there is room for can't go back.
-void Simulation::Parts::note_commands() {
-  if (has_archive || history.size > longest_history) return;
-  write_commands(layout, commands, commanding);
-  // Commands that last for one step must be written down again, though they are the same.
-  const bool lasts = commands.radio_messages.entries.empty() && commands.pushes.empty();
-  if (lasts && commanding == commanded) return;
-  history.commands.push_back({state.tick, commanding});
-  history.size += commanding.size();
-  std::swap(commanded, commanding);
-}
-
-void Simulation::Parts::note_move(std::size_t entity, const math::Pose& pose) {
-  if (has_archive || history.size > longest_history) return;
-  history.edits.push_back({WorldEdit::Kind::move, state.tick, entity, pose, {}, {}});
-  history.size += sizeof(WorldEdit);
-}
-
 const History& Simulation::history() const { return parts_->history; }
 
 Snapshot Simulation::snapshot() const {
   Parts& p = *parts_;
-  if (p.history.size > longest_history) {
-    throw SnapshotError(fmt::format(
-        "There are too many commands and moves since the start to repeat them: more than {} MiB. Snapshots of "
-        "long runs need solver=\"newton\".",
-        longest_history >> 20));
-  }
   Snapshot snapshot;
   snapshot.seed = p.seed;
   snapshot.tick = p.state.tick;
   snapshot.hash = hash();
   snapshot.history = p.history;
   snapshot.is_checked = true;
-  if (p.has_archive) {
-    snapshot.state.reserve(p.archive_size);
-    auto archive = math::Archive::writer(snapshot.state);
-    p.archive(archive);
-    p.archive_size = snapshot.state.size();
-  } else {
-    write_commands(p.layout, p.commands, snapshot.commands);
-  }
+  snapshot.state.reserve(p.archive_size);
+  auto archive = math::Archive::writer(snapshot.state);
+  p.archive(archive);
+  p.archive_size = snapshot.state.size();
   return snapshot;
 }
 
 void Simulation::Parts::repeat_edit(const scene::Scene& scene, const WorldEdit& edit,
-                                   world::Layout& grown) {
+                                    world::Layout& grown) {
   const std::size_t entities = grown.entities.size();
   const bool spawns = edit.kind == WorldEdit::Kind::spawn;
   if (spawns ? edit.entity != entities || !edit.spawned
              : edit.entity >= entities || state.is_absent(edit.entity)) {
     throw SnapshotError("An entity of the snapshot is not in the scene.");
   }
-  switch (edit.kind) {
-    case WorldEdit::Kind::spawn:
-      return grow(scene, *edit.spawned, grown);
-    case WorldEdit::Kind::remove:
-      return remove(edit.entity);
-    case WorldEdit::Kind::move:
-      return move(edit.entity, edit.pose);
-  }
+  spawns ? grow(scene, *edit.spawned, grown) : remove(edit.entity);
 }
 
 /// A state with the random streams that this world has now.
@@ -167,43 +121,19 @@ std::vector<std::byte> Simulation::Parts::with_own_streams(const std::vector<std
 }
 
 void Simulation::Parts::repeat(const scene::Scene& scene, const Snapshot& snapshot,
-                               world::Layout& grown, const std::function<void()>& tell) {
-  auto edit = snapshot.history.edits.begin();
-  const auto end = snapshot.history.edits.end();
-  if (has_archive) {
-    for (; edit != end; ++edit) repeat_edit(scene, *edit, grown);
-    std::vector<std::byte> mixed;
-    if (seed != snapshot.seed) mixed = with_own_streams(snapshot.state);
-    auto archive = math::Archive::reader(mixed.empty() ? snapshot.state : mixed);
-    this->archive(archive);
-  } else {
-    auto change = snapshot.history.commands.begin();
-    for (;; step()) {
-      if (tell) tell();
-      for (; edit != end && edit->tick == state.tick; ++edit) repeat_edit(scene, *edit, grown);
-      if (state.tick == snapshot.tick) break;
-      const bool changes =
-          change != snapshot.history.commands.end() && change->tick == state.tick;
-      if (changes) read_commands((change++)->bytes, layout, commands);
-    }
-    read_commands(snapshot.commands, layout, commands);
-  }
+                               world::Layout& grown) {
+  for (const WorldEdit& edit : snapshot.history.edits) repeat_edit(scene, edit, grown);
+  std::vector<std::byte> mixed;
+  if (seed != snapshot.seed) mixed = with_own_streams(snapshot.state);
+  auto archive = math::Archive::reader(mixed.empty() ? snapshot.state : mixed);
+  this->archive(archive);
   history = snapshot.history;
-  commanded = history.commands.empty() ? std::vector<std::byte>() : history.commands.back().bytes;
 }
 
 void Simulation::restore(const scene::Scene& scene, const Snapshot& snapshot,
-                         std::optional<std::uint64_t> seed, const std::function<void()>& tell) {
+                         std::optional<std::uint64_t> seed) {
   Parts& p = *parts_;
-  const bool copies = p.has_archive;
-  if (seed && (!copies || snapshot.state.empty())) {
-    throw SnapshotError(
-        "Only a world with solver=\"newton\" can go on from a state with other values or another seed.");
-  }
-  if (copies != snapshot.commands.empty() || copies == snapshot.state.empty()) {
-    throw SnapshotError("The snapshot is of a scene with another solver.");
-  }
-  if (!seed && copies && snapshot.is_checked && p.seed == snapshot.seed &&
+  if (!seed && snapshot.is_checked && p.seed == snapshot.seed &&
       same_entities(p.history, snapshot.history)) {
     auto archive = math::Archive::reader(snapshot.state);
     p.archive(archive);
@@ -212,8 +142,9 @@ void Simulation::restore(const scene::Scene& scene, const Snapshot& snapshot,
   }
   world::Layout before = *layout_;
   try {
-    auto fresh = std::make_unique<Parts>(scene, Options{seed.value_or(snapshot.seed), {}}, *layout_);
-    fresh->repeat(scene, snapshot, *layout_, tell);
+    auto fresh =
+        std::make_unique<Parts>(scene, Options{seed.value_or(snapshot.seed), {}}, *layout_);
+    fresh->repeat(scene, snapshot, *layout_);
     if (world::hash(fresh->state, fresh->observations) != snapshot.hash) {
       throw SnapshotError("The snapshot's state is not the one that its hash is of.");
     }
@@ -230,7 +161,6 @@ void Simulation::restore(const scene::Scene& scene, const Snapshot& snapshot,
 }
 
 std::string Simulation::first_difference(const Snapshot& snapshot) const {
-  if (!parts_->has_archive) return {};
   std::vector<std::byte> now;
   std::vector<math::Archive::Place> places;
   auto archive = math::Archive::writer(now, &places);

@@ -12,7 +12,6 @@
 #include <string_view>
 #include <vector>
 
-#include "math/pose.h"
 #include "scene/scene.h"
 
 namespace ziggurat::world {
@@ -28,29 +27,19 @@ inline constexpr std::size_t longest_spawned = std::size_t{1} << 20;  ///< the t
 /// Why a snapshot can't have this name, without a full stop; none if it can.
 std::optional<std::string> fault_of_snapshot_name(std::string_view name);
 
-/// Something that was done to a world between two ticks.
+/// Entity that came or went between two ticks.
 struct WorldEdit {
-  enum class Kind : std::uint8_t { spawn, remove, move };
+  enum class Kind : std::uint8_t { spawn, remove };
   Kind kind = Kind::spawn;
   std::uint64_t tick = 0;  ///< of the state that it was done to
   std::size_t entity = 0;  ///< into Layout::entities
-  math::Pose pose = {};    ///< of a move
   std::shared_ptr<const scene::Entity> spawned = {};
   std::string xml = {};  ///< of a spawn, if it is known
 };
 
-/// All commands at the begin of a step, as bytes.
-struct Commanded {
-  std::uint64_t tick = 0;  ///< of the state before the step
-  std::vector<std::byte> bytes;
-};
-
-/// Changes that made a world out of a new one.
+/// Changes after which a new world has the entities of this one.
 struct History {
-  std::vector<WorldEdit> edits;  ///< in order; moves only where the world must be repeated
-  /// Only where it must be repeated: those that differ from the last step's, ascending.
-  std::vector<Commanded> commands;
-  std::size_t size = 0;  ///< of all commands and moves [bytes]
+  std::vector<WorldEdit> edits;  ///< in order
 };
 
 /// Counts the first robots of a world that are still the same ones after it is restored: those of
@@ -68,9 +57,8 @@ struct Snapshot {
   std::uint64_t tick = 0;
   std::uint64_t hash = 0;  ///< as Simulation::hash()
   History history;
-  std::vector<std::byte> state;     ///< empty: the world must be repeated up to this tick
-  std::vector<std::byte> commands;  ///< then: as they were
-  bool is_checked = false;          ///< made by snapshot(), not read from bytes
+  std::vector<std::byte> state;
+  bool is_checked = false;  ///< made by snapshot(), not read from bytes
 
   std::size_t size() const;  ///< about what it takes [bytes]
 };

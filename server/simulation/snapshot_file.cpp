@@ -1,5 +1,5 @@
-// A snapshot as bytes: a line for people, what it belongs to, what was done to the world, its state,
-// and a checksum.
+// A snapshot as bytes: a line for people, what it belongs to, what was done to the world, its
+// state, and a checksum.
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 namespace ziggurat::simulation {
 namespace {
 
-constexpr std::string_view mark = "ziggurat snapshot, version 1\n";
+constexpr std::string_view mark = "ziggurat snapshot, version 2\n";
 
 std::uint64_t checksum(std::span<const std::byte> bytes) {
   math::Hash hash;
@@ -23,10 +23,9 @@ std::uint64_t checksum(std::span<const std::byte> bytes) {
 }
 
 void archive_edit(math::Archive& archive, WorldEdit& edit) {
-  math::archive_choice(archive, "kind", edit.kind, WorldEdit::Kind::move);
+  math::archive_choice(archive, "kind", edit.kind, WorldEdit::Kind::remove);
   archive("tick", edit.tick);
   archive("entity", edit.entity);
-  archive("pose", edit.pose);
   archive("xml", edit.xml);
 }
 
@@ -35,28 +34,18 @@ void archive_content(math::Archive& archive, Snapshot& snapshot) {
   archive.require(snapshot.seed != 0, "is 0");
   archive("tick", snapshot.tick);
   archive("hash", snapshot.hash);
-  archive.list("acts", snapshot.history.edits, [&](WorldEdit& edit) { archive_edit(archive, edit); });
-  archive.list("history", snapshot.history.commands, [&](Commanded& commanded) {
-    archive("tick", commanded.tick);
-    archive.list("bytes", commanded.bytes);
-    snapshot.history.size += archive.reads() ? commanded.bytes.size() : 0;
-  });
+  archive.list("acts", snapshot.history.edits,
+               [&](WorldEdit& edit) { archive_edit(archive, edit); });
   archive.list("state", snapshot.state);
-  archive.list("commands", snapshot.commands);
 }
 
-/// Repeating must end in a time that a user waits for.
-constexpr std::uint64_t most_repeated = 10'000'000;  // ticks
-
 void check_order(const Snapshot& snapshot) {
-  if (snapshot.state.empty() && snapshot.tick > most_repeated) {
-    throw SnapshotError(fmt::format("The snapshot is of tick {}, and at most {} can be repeated.",
-                                    snapshot.tick, most_repeated));
-  }
-  const auto spawned = std::ranges::count(snapshot.history.edits, WorldEdit::Kind::spawn, &WorldEdit::kind);
+  const auto spawned =
+      std::ranges::count(snapshot.history.edits, WorldEdit::Kind::spawn, &WorldEdit::kind);
   if (static_cast<std::size_t>(spawned) > most_spawned) {
-    throw SnapshotError(fmt::format("In the snapshot {} entities have been spawned; at most {} may be.", spawned,
-                                    most_spawned));
+    throw SnapshotError(
+        fmt::format("In the snapshot {} entities have been spawned; at most {} may be.", spawned,
+                    most_spawned));
   }
   std::uint64_t tick = 0;
   for (const WorldEdit& edit : snapshot.history.edits) {
@@ -112,8 +101,9 @@ Snapshot from_bytes(std::span<const std::byte> bytes, const Origin& origin,
     archive("scene_hash", from.scene_hash);
     archive("build", from.build);
     if (!origin.scene_hash.empty() && from.scene_hash != origin.scene_hash) {
-      throw SnapshotError(fmt::format("The snapshot is of another scene: its hash is {}, this one's {}.",
-                                      from.scene_hash, origin.scene_hash));
+      throw SnapshotError(
+          fmt::format("The snapshot is of another scene: its hash is {}, this one's {}.",
+                      from.scene_hash, origin.scene_hash));
     }
     if (!origin.build.empty() && from.build != origin.build) {
       throw SnapshotError(fmt::format("The snapshot was made by another build: {}; this is {}.",

@@ -21,7 +21,8 @@ bool Callers::can_hear(const network::Call& call) const {
 void Callers::done(const network::Call& call, std::uint64_t tick) {
   using Kind = wire::Request::Kind;
   const Kind kind = call.request.kind;
-  if (kind == Kind::move || kind == Kind::set_joint || kind == Kind::spawn || kind == Kind::remove) ++changes_;
+  if (kind == Kind::move || kind == Kind::set_joint || kind == Kind::spawn || kind == Kind::remove)
+    ++changes_;
   if (call.is_local) {
     server_.answer(call, [](wire::Outbox&) {});  // no connection has it: questions get new answers
     return local_.done(call, tick);

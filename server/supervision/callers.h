@@ -1,6 +1,6 @@
 #pragma once
-// Where requests come from: sessions of the network, and others that this process serves itself, as
-// the viewers of a live server.
+// Sources of requests: sessions of the network, and others that this process serves itself, as the
+// viewers of a live server.
 
 #include <cstdint>
 #include <functional>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "network/server.h"
-#include "supervision/act.h"
+#include "supervision/world_change.h"
 
 namespace ziggurat::supervision {
 
@@ -37,28 +37,29 @@ class Callers {
   void refused(const network::Call& call, const wire::Fault& fault);
 
   /// From now on each act is told when it is done, in order.
-  void tell_acts(TellAct tell) { tell_act_ = std::move(tell); }
-  void tell(const Act& act) const {
-    if (tell_act_) tell_act_(act);
+  void on_world_change(TellWorldChange tell) { tell_world_change_ = std::move(tell); }
+  void tell(const WorldChange& change) const {
+    if (tell_world_change_) tell_world_change_(change);
   }
 
   /// The world was changed beside a tick by another than a caller.
   void note_change() { ++changes_; }
-  /// How often the world was changed beside a tick: by moves, spawns, removals.
+  /// Number of changes of the world beside a tick: by moves, spawns, removals.
   std::uint64_t changes() const { return changes_; }
 
  private:
   network::Server& server_;
   LocalCalls local_;
-  TellAct tell_act_;
+  TellWorldChange tell_world_change_;
   std::uint64_t changes_ = 0;
   bool is_held_ = false;
 };
 
 enum class Reply { given, later };
 
-/// Answers the calls that wait, in order of arrival, and removes those that have an answer, or that no session waits for any
-/// more. Requests of one connection are answered in their order; different connections do not wait for each other.
+/// Answers the calls that wait, in order of arrival, and removes those that have an answer, or that
+/// no session waits for any more. Requests of one connection are answered in their order; different
+/// connections do not wait for each other.
 void answer_waiting(std::vector<network::Call>& waiting, const Callers& callers,
                     const std::function<Reply(const network::Call&)>& answer);
 

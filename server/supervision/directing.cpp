@@ -48,7 +48,7 @@ class Directing::Names {
 
 namespace {
 
-/// What a director has asked for so far in a Direction.
+/// Acts that a director has asked for so far in a Direction.
 struct Asked {
   std::set<std::string> removed, spawned;  // ids
   EarlierSpawns spawns;
@@ -66,15 +66,16 @@ std::variant<std::size_t, wire::Fault> pushed_link(const world::Layout& layout, 
                     fmt::format("'{}' has no link '{}'.", push.entity, push.link.substr(0, 256)));
 }
 
-/// What is wrong with the values for the devices of a kind.
+/// Checks the number of values for the devices of a kind.
 /// @param is_set_by_robot  its controller sets them
-std::optional<wire::Fault> check_values(std::size_t given, std::size_t devices, bool is_set_by_robot,
-                                        const wire::Show& show, const char* field) {
+std::optional<wire::Fault> check_values(std::size_t given, std::size_t devices,
+                                        bool is_set_by_robot, const wire::Show& show,
+                                        const char* field) {
   if (given == 0) return std::nullopt;
   if (given != devices) {
     return make_fault(ErrorCode::bad_value, fmt::format("show.{}", field),
-                      fmt::format("'{}' has {} of these devices; {} values were given.", show.entity,
-                                  devices, given));
+                      fmt::format("'{}' has {} of these devices; {} values were given.",
+                                  show.entity, devices, given));
   }
   if (!is_set_by_robot) return std::nullopt;
   return make_fault(ErrorCode::not_yours, fmt::format("show.{}", field),
@@ -85,14 +86,15 @@ std::optional<wire::Fault> check_show(const world::Layout& layout, std::size_t i
                                       const wire::Show& show) {
   const world::EntityLayout& entity = layout.entities[index];
   // Robots ascend by entity.
-  const auto robot = std::ranges::lower_bound(layout.robots, index, {}, &world::RobotLayout::entity);
+  const auto robot =
+      std::ranges::lower_bound(layout.robots, index, {}, &world::RobotLayout::entity);
   const bool is_robot = robot != layout.robots.end() && robot->entity == index;
   auto fault = check_values(show.led_colors.size(), entity.leds.count,
                             is_robot && robot->leds.count > 0, show, "led_colors");
   if (!fault) {
-    fault = check_values(show.directional_led_colors.size(), entity.directional_leds.count,
-                         is_robot && robot->directional_leds.count > 0, show,
-                         "directional_led_colors");
+    fault =
+        check_values(show.directional_led_colors.size(), entity.directional_leds.count,
+                     is_robot && robot->directional_leds.count > 0, show, "directional_led_colors");
   }
   if (!fault) {
     fault = check_values(show.tag_payloads.size(), entity.tags.count,
@@ -140,7 +142,7 @@ bool is_removal(const wire::DirectorAct& act) {
   return request != nullptr && request->kind == wire::Request::Kind::remove;
 }
 
-/// What is wrong with an act on an entity that is there.
+/// Checks an act on an entity that is there.
 std::optional<wire::Fault> check_act(const simulation::Simulation& world, std::size_t entity,
                                      const wire::DirectorAct& act) {
   if (const auto* show = std::get_if<wire::Show>(&act)) {
@@ -168,12 +170,16 @@ wire::Fault at(std::size_t act, wire::Fault fault) {
 
 Directing::Directing(World& world, network::Server& server, Callers& callers,
                      Population& population, reports::Console& console)
-    : world_(world), desk_(server), callers_(callers), population_(population), console_(console) {
-  desk_.check_by([this](const wire::Direction& direction) { return check(direction); });
+    : world_(world),
+      directors_(server),
+      callers_(callers),
+      population_(population),
+      console_(console) {
+  directors_.check_by([this](const wire::Direction& direction) { return check(direction); });
 }
 
-/// All acts are on entities that are there at the tick which is answered; those that the Direction itself
-/// has removed before are not.
+/// All acts are on entities that are there at the tick which is answered; those that the Direction
+/// itself has removed before are not.
 std::optional<wire::Fault> Directing::check(const wire::Direction& direction) const {
   Names names(world_.simulation);
   Asked asked;
@@ -204,7 +210,7 @@ std::optional<wire::Fault> Directing::check(const wire::Direction& direction) co
 }
 
 std::optional<reports::Summary::Result> Directing::result() const {
-  for (const network::Directed& each : desk_.directions()) {
+  for (const network::Directed& each : directors_.directions()) {
     if (each.direction.finish) {
       return reports::Summary::Result{each.director, *each.direction.finish};
     }
@@ -227,7 +233,9 @@ std::optional<wire::Fault> Directing::apply(const wire::DirectorAct& act, Names&
     apply_show(simulation.layout().entities[*entity], *show, simulation.commands());
   } else if (const auto* push = std::get_if<wire::Push>(&act)) {
     const auto link = std::get<std::size_t>(pushed_link(simulation.layout(), *entity, *push));
-    const auto vector_of = [](const std::array<double, 3>& v) { return math::Vector3(v[0], v[1], v[2]); };
+    const auto vector_of = [](const std::array<double, 3>& v) {
+      return math::Vector3(v[0], v[1], v[2]);
+    };
     simulation.commands().pushes.push_back({link, vector_of(push->force), vector_of(push->torque)});
   } else if (is_removal(act)) {
     auto fault = population_.remove(id);
@@ -242,13 +250,13 @@ std::optional<wire::Fault> Directing::apply(const wire::DirectorAct& act, Names&
 void Directing::act() {
   Names names(world_.simulation);
   bool has_changed = false;
-  for (const network::Directed& each : desk_.directions()) {
+  for (const network::Directed& each : directors_.directions()) {
     for (std::size_t i = 0; i < each.direction.acts.size(); ++i) {
       auto fault = apply(each.direction.acts[i], names);
       has_changed = true;
       if (!fault) continue;
       note_left_out(each.director, fault->message);
-      desk_.warn(each.director, at(i, std::move(*fault)));
+      directors_.warn(each.director, at(i, std::move(*fault)));
     }
   }
   if (has_changed) callers_.note_change();
@@ -260,10 +268,12 @@ void Directing::note_left_out(const std::string& director, const std::string& wh
   ++untold_;
   const auto now = std::chrono::steady_clock::now();
   if (now < next_notice_) return;
-  const auto others = untold_ == 1 ? std::string() : fmt::format(" ({} acts were left out since the last line)", untold_);
+  const auto others = untold_ == 1
+                          ? std::string()
+                          : fmt::format(" ({} acts were left out since the last line)", untold_);
   const std::string_view sentence(why.data(), why.find_last_not_of('\n') + 1);
-  console_.notice(fmt::format("director '{}', tick {}: {}{}", director, world_.simulation.state().tick,
-                              sentence, others));
+  console_.notice(fmt::format("director '{}', tick {}: {}{}", director,
+                              world_.simulation.state().tick, sentence, others));
   untold_ = 0;
   next_notice_ = now + between_notices;
 }

@@ -23,12 +23,12 @@ class Directing {
 
   /// The tick is complete: a director ends the run with it. Of several the first by id counts.
   std::optional<reports::Summary::Result> result() const;
-  /// The tick is complete, and not the last: does all acts, director by director in the order of their ids.
-  /// One that can't be done, because another has changed the world before, is left out, and its director is
-  /// told.
+  /// The tick is complete, and not the last: does all acts, director by director in the order of
+  /// their ids. One that can't be done, because another has changed the world before, is left out,
+  /// and its director is told.
   void act();
   /// A director subscribed to contacts.
-  bool wants_contacts() const { return desk_.wants_contacts(); }
+  bool wants_contacts() const { return directors_.wants_contacts(); }
 
  private:
   class Names;
@@ -37,7 +37,7 @@ class Directing {
   void note_left_out(const std::string& director, const std::string& why);
 
   World& world_;
-  network::DirectorsDesk desk_;
+  network::ServerDirectors directors_;
   Callers& callers_;
   Population& population_;
   reports::Console& console_;

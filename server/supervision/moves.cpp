@@ -1,11 +1,11 @@
 #include "supervision/moves.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string>
-
-#include <fmt/format.h>
 
 #include "simulation/joints.h"
 #include "wire/fault.h"
@@ -19,9 +19,8 @@ std::variant<math::Pose, wire::Fault> pose_of(const math::Pose& now, const wire:
   constexpr double farthest = 1e6;  // [m], as in scenes
   const auto is_near = [](double value) { return std::abs(value) <= farthest; };
   if (request.position.size() != 3 || !std::ranges::all_of(request.position, is_near)) {
-    return wire::make_fault(
-        ErrorCode::bad_value, name + ".position",
-        "A position must be three numbers x, y, z from -1e6 to 1e6 metres.");
+    return wire::make_fault(ErrorCode::bad_value, name + ".position",
+                            "A position must be three numbers x, y, z from -1e6 to 1e6 metres.");
   }
   math::Pose pose = now;
   pose.position = {request.position[0], request.position[1], request.position[2]};
@@ -29,9 +28,8 @@ std::variant<math::Pose, wire::Fault> pose_of(const math::Pose& now, const wire:
   const auto& q = request.orientation;
   const double norm = std::sqrt(std::inner_product(q.begin(), q.end(), q.begin(), 0.0));
   if (q.size() != 4 || !std::isfinite(norm) || norm < 1e-6) {
-    return wire::make_fault(
-        ErrorCode::bad_value, name + ".orientation",
-        "An orientation must be a quaternion w, x, y, z, finite and not zero.");
+    return wire::make_fault(ErrorCode::bad_value, name + ".orientation",
+                            "An orientation must be a quaternion w, x, y, z, finite and not zero.");
   }
   pose.orientation = math::Quaternion(q[0], q[1], q[2], q[3]).normalized();
   return pose;
@@ -56,37 +54,38 @@ std::optional<wire::Fault> check_joint(const simulation::Simulation& world, std:
     case Of::position:
       return wire::make_fault(ErrorCode::bad_value, "set_joint.position", fault->text);
     case Of::velocity:
-      return wire::make_fault(ErrorCode::bad_value, "set_joint.velocity", fault->text);
-    case Of::solver:
       break;
   }
-  return wire::make_fault(ErrorCode::out_of_state, "set_joint", fault->text);
+  return wire::make_fault(ErrorCode::bad_value, "set_joint.velocity", fault->text);
 }
 
 namespace {
 
-std::optional<wire::Fault> set_joint(simulation::Simulation& world, const Callers& callers, std::size_t entity,
-                                     const wire::Request& request) {
+std::optional<wire::Fault> set_joint(simulation::Simulation& world, const Callers& callers,
+                                     std::size_t entity, const wire::Request& request) {
   if (auto fault = check_joint(world, entity, request)) return fault;
   simulation::set_joint(world, entity, motion_of(request));
-  callers.tell(JointSet{request.text, request.joint, request.joint_position, request.joint_velocity});
+  callers.tell(
+      JointSet{request.text, request.joint, request.joint_position, request.joint_velocity});
   return std::nullopt;
 }
 
 }  // namespace
 
-std::optional<wire::Fault> move(simulation::Simulation& world, const Callers& callers, std::size_t entity,
-                                const wire::Request& request) {
-  if (request.kind == wire::Request::Kind::set_joint) return set_joint(world, callers, entity, request);
+std::optional<wire::Fault> move(simulation::Simulation& world, const Callers& callers,
+                                std::size_t entity, const wire::Request& request) {
+  if (request.kind == wire::Request::Kind::set_joint)
+    return set_joint(world, callers, entity, request);
   auto pose = pose_of(world.state().origins[entity], request);
   if (auto* fault = std::get_if<wire::Fault>(&pose)) return std::move(*fault);
   const math::Pose& to = std::get<math::Pose>(pose);
   if (!request.may_overlap) {
     if (const auto other = simulation::overlapped_by(world, world.entities()[entity], to, entity)) {
-      return wire::make_fault(ErrorCode::bad_value, "move.position",
-                              fmt::format("'{}' overlaps '{}' where it is moved to; choose a place that is free, or "
-                                          "say that it may overlap.",
-                                          request.text, world.layout().entities[*other].id));
+      return wire::make_fault(
+          ErrorCode::bad_value, "move.position",
+          fmt::format("'{}' overlaps '{}' where it is moved to; choose a place that is free, or "
+                      "say that it may overlap.",
+                      request.text, world.layout().entities[*other].id));
     }
   }
   world.move(entity, to);

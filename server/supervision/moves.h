@@ -15,10 +15,11 @@ namespace ziggurat::supervision {
 /// @param now  without an orientation that of this
 std::variant<math::Pose, wire::Fault> pose_of(const math::Pose& now, const wire::Request& request);
 
-/// Moves an entity, or sets a joint of it, and tells that it was done, or why it can't be: then nothing has changed.
+/// Moves an entity, or sets a joint of it, and tells that it was done, or why it can't be: then
+/// nothing has changed.
 /// @param entity  into Layout::entities
-std::optional<wire::Fault> move(simulation::Simulation& world, const Callers& callers, std::size_t entity,
-                                const wire::Request& request);
+std::optional<wire::Fault> move(simulation::Simulation& world, const Callers& callers,
+                                std::size_t entity, const wire::Request& request);
 
 /// Checks what a request asks of a joint; nothing: it can be set.
 /// @param entity  into Layout::entities

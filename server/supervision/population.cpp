@@ -65,32 +65,36 @@ std::string script_of(const World& world, const scene::Entity& entity,
 }  // namespace
 
 scene::OpenFile opener(const processes::AllowedFiles& allowed, const std::string& scene_file,
-                       Spawned* act) {
+                       Spawned* spawned) {
   const auto scene_folder = std::filesystem::path(scene_file).parent_path();
-  return [&allowed, act, scene_folder](const std::filesystem::path& path, std::size_t max_size) {
-    std::vector<std::filesystem::path> candidates{path};
-    for (const auto& folder : allowed.folders) {
-      candidates.push_back(folder / path.lexically_relative(scene_folder));
-    }
-    for (const auto& candidate : candidates) {
-      if (processes::is_below(allowed.folders, candidate)) {
-        auto opened = scene::open_file(candidate, max_size);
-        const auto* file = std::get_if<scene::File>(&opened);
-        if (file && act) act->files.emplace_back(path.string(), file->text);
-        return opened;
-      }
-    }
-    return scene::open_no_file(path, max_size);
-  };
+  return
+      [&allowed, spawned, scene_folder](const std::filesystem::path& path, std::size_t max_size) {
+        std::vector<std::filesystem::path> candidates{path};
+        for (const auto& folder : allowed.folders) {
+          candidates.push_back(folder / path.lexically_relative(scene_folder));
+        }
+        for (const auto& candidate : candidates) {
+          if (processes::is_below(allowed.folders, candidate)) {
+            auto opened = scene::open_file(candidate, max_size);
+            const auto* file = std::get_if<scene::File>(&opened);
+            if (file && spawned) spawned->files.emplace_back(path.string(), file->text);
+            return opened;
+          }
+        }
+        return scene::open_no_file(path, max_size);
+      };
 }
 
-wire::Fault no_entity(std::string field, const std::string& id, const simulation::Simulation* world) {
-  std::string text = fmt::format("There is no entity '{}'.", id.substr(0, network::longest_pattern));
+wire::Fault no_entity(std::string field, const std::string& id,
+                      const simulation::Simulation* world) {
+  std::string text =
+      fmt::format("There is no entity '{}'.", id.substr(0, network::longest_pattern));
   std::vector<std::string_view> ids;
   for (std::size_t i = 0; world != nullptr && i < world->layout().entities.size(); ++i) {
     if (!world->state().is_absent(i)) ids.push_back(world->layout().entities[i].id);
   }
-  if (const auto meant = scene::nearest(id, ids)) text += fmt::format(" Did you mean '{}'?", *meant);
+  if (const auto meant = scene::nearest(id, ids))
+    text += fmt::format(" Did you mean '{}'?", *meant);
   return wire::make_fault(ErrorCode::unknown_entity, std::move(field), std::move(text));
 }
 
@@ -130,18 +134,19 @@ std::variant<Population::Candidate, wire::Fault> Population::read(
                     "spawn more.",
                     most_spawned));
   }
-  const network::DirectorsDesk directors(server_);
+  const network::ServerDirectors directors(server_);
   const auto is_used = [&](const std::string& id) { return is_taken(id) || directors.has(id); };
   Candidate candidate;
-  candidate.act = {xml, {}, {}};
+  candidate.spawned = {xml, {}, {}};
   scene::Addition& addition = candidate.addition;
   try {
-    addition = world_.additions.read(xml, world_.scene, size_left_ - std::min(size_left_, earlier.size),
-                                     is_used, opener(allowed_, world_.path, &candidate.act));
+    addition =
+        world_.additions.read(xml, world_.scene, size_left_ - std::min(size_left_, earlier.size),
+                              is_used, opener(allowed_, world_.path, &candidate.spawned));
     const scene::Entity& entity = addition.entity;
     if (addition.ok()) {
       candidate.script = processes::spawned_script(world_.scene, entity, world_.path, allowed_);
-      candidate.act.script = candidate.script.path;
+      candidate.spawned.script = candidate.script.path;
       if (candidate.script.details) console_.notice(*candidate.script.details);
       if (candidate.script.fault) {
         addition.problems.push_back({scene::Problem::Severity::fault,
@@ -167,13 +172,15 @@ std::variant<std::string, wire::Fault> Population::overlapped(const wire::Reques
     if (!itself) return no_entity("is_free.entity", request.text, &world);
   } else if (request.text.size() > longest_spawned) {
     return wire::make_fault(ErrorCode::too_large, "is_free.xml",
-                            fmt::format("The element has {} bytes; at most {} are allowed.", request.text.size(),
-                                        longest_spawned));
+                            fmt::format("The element has {} bytes; at most {} are allowed.",
+                                        request.text.size(), longest_spawned));
   } else {
-    element = world_.additions.read_shape(request.text, world_.scene, settings_.max_size, opener(allowed_, world_.path));
+    element = world_.additions.read_shape(request.text, world_.scene, settings_.max_size,
+                                          opener(allowed_, world_.path));
     if (!element.ok()) {
-      return wire::make_fault(ErrorCode::bad_value, "is_free.xml",
-                              std::string(scene::SceneError(element.problems).what()).substr(0, longest_message));
+      return wire::make_fault(
+          ErrorCode::bad_value, "is_free.xml",
+          std::string(scene::SceneError(element.problems).what()).substr(0, longest_message));
     }
   }
   auto pose = pose_of(itself ? world.state().origins[*itself] : math::Pose{}, request);
@@ -198,7 +205,7 @@ std::optional<wire::Fault> Population::spawn(const std::string& xml) {
                             std::string(error.what()).substr(0, longest_message));
   }
   for (const scene::Problem& notice : candidate.addition.problems) console_.problem(notice);
-  callers_.tell(candidate.act);
+  callers_.tell(candidate.spawned);
   ++spawned_;
   sizes_[xml] = candidate.addition.size;
   size_left_ -= candidate.addition.size;
@@ -246,10 +253,11 @@ std::optional<wire::Fault> Population::remove(const std::string& id) {
   return std::nullopt;
 }
 
-/// Of an element that was spawned, its model written out [bytes].
+/// Size of an element that was spawned, its model written out [bytes].
 std::size_t Population::size_of(const std::string& xml) const {
   const auto is_free = [](const std::string&) { return false; };  // it is what is there
-  const auto read = world_.additions.read(xml, world_.scene, settings_.max_size, is_free, opener(allowed_, world_.path));
+  const auto read = world_.additions.read(xml, world_.scene, settings_.max_size, is_free,
+                                          opener(allowed_, world_.path));
   return std::max(read.size, xml.size());
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// Entities that are added to the world and removed from it while it runs (docs/protocol.md, V9 and V13).
+// Entities that are added to the world and removed from it while it runs (docs/protocol.md, V9 and
+// V13).
 
 #include <cstddef>
 #include <functional>
@@ -15,21 +16,22 @@
 #include "processes/spawned_scripts.h"
 #include "reports/console.h"
 #include "scene/additions.h"
-#include "supervision/act.h"
 #include "supervision/callers.h"
 #include "supervision/world.h"
+#include "supervision/world_change.h"
 
 namespace ziggurat::supervision {
 
 /// The fault of an act on an entity that is not there.
 /// @param field  of the request
 /// @param world  an entity of it is suggested; null: none
-wire::Fault no_entity(std::string field, const std::string& id, const simulation::Simulation* world = nullptr);
+wire::Fault no_entity(std::string field, const std::string& id,
+                      const simulation::Simulation* world = nullptr);
 
 /// The entity of that id that is in the world, into Layout::entities.
 std::optional<std::size_t> entity_named(const simulation::Simulation& world, const std::string& id);
 
-/// What is about to be spawned before something else.
+/// Spawns that precede another one in the same tick.
 struct EarlierSpawns {
   std::size_t count = 0;  ///< entities
   std::size_t size = 0;   ///< of their elements, models written out [bytes]
@@ -51,22 +53,23 @@ class Population {
   struct Candidate {
     scene::Addition addition;
     processes::SpawnedScript script;
-    Spawned act;
+    Spawned spawned;
   };
   /// Reads an element. @param is_taken  whether an id is that of an entity that will be there then
   std::variant<Candidate, wire::Fault> read(const std::string& xml,
                                             const std::function<bool(const std::string&)>& is_taken,
                                             const EarlierSpawns& earlier = {}) const;
 
-  /// The first entity that the one, or the element, of a request would overlap at its pose: its id, empty if the place
-  /// is free; or what is wrong with the request.
+  /// The first entity that the one, or the element, of a request would overlap at its pose: its id,
+  /// empty if the place is free; or what is wrong with the request.
   std::variant<std::string, wire::Fault> overlapped(const wire::Request& request) const;
 
   // Each returns why it can't be done; then nothing has changed.
   std::optional<wire::Fault> spawn(const std::string& xml);
   std::optional<wire::Fault> remove(const std::string& id);
 
-  /// The world has begun anew or gone back. @param robots  the first ones, which are the same as before
+  /// The world has begun anew or gone back. @param robots  the first ones, which are the same as
+  /// before
   void restart(std::size_t robots);
 
   /// Files that spawned elements may name.

@@ -24,8 +24,7 @@ std::vector<std::string> clients_without_restore(network::Server& server) {
     const bool is_known = std::ranges::find(clients, robot.holder) != clients.end();
     if (!robot.can_restore && !is_known) clients.push_back(robot.holder);
   }
-  for (const network::DirectorStatus& director :
-       network::DirectorsDesk(server).status()) {
+  for (const network::DirectorStatus& director : network::ServerDirectors(server).status()) {
     if (!director.can_restore) clients.push_back(director.client);
   }
   return clients;
@@ -43,12 +42,12 @@ std::string list_of(const std::vector<std::string>& clients) {
 
 }  // namespace
 
-/// Waits for a restore that was asked for before: what that goes back to is found already, but a recording has it behind
-/// a snapshot that is taken now, which may have the same name.
+/// Takes a snapshot. It waits for a restore that was asked for before. The state of that restore is
+/// found already, but in a recording it would follow this snapshot, which may have the same name.
 Reply Supervision::snapshot(const network::Call& call) {
   if (resetting_) return Reply::later;
   if (auto fault = snapshots_.keep(call.request.text, world_)) return fail(call, std::move(*fault));
-  callers_.tell(Kept{call.request.text});
+  callers_.tell(SnapshotTaken{call.request.text});
   return done(call);
 }
 
@@ -63,7 +62,8 @@ Reply Supervision::restore(const network::Call& call) {
                                        "clients that set can_restore in their Hello.",
                                        list_of(clients))));
   }
-  auto found = snapshots_.find(call.request.text, world_, opener(population_.allowed(), world_.path));
+  auto found =
+      snapshots_.find(call.request.text, world_, opener(population_.allowed(), world_.path));
   if (auto* fault = std::get_if<wire::Fault>(&found)) return fail(call, std::move(*fault));
   restoring_ = std::get<FoundSnapshot>(std::move(found));
   resetting_ = call;
@@ -76,10 +76,10 @@ bool Supervision::restart() {
     common = common_robots(world_.simulation.history(), restoring_->snapshot.history,
                            world_.simulation.layout());
   }
-  const auto keep_alive = [this] { network::keep_alive(server_); };
   try {
-    restoring_ ? world_.restore(restoring_->snapshot, keep_alive)
-               : world_.reset(resetting_->request.seed.value_or(world_.seed), keep_alive);
+    restoring_ ? world_.restore(restoring_->snapshot)
+               : world_.reset(resetting_->request.seed.value_or(world_.seed),
+                              [this] { network::keep_alive(server_); });
   } catch (const std::runtime_error& error) {
     fail(*resetting_, make_fault(ErrorCode::bad_value, restoring_ ? "restore.name" : "reset.seed",
                                  error.what()));
@@ -104,11 +104,15 @@ bool Supervision::restart() {
                                        : simulation.layout().robots.size());
   is_gathered_ = false;  // until every robot has its controller again
   end_steps();
-  answer_waiting(waiting_, callers_, [this](const network::Call& call) {  // also those that waited for their turn
-    if (call.request.kind != wire::Request::Kind::step) return Reply::later;
-    return fail(call, make_fault(ErrorCode::out_of_state, {},
-                                 "A reset or restore has ended these steps; send a Step again for others."));
-  });
+  answer_waiting(
+      waiting_, callers_,
+      [this](const network::Call& call) {  // also those that waited for their turn
+        if (call.request.kind != wire::Request::Kind::step) return Reply::later;
+        return fail(
+            call,
+            make_fault(ErrorCode::out_of_state, {},
+                       "A reset or restore has ended these steps; send a Step again for others."));
+      });
   done(*resetting_);
   resetting_.reset();
   restoring_.reset();

@@ -21,8 +21,8 @@ using wire::make_fault;
 
 namespace {
 
-constexpr std::size_t most = 1024;                          // snapshots in memory
-constexpr std::size_t most_bytes = std::size_t{1} << 30;    // of all of them
+constexpr std::size_t most = 1024;                            // snapshots in memory
+constexpr std::size_t most_bytes = std::size_t{1} << 30;      // of all of them
 constexpr std::size_t longest_file = std::size_t{512} << 20;  // what a recording can embed [bytes]
 
 std::optional<wire::Fault> fault_of_name(const std::string& name, const char* field) {
@@ -43,7 +43,8 @@ std::vector<std::byte> read_file(const std::filesystem::path& path) {
   return bytes;
 }
 
-/// Writes a new file. What stood there, which may be a link of somebody who can write to the folder, is not followed.
+/// Writes a new file. What stood there, which may be a link of somebody who can write to the
+/// folder, is not followed.
 bool write_new(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   ::unlink(path.c_str());
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -110,9 +111,8 @@ std::optional<wire::Fault> Snapshots::keep(const std::string& name, const World&
 void Snapshots::write(const std::string& name, const Snapshot& snapshot, const World& world) const {
   const std::vector<std::byte> bytes = simulation::to_bytes(snapshot, {world.scene_hash, build_});
   if (bytes.size() > longest_file) {
-    throw simulation::SnapshotError(
-        fmt::format("The snapshot has more than {} MiB, the most that a file may have.",
-                    longest_file >> 20));
+    throw simulation::SnapshotError(fmt::format(
+        "The snapshot has more than {} MiB, the most that a file may have.", longest_file >> 20));
   }
   const std::filesystem::path path = path_of(name), partial = path.string() + ".part";
   const bool is_written = write_new(partial, bytes);
@@ -124,8 +124,8 @@ void Snapshots::write(const std::string& name, const Snapshot& snapshot, const W
 }
 
 std::variant<FoundSnapshot, wire::Fault> Snapshots::find(const std::string& name,
-                                                        const World& world,
-                                                        const scene::OpenFile& open) const {
+                                                         const World& world,
+                                                         const scene::OpenFile& open) const {
   if (auto fault = fault_of_name(name, "restore.name")) return std::move(*fault);
   if (const auto found = kept_.find(name); found != kept_.end()) {
     return FoundSnapshot{found->second, {}};
@@ -138,12 +138,13 @@ std::variant<FoundSnapshot, wire::Fault> Snapshots::find(const std::string& name
   }
   try {
     std::vector<std::byte> bytes = read_file(path_of(name));
-    Snapshot snapshot = simulation::from_bytes(bytes, {world.scene_hash, build_},
-                                               reader_of_spawned(world.additions, world.scene, open));
+    Snapshot snapshot = simulation::from_bytes(
+        bytes, {world.scene_hash, build_}, reader_of_spawned(world.additions, world.scene, open));
     return FoundSnapshot{std::move(snapshot), std::move(bytes)};
   } catch (const std::exception& exception) {
     return make_fault(ErrorCode::bad_value, "restore.name",
-                      fmt::format("'{}': {}", path_of(name).filename().string(), exception.what()).substr(0, 1024));
+                      fmt::format("'{}': {}", path_of(name).filename().string(), exception.what())
+                          .substr(0, 1024));
   }
 }
 

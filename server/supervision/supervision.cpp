@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <string_view>
@@ -55,7 +56,7 @@ Selection select(const std::vector<std::string>& patterns, const simulation::Sim
   return selection;
 }
 
-/// What is wrong with the reason of a shutdown, if anything.
+/// Fault of the reason of a shutdown, if it has one.
 std::optional<wire::Fault> fault_of_reason(const std::string& reason) {
   constexpr std::size_t longest = 1024;  // [bytes]
   if (reason.size() <= longest) return std::nullopt;
@@ -68,7 +69,8 @@ std::optional<wire::Fault> fault_of_reason(const std::string& reason) {
 wire::Fault held_up(const char* what) {
   return wire::make_fault(
       ErrorCode::out_of_state, "held_up",
-      fmt::format("The world waits for a session of the same program, which waits for this {0} instead: it would take "
+      fmt::format("The world waits for a session of the same program, which waits for this {0} "
+                  "instead: it would take "
                   "forever. Answer the tick first (next()), or {0} from another thread or program.",
                   what));
 }
@@ -98,10 +100,10 @@ Supervision::Supervision(const Settings& settings, World& world, network::Server
       population_(population),
       snapshots_(settings.snapshot_folder, settings.build) {}
 
-bool Supervision::is_standing() const { return server_.pause() == network::Pause::standing; }
+bool Supervision::is_halted() const { return server_.pause() == network::Pause::halted; }
 
 void Supervision::serve() {
-  paused_.update(is_standing());
+  paused_.update(is_halted());
   if (stepping_ && !callers_.can_hear(*stepping_)) end_steps();
   for (network::Call& call : callers_.take()) waiting_.push_back(std::move(call));
   answer_waiting(waiting_, callers_, [this](const network::Call& call) { return handle(call); });
@@ -129,7 +131,8 @@ Reply Supervision::handle(const network::Call& call) {
       auto overlapped = population_.overlapped(call.request);
       if (auto* fault = std::get_if<wire::Fault>(&overlapped)) return fail(call, std::move(*fault));
       server_.answer(call, [&](wire::Outbox& outbox) {
-        outbox.response(call.request.id, world_.simulation.state().tick, std::get<std::string>(overlapped));
+        outbox.response(call.request.id, world_.simulation.state().tick,
+                        std::get<std::string>(overlapped));
       });
       return Reply::given;
     }
@@ -152,15 +155,28 @@ Reply Supervision::handle(const network::Call& call) {
 }
 
 Reply Supervision::pause(const network::Call& call) {
-  const bool waits = !is_standing() && is_gathered_;
-  if (waits && network::need_of(server_, call.request.held_up) == network::Need::answer) return fail(call, held_up("pause"));
-  const bool was_asked = server_.pause() != network::Pause::none || steps_left_ > 0;
+  constexpr std::chrono::milliseconds in_flight{
+      300};  // for an answer that was sent before the request
+  const auto now = std::chrono::steady_clock::now();
+  const bool was_paused = server_.pause() != network::Pause::none;
+  const bool waits = !is_halted() && is_gathered_;
+  if (waits && network::need_of(server_, call.request.held_up) == network::Need::answer) {
+    const bool is_known =
+        held_up_ && held_up_->peer == call.peer && held_up_->id == call.request.id;
+    if (!is_known) held_up_ = HeldUp{call.peer, call.request.id, now, was_paused};
+    server_.set_paused(true);  // the world stands behind that answer
+    if (now - held_up_->since < in_flight) return Reply::later;
+    server_.set_paused(std::exchange(held_up_, std::nullopt)->was_paused);
+    return fail(call, held_up("pause"));
+  }
+  const bool was_asked = (held_up_ ? held_up_->was_paused : was_paused) || steps_left_ > 0;
+  held_up_.reset();
   steps_left_ = 0;
   server_.set_paused(true);
-  if (!was_asked) callers_.tell(Paused{});  // it may be handled again until the world stands
-  paused_.update(is_standing());
+  if (!was_asked) callers_.tell(Paused{});  // it may be handled again until the world is halted
+  paused_.update(is_halted());
   // Before tick 0 nothing moves: the world will stand there.
-  if (!is_standing() && is_gathered_) return Reply::later;
+  if (!is_halted() && is_gathered_) return Reply::later;
   write_outputs(settings_);
   return done(call);
 }
@@ -168,26 +184,27 @@ Reply Supervision::pause(const network::Call& call) {
 /// A step that still runs ends here: its supervisor is told that the world is not paused.
 Reply Supervision::resume(const network::Call& call) {
   stepping_.reset();
+  held_up_.reset();
   steps_left_ = 0;
   server_.set_paused(false);
   callers_.tell(Resumed{});
-  paused_.update(is_standing());
+  paused_.update(is_halted());
   return done(call);
 }
 
-/// The world is paused again, when the tick in hand is complete at the latest.
+/// The world is paused again, when the current tick is complete at the latest.
 void Supervision::end_steps() {
   stepping_.reset();
   if (steps_left_ == 0) return;
   steps_left_ = 0;
   server_.set_paused(true);
-  paused_.update(is_standing());
+  paused_.update(is_halted());
 }
 
 Reply Supervision::step(const network::Call& call) {
   if (stepping_ && stepping_->peer == call.peer && stepping_->session == call.session &&
       stepping_->request.id == call.request.id) {
-    const bool is_over = steps_left_ == 0 && is_standing();
+    const bool is_over = steps_left_ == 0 && is_halted();
     if (!is_over) return Reply::later;
     stepping_.reset();
     write_outputs(settings_);
@@ -197,7 +214,8 @@ Reply Supervision::step(const network::Call& call) {
     return fail(call, wire::make_fault(ErrorCode::bad_value, "step.ticks",
                                        "A step has at least one tick."));
   }
-  if (server_.pause() != network::Pause::none && network::need_of(server_, call.request.held_up) != network::Need::nothing) {
+  if (server_.pause() != network::Pause::none &&
+      network::need_of(server_, call.request.held_up) != network::Need::nothing) {
     return fail(call, held_up("step"));
   }
   if (stepping_) return Reply::later;
@@ -206,12 +224,12 @@ Reply Supervision::step(const network::Call& call) {
                 wire::make_fault(ErrorCode::out_of_state, {},
                                  "The world is not paused; send a Pause request before a Step."));
   }
-  // It will stand: at tick 0, or when the tick in hand is complete.
-  if (!is_gathered_ || !is_standing()) return Reply::later;
+  // It will stand: at tick 0, or when the current tick is complete.
+  if (!is_gathered_ || !is_halted()) return Reply::later;
   stepping_ = call;
   steps_left_ = call.request.ticks;
   server_.set_paused(false);
-  paused_.update(is_standing());
+  paused_.update(is_halted());
   return Reply::later;
 }
 
@@ -246,7 +264,9 @@ Reply Supervision::read(const network::Call& call) {
 Reply Supervision::move(const network::Call& call) {
   const auto entity = entity_named(world_.simulation, call.request.text);
   const bool is_move = call.request.kind == Kind::move;
-  if (!entity) return fail(call, no_entity(is_move ? "move.entity" : "set_joint.entity", call.request.text, &world_.simulation));
+  if (!entity)
+    return fail(call, no_entity(is_move ? "move.entity" : "set_joint.entity", call.request.text,
+                                &world_.simulation));
   auto fault = supervision::move(world_.simulation, callers_, *entity, call.request);
   return fault ? fail(call, std::move(*fault)) : done(call);
 }
@@ -273,7 +293,7 @@ Reply Supervision::done(const network::Call& call) {
 }
 
 void Supervision::published() {
-  paused_.update(is_standing());
+  paused_.update(is_halted());
   if (steps_left_ > 0 && --steps_left_ == 0) server_.set_paused(true);
 }
 
@@ -285,7 +305,7 @@ wire::Status Supervision::status() const {
   status.tick = state.tick;
   status.time_ns = state.time_ns;
   // Before tick 0 a world that was paused stands, though robots may be without controller.
-  const bool is_paused = is_gathered_ ? is_standing() : server_.pause() != network::Pause::none;
+  const bool is_paused = is_gathered_ ? is_halted() : server_.pause() != network::Pause::none;
   status.phase = is_paused      ? wire::Status::Phase::paused
                  : is_gathered_ ? wire::Status::Phase::running
                                 : wire::Status::Phase::gathering;

@@ -18,7 +18,7 @@
 
 namespace ziggurat::supervision {
 
-/// How long a paced run has been paused: its schedule shifts by that.
+/// Time that a paced run has been paused: its schedule shifts by that.
 class PauseTimer {
  public:
   using clock = std::chrono::steady_clock;
@@ -35,11 +35,12 @@ class Supervision {
   using clock = std::chrono::steady_clock;
 
   struct Settings {
-    std::uint64_t last_tick = 0;       ///< 0: until stopped
+    std::uint64_t last_tick = 0;  ///< 0: until stopped
     bool is_hardware_in_the_loop = false;
     std::string snapshot_folder;  ///< where snapshots are written to and read from; empty: nowhere
     std::string build;            ///< of this program
-    std::function<void()> write_outputs = {};  ///< all of them, before somebody is told that the world stands; may be empty
+    std::function<void()> write_outputs =
+        {};  ///< all of them, before somebody is told that the world is halted; may be empty
   };
 
   /// Everything but the settings must outlive this.
@@ -59,7 +60,8 @@ class Supervision {
   /// A supervisor asks for a reset or a restore: the caller calls restart() between two ticks.
   bool requests_restart() const { return resetting_.has_value(); }
   /// Puts the world back to its start or to a snapshot, and tells all of it.
-  /// @return  false if that can't be; then the supervisor gets an error, and the world stays as it is
+  /// @return  false if that can't be; then the supervisor gets an error, and the world stays as it
+  /// is
   bool restart();
 
   /// A supervisor ends the run. The reason is empty if the end was not planned.
@@ -68,7 +70,7 @@ class Supervision {
   wire::Status status() const;
 
  private:
-  bool is_standing() const;
+  bool is_halted() const;
   Reply handle(const network::Call& call);
   Reply pause(const network::Call& call);
   Reply resume(const network::Call& call);
@@ -94,6 +96,14 @@ class Supervision {
   Snapshots snapshots_;
   std::optional<FoundSnapshot> restoring_;  ///< with resetting_
   std::uint64_t steps_left_ = 0;
+  /// A pause that names a session of its program which still owes an answer: it may be on its way.
+  struct HeldUp {
+    std::string peer;
+    std::uint64_t id = 0;  ///< of the request
+    std::chrono::steady_clock::time_point since;
+    bool was_paused = false;
+  };
+  std::optional<HeldUp> held_up_;
   bool is_gathered_ = false;
   std::optional<std::string> shutdown_;  // the reason
   clock::time_point start_ = clock::now();

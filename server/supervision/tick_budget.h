@@ -1,5 +1,5 @@
 #pragma once
-// Where the wall time of recent ticks went.
+// Wall time of recent ticks by phase.
 
 #include <array>
 #include <vector>

@@ -23,8 +23,8 @@ void World::reset(std::uint64_t new_seed, const std::function<void()>& tell) {
   seed = new_seed;
 }
 
-void World::restore(const simulation::Snapshot& snapshot, const std::function<void()>& tell) {
-  simulation.restore(scene, snapshot, {}, tell);
+void World::restore(const simulation::Snapshot& snapshot) {
+  simulation.restore(scene, snapshot);
   seed = snapshot.seed;
 }
 

@@ -24,10 +24,10 @@ struct World {
   void reset(std::uint64_t new_seed, const std::function<void()>& tell = {});
 
   /// Puts the world back. @throws std::runtime_error; then nothing changes
-  /// @param tell  called now and then: a run that is repeated takes its time
-  void restore(const simulation::Snapshot& snapshot, const std::function<void()>& tell = {});
+  void restore(const simulation::Snapshot& snapshot);
 
-  /// Puts this world into the state of a world of a scene with other values, with this seed from then on.
+  /// Puts this world into the state of a world of a scene with other values, with this seed from
+  /// then on.
   /// @throws simulation::SnapshotError; then nothing changes
   void branch(const simulation::Snapshot& snapshot, std::uint64_t new_seed);
 

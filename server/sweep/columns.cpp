@@ -56,7 +56,8 @@ Columns columns_of(const Experiment& experiment, std::span<const Result> results
   };
   Columns columns;
   for (const Axis& axis : experiment.axes) columns.axes.push_back(take(axis.name, "param_"));
-  for (const std::string& name : metric_names(results)) columns.metrics[name] = take(name, "metric_");
+  for (const std::string& name : metric_names(results))
+    columns.metrics[name] = take(name, "metric_");
   return columns;
 }
 

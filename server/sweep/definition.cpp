@@ -60,7 +60,8 @@ std::string differing(const Experiment& kept, const Experiment& now) {
     return differing_argument(kept.run_arguments, now.run_arguments);
   }
   const auto [first, other] = std::ranges::mismatch(kept.axes, now.axes, is_same_axis);
-  return fmt::format("its axes have another order: '{}' comes before '{}'", first->name, other->name);
+  return fmt::format("its axes have another order: '{}' comes before '{}'", first->name,
+                     other->name);
 }
 
 bool is_same(const Experiment& a, const Experiment& b) {

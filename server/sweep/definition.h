@@ -1,6 +1,6 @@
 #pragma once
-// What a folder of results belongs to: the experiment and the files that it was begun with. Kept in
-// the folder as `experiment.json`.
+// Definition that a folder of results belongs to: the experiment and the files that it was begun
+// with. Kept in the folder as `experiment.json`.
 
 #include <map>
 #include <string>

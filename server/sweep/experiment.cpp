@@ -86,7 +86,8 @@ void check_seeds(const std::vector<std::uint64_t>& seeds) {
   for (const std::uint64_t seed : seeds) {
     if (seed == 0) {
       throw text::UsageError(
-          "a seed is 0, which draws another one for each run; write seeds from 1 on: --seeds 1..10");
+          "a seed is 0, which draws another one for each run; write seeds from 1 on: --seeds "
+          "1..10");
     }
     if (seed > largest_seed) {
       throw text::UsageError(fmt::format("the seed {} is too large; {} is the largest of a sweep",
@@ -150,22 +151,23 @@ std::vector<std::uint64_t> to_seeds(std::string_view place, std::string_view tex
       return text::to_integer(place, std::string(text::trimmed(digits)));
     };
     if (part.empty() || part.starts_with("..") || part.ends_with("..")) {
-      throw text::UsageError(fmt::format("{} is '{}'; write for example 1..30 or 1,2,5..9", place, text));
+      throw text::UsageError(
+          fmt::format("{} is '{}'; write for example 1..30 or 1,2,5..9", place, text));
     }
     if (const std::size_t dash = part.find('-'); dash != 0 && dash != part.npos) {
-      throw text::UsageError(fmt::format("{} is '{}'; write {}..{}", place, part, text::trimmed(part.substr(0, dash)),
+      throw text::UsageError(fmt::format("{} is '{}'; write {}..{}", place, part,
+                                         text::trimmed(part.substr(0, dash)),
                                          text::trimmed(part.substr(dash + 1))));
     }
     const std::uint64_t first = number(part.substr(0, dots));
     const std::uint64_t last = dots == part.npos ? first : number(part.substr(dots + 2));
     if (last < first) {
-      throw text::UsageError(
-          fmt::format("{} is '{}', which ends before it begins; write {}..{}", place, part, last,
-                      first));
+      throw text::UsageError(fmt::format("{} is '{}', which ends before it begins; write {}..{}",
+                                         place, part, last, first));
     }
     if (last - first >= most_runs || seeds.size() + (last - first) >= most_runs) {
-      throw text::UsageError(fmt::format("{} is '{}'; a sweep has {} runs at most", place, part,
-                                         most_runs));
+      throw text::UsageError(
+          fmt::format("{} is '{}'; a sweep has {} runs at most", place, part, most_runs));
     }
     for (std::uint64_t seed = first; seed <= last; ++seed) {
       seeds.push_back(seed);
@@ -180,15 +182,16 @@ void check(const Experiment& experiment) {
   std::set<std::string_view> names;
   for (const Axis& axis : experiment.axes) {
     if (!names.insert(axis.name).second) {
-      throw text::UsageError(fmt::format("{} is given twice; write all its values once, as in "
-                                         "'{}=1|2'",
-                                         scene::in_quotes(axis.name), axis.name));
+      throw text::UsageError(
+          fmt::format("{} is given twice; write all its values once, as in "
+                      "'{}=1|2'",
+                      scene::in_quotes(axis.name), axis.name));
     }
     check_axis(axis);
   }
   if (run_count(experiment) > most_runs) {
-    throw text::UsageError(fmt::format("these are more than {} runs; write fewer values or seeds",
-                                       most_runs));
+    throw text::UsageError(
+        fmt::format("these are more than {} runs; write fewer values or seeds", most_runs));
   }
   check_seeds(experiment.seeds);
 }

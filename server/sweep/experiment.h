@@ -1,5 +1,5 @@
 #pragma once
-// What a sweep runs: a scene, a grid of values and seeds. Each combination is one run.
+// Experiment of a sweep: a scene, a grid of values and seeds. Each combination is one run.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,12 +1,12 @@
 #include "sweep/experiment_file.h"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <string_view>
-#include <toml++/toml.h>
 #include <utility>
 #include <vector>
 
@@ -20,8 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> known_keys = {"scene", "seeds",  "out", "jobs",       "timeout",
-                                             "ticks", "duration", "record", "run", "parameters", "axes"};
+const std::vector<std::string> known_keys = {"scene",   "seeds",      "out",      "jobs",
+                                             "timeout", "ticks",      "duration", "record",
+                                             "run",     "parameters", "axes"};
 
 /// Reads one file; its messages name their places.
 class FileReader {
@@ -32,10 +33,10 @@ class FileReader {
     const toml::table table = parse();
     for (const auto& [key, node] : table) {
       if (std::ranges::find(known_keys, key.str()) != known_keys.end()) continue;
-      fault(key.source(), fmt::format("unknown key {}; {}", scene::in_quotes(key.str()),
-                                      text::advice(key.str(), known_keys,
-                                                   fmt::format("known here: {}",
-                                                               fmt::join(known_keys, ", ")))));
+      fault(key.source(),
+            fmt::format("unknown key {}; {}", scene::in_quotes(key.str()),
+                        text::advice(key.str(), known_keys,
+                                     fmt::format("known here: {}", fmt::join(known_keys, ", ")))));
     }
     ExperimentFile file;
     file.experiment.scene = scene_of(table);
@@ -55,8 +56,10 @@ class FileReader {
 
   toml::table parse() const {
     if (const auto wrong = scene::fault_of_file(path_)) {
-      throw text::UsageError(fmt::format("'{}' {}; write the path of a scene or of an experiment file "
-                                         "(.toml)", path_, *wrong));
+      throw text::UsageError(
+          fmt::format("'{}' {}; write the path of a scene or of an experiment file "
+                      "(.toml)",
+                      path_, *wrong));
     }
     try {
       return toml::parse_file(path_);
@@ -134,9 +137,8 @@ class FileReader {
       if (axis.values.empty()) fault(key.source(), "has no values; write one or more");
       found.emplace_back(key.source().begin, std::move(axis));
     }
-    std::ranges::sort(found, {}, [](const auto& each) {
-      return std::pair(each.first.line, each.first.column);
-    });
+    std::ranges::sort(
+        found, {}, [](const auto& each) { return std::pair(each.first.line, each.first.column); });
     for (auto& each : found) experiment.axes.push_back(std::move(each.second));
   }
 
@@ -159,7 +161,8 @@ class FileReader {
     const auto number = [&](const char* name) -> std::optional<double> {
       const auto* node = table[name].node();
       if (node == nullptr) return std::nullopt;
-      if (!node->is_number() || !std::isfinite(*node->value<double>()) || *node->value<double>() <= 0) {
+      if (!node->is_number() || !std::isfinite(*node->value<double>()) ||
+          *node->value<double>() <= 0) {
         fault(node->source(), fmt::format("{} must be a finite number above 0", name));
       }
       return node->value<double>();

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -51,12 +50,13 @@ std::vector<Result> read_ledgers(std::span<const fs::path> paths, std::size_t ru
     if (!fs::exists(path)) continue;
     for (Result& result : Ledger(path.string()).read()) {
       if (result.run < 1 || result.run > runs) {
-        throw LedgerError(fmt::format("{} has a run {}, and the sweep has {}: the file is damaged, or of another "
-                                      "sweep; move it away",
-                                      path.string(), static_cast<std::int64_t>(result.run), runs));
+        throw LedgerError(
+            fmt::format("{} has a run {}, and the sweep has {}: the file is damaged, or of another "
+                        "sweep; move it away",
+                        path.string(), static_cast<std::int64_t>(result.run), runs));
       }
       auto& known = by_run[result.run];
-      // Of a run that failed here and finished there, the end counts.
+      // A run that failed here and finished there counts as finished.
       if (known.run == 0 || known.outcome != Outcome::finished) known = std::move(result);
     }
   }
@@ -77,8 +77,7 @@ std::string read_file(const fs::path& path) {
 void write_file(const fs::path& path, const std::string& text) {
   fs::path draft = path;
   draft += fmt::format(".{}.new", ::getpid());
-  // What another user has put there, as a link to a file of ours, is not written to.
-  ::unlink(draft.c_str());
+  ::unlink(draft.c_str());  // of a process that was killed
   const int file = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
   if (file < 0) fail_at(draft);
   try {
@@ -96,9 +95,10 @@ void write_file(const fs::path& path, const std::string& text) {
 Definition Folder::definition() const {
   const fs::path path = definition_file(path_);
   if (!fs::exists(path)) {
-    throw text::UsageError(fmt::format("{} is no folder of a sweep: it has no experiment.json; write "
-                                       "the folder of --out",
-                                       path_.string()));
+    throw text::UsageError(
+        fmt::format("{} is no folder of a sweep: it has no experiment.json; write "
+                    "the folder of --out",
+                    path_.string()));
   }
   return definition_from_json(read_file(path), path.string());
 }
@@ -109,16 +109,18 @@ void Folder::check(const Definition& definition) const {
   }
   if (!fs::exists(path_)) return;
   if (!fs::is_directory(path_)) {
-    throw text::UsageError(fmt::format("{} is no folder; write an empty or a new one with --out", path_.string()));
+    throw text::UsageError(
+        fmt::format("{} is no folder; write an empty or a new one with --out", path_.string()));
   }
   const bool has_others = std::any_of(fs::directory_iterator(path_), {}, [](const auto& entry) {
     const std::string name = entry.path().filename();
     return name != "lock" && !name.starts_with("experiment.json.");
   });
   if (has_others) {
-    throw text::UsageError(fmt::format("{} has files that are no sweep's; write an empty or a new "
-                                       "folder with --out",
-                                       path_.string()));
+    throw text::UsageError(
+        fmt::format("{} has files that are no sweep's; write an empty or a new "
+                    "folder with --out",
+                    path_.string()));
   }
 }
 
@@ -150,7 +152,9 @@ void Folder::write_csv(const Experiment& experiment, const std::vector<Result>& 
   write_file(csv(), to_csv(experiment, results));
 }
 
-fs::path Folder::of_run(std::size_t run) const { return path_ / "runs" / fmt::format("{:06}", run); }
+fs::path Folder::of_run(std::size_t run) const {
+  return path_ / "runs" / fmt::format("{:06}", run);
+}
 
 fs::path Folder::task_ledger(std::size_t task) const {
   return of_tasks() / fmt::format("{:04}.sqlite", task);
@@ -160,14 +164,14 @@ Lock::Lock(const fs::path& path) {
   // Without O_CLOEXEC: runs hold it, too.
   file_ = ::open(path.c_str(), O_RDWR | O_CREAT, 0600);
   if (file_ < 0) fail_at(path);
-  ::fchmod(file_, 0600);  // who could read it could hold it
   const auto end = std::chrono::steady_clock::now() + lock_patience;
   while (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
     if (std::chrono::steady_clock::now() > end) {
       ::close(file_);
-      throw text::UsageError(fmt::format("another program works on this sweep now: it holds {}; wait "
-                                         "for it, or end it",
-                                         path.string()));
+      throw text::UsageError(
+          fmt::format("another program works on this sweep now: it holds {}; wait "
+                      "for it, or end it",
+                      path.string()));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }

@@ -1,12 +1,12 @@
 #pragma once
 // The folder that a sweep writes to.
 //
-//   experiment.json      what the sweep is (definition.h)
-//   sweep.sqlite         the results of runs on this machine (ledger.h)
-//   results.csv          all results, a row per run
-//   runs/000017/         log.txt and summary.json of a run that runs or failed, run.mcap if recorded
-//   tasks/0003.sqlite    the results of one task of a cluster
-//   cluster/             what was submitted to it
+//   experiment.json      definition of the sweep (definition.h);
+//   sweep.sqlite         results of runs on this machine (ledger.h);
+//   results.csv          all results, a row per run;
+//   runs/000017/         log.txt and summary.json of a run that runs or failed, run.mcap if
+//   recorded; tasks/0003.sqlite    results of one task of a cluster; cluster/             files
+//   submitted to the cluster.
 
 #include <chrono>
 #include <cstddef>
@@ -21,19 +21,20 @@ namespace ziggurat::sweep {
 
 class Folder {
  public:
-  explicit Folder(const std::string& path) : path_(std::filesystem::absolute(path).lexically_normal()) {}
+  explicit Folder(const std::string& path)
+      : path_(std::filesystem::absolute(path).lexically_normal()) {}
 
   /// The sweep that the folder belongs to. @throws text::UsageError if it belongs to none
   Definition definition() const;
-  /// That it is this sweep's, or free for one; changes nothing.
+  /// Checks that the folder is this sweep's, or free for one; changes nothing.
   /// @throws text::UsageError if it is another's, or has other files
   void check(const Definition& definition) const;
   /// Makes it the folder of this sweep, if it is not. @throws text::UsageError as check()
   void begin(const Definition& definition) const;
 
-  /// Of all ledgers, by number; a run of several ledgers once. @throws LedgerError
+  /// Runs of all ledgers, by number; a run of several ledgers once. @throws LedgerError
   std::vector<Result> results() const;
-  /// Of the ledgers that a task knows: its own, and that of runs outside of tasks.
+  /// Runs of the ledgers that a task knows: its own, and that of runs outside of tasks.
   std::vector<Result> results_for_task(std::size_t task) const;
   /// Writes results.csv. @throws std::system_error
   void write_csv(const Experiment& experiment, const std::vector<Result>& results) const;

@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds stop_patience{3};  // between SIGTERM and SIGKILL
-constexpr int interrupted = 130;             // exit code of a run that a signal ended in good order
+constexpr int interrupted = 130;  // exit code of a run that a signal ended in good order
 
 /// Each `{run}` becomes the number of the run.
 std::string with_number(std::string text, std::size_t run) {
@@ -27,7 +27,8 @@ std::string with_number(std::string text, std::size_t run) {
 processes::Program program_of(const Experiment& experiment, const Combination& combination,
                               const Settings& settings, const fs::path& folder) {
   fs::remove_all(folder);
-  fs::create_directory(folder.parent_path());  // the sweep's own is not made anew if somebody moved it away
+  fs::create_directory(
+      folder.parent_path());  // the sweep's own is not made anew if somebody moved it away
   fs::create_directory(folder);
   processes::Program program;
   program.arguments = run_command(experiment, combination, settings.program, folder,

@@ -18,7 +18,7 @@ namespace ziggurat::sweep {
 /// Which runs keep a recording.
 enum class Record { none, failed, all };
 
-/// How runs are executed; changes no result.
+/// Settings of the execution of runs; they change no result.
 struct Settings {
   std::string program;            ///< path of `ziggurat`
   std::string version;            ///< of it
@@ -31,8 +31,8 @@ struct Settings {
 /// @param program  path of `ziggurat`
 /// @param folder   that the run writes to
 std::vector<std::string> run_command(const Experiment& experiment, const Combination& combination,
-                                     const std::string& program, const std::filesystem::path& folder,
-                                     bool records);
+                                     const std::string& program,
+                                     const std::filesystem::path& folder, bool records);
 
 class Job {
  public:
@@ -55,7 +55,8 @@ class Job {
   const Settings& settings_;
   Combination combination_;
   std::filesystem::path folder_;
-  clock::time_point start_ = clock::now();  ///< before the process begins: this one may have to wait behind it
+  clock::time_point start_ =
+      clock::now();  ///< before the process begins: this one may have to wait behind it
   processes::ChildProcess process_;
   clock::time_point end_;
   std::optional<clock::time_point> stopped_at_;  ///< because it took too long

@@ -13,7 +13,9 @@ namespace ziggurat::sweep {
 std::string kubernetes_manifest(std::size_t tasks, const std::vector<std::string>& command,
                                 unsigned jobs, const KubernetesOptions& options) {
   for (const std::string& word : command) {
-    if (!text::is_utf8(word)) throw text::UsageError(fmt::format("'{}' is not UTF-8, as a manifest must be; rename it", word));
+    if (!text::is_utf8(word))
+      throw text::UsageError(
+          fmt::format("'{}' is not UTF-8, as a manifest must be; rename it", word));
   }
   const auto quoted = [](const std::string& text) { return nlohmann::json(text).dump(); };
   return fmt::format(
@@ -46,9 +48,9 @@ spec:
             claimName: {claim}
 )",
       fmt::arg("tasks", tasks), fmt::arg("retries", 6 * tasks),
-      fmt::arg("image", quoted(options.image)),
-      fmt::arg("command", nlohmann::json(command).dump()), fmt::arg("jobs", jobs),
-      fmt::arg("mount", quoted(options.mount)), fmt::arg("claim", quoted(options.claim)));
+      fmt::arg("image", quoted(options.image)), fmt::arg("command", nlohmann::json(command).dump()),
+      fmt::arg("jobs", jobs), fmt::arg("mount", quoted(options.mount)),
+      fmt::arg("claim", quoted(options.claim)));
 }
 
 }  // namespace ziggurat::sweep

@@ -13,7 +13,8 @@ struct KubernetesOptions {
   std::string mount;  ///< where it is in the containers, as on this machine: absolute path
 };
 
-/// The manifest: an object of batch/v1, which Kubernetes has since 1.21 with completionMode Indexed.
+/// The manifest: an object of batch/v1, which Kubernetes has since 1.21 with completionMode
+/// Indexed.
 /// @param tasks    how many: each is a completion, with its number in JOB_COMPLETION_INDEX
 /// @param command  of a task: program and arguments
 /// @param jobs     runs at a time of a task, each with a processor

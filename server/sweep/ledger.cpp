@@ -15,7 +15,7 @@
 namespace ziggurat::sweep {
 namespace {
 
-constexpr int busy_ms = 10'000;  // wait for another program that reads or writes
+constexpr int busy_ms = 10'000;         // wait for another program that reads or writes
 constexpr int longest_value = 1 << 24;  // of a value, a row or a statement [bytes]
 
 constexpr const char* schema = R"(
@@ -44,8 +44,8 @@ std::string sql_text(std::string_view text, char quote) {
 
 /// A column of the view: what a table has for the run under a name.
 std::string value_column(const char* table, const std::string& name, const std::string& column) {
-  return fmt::format("(SELECT value FROM {0} WHERE {0}.run = runs.run AND {0}.name = {1}) AS {2}", table,
-                     sql_text(name, '\''), sql_text(column, '"'));
+  return fmt::format("(SELECT value FROM {0} WHERE {0}.run = runs.run AND {0}.name = {1}) AS {2}",
+                     table, sql_text(name, '\''), sql_text(column, '"'));
 }
 
 /// Removes the last columns that have no room, and takes the room that the others have.
@@ -63,7 +63,8 @@ void shorten(std::vector<std::string>& columns, std::size_t& room, std::size_t& 
 std::string gone(const std::string& file) {
   std::filesystem::path path = file;
   std::error_code ignored;
-  while (path.has_relative_path() && !std::filesystem::exists(path.parent_path(), ignored)) path = path.parent_path();
+  while (path.has_relative_path() && !std::filesystem::exists(path.parent_path(), ignored))
+    path = path.parent_path();
   return path.string();
 }
 
@@ -165,9 +166,11 @@ void Ledger::check_place() const {
   int has_moved = 0;
   sqlite3_file_control(database_, "main", SQLITE_FCNTL_HAS_MOVED, &has_moved);
   if (has_moved == 0) return;
-  throw LedgerError(fmt::format("'{}' was removed, moved or replaced while the sweep wrote to it. If it was moved, bring it back and "
-                                "write: ziggurat sweep resume DIR. If it was removed, its results are lost: begin again",
-                                gone(path_)));
+  throw LedgerError(fmt::format(
+      "'{}' was removed, moved or replaced while the sweep wrote to it. If it was moved, bring it "
+      "back and "
+      "write: ziggurat sweep resume DIR. If it was removed, its results are lost: begin again",
+      gone(path_)));
 }
 
 void Ledger::fail() const {
@@ -274,9 +277,10 @@ void Ledger::make_view(const Experiment& experiment) {
   for (const char* name : result_columns) numbers.push_back(fmt::format("runs.{0} AS {0}", name));
   for (const char* name : last_columns) last.push_back(fmt::format("runs.{0} AS {0}", name));
   // SQLite bounds the columns of a view and the length of a statement.
-  std::size_t room = static_cast<std::size_t>(sqlite3_limit(database_, SQLITE_LIMIT_COLUMN, -1)) - 1 -
-                     numbers.size() - last.size();
-  std::size_t length = static_cast<std::size_t>(sqlite3_limit(database_, SQLITE_LIMIT_SQL_LENGTH, -1)) / 2;
+  std::size_t room = static_cast<std::size_t>(sqlite3_limit(database_, SQLITE_LIMIT_COLUMN, -1)) -
+                     1 - numbers.size() - last.size();
+  std::size_t length =
+      static_cast<std::size_t>(sqlite3_limit(database_, SQLITE_LIMIT_SQL_LENGTH, -1)) / 2;
   for (auto* each : {&values, &metrics}) shorten(*each, room, length);
   std::string select = "runs.run AS run";
   for (const auto* each : {&values, &numbers, &metrics, &last}) {

@@ -35,11 +35,12 @@ class Ledger {
   /// By number. @throws LedgerError
   std::vector<Result> read() const;
 
-  /// A view `results` for people: a row per run, a column per axis and metric. It leaves out the last
-  /// of them if SQLite can't have as many columns. @throws LedgerError
+  /// A view `results` for people: a row per run, a column per axis and metric. It leaves out the
+  /// last of them if SQLite can't have as many columns. @throws LedgerError
   void make_view(const Experiment& experiment);
 
-  /// That the file is still where it was opened. @throws LedgerError, which says what is gone and what to do
+  /// Checks that the file is still where it was opened.
+  /// @throws LedgerError, which says what is gone and what to do
   void check_place() const;
 
  private:

@@ -33,8 +33,10 @@ const std::map<std::string, double (*)(const Result&)>& own_measures() {
       {"robots", [](const Result& result) { return or_nothing(result.robots); }},
       {"failures", [](const Result& result) { return or_nothing(result.failures); }},
       {"dropped", [](const Result& result) { return or_nothing(result.dropped); }},
-      {"solver_not_converged", [](const Result& result) { return or_nothing(result.not_converged); }},
-      {"solver_worst_residual", [](const Result& result) { return or_nothing(result.worst_residual); }},
+      {"solver_not_converged",
+       [](const Result& result) { return or_nothing(result.not_converged); }},
+      {"solver_worst_residual",
+       [](const Result& result) { return or_nothing(result.worst_residual); }},
   };
   return measures;
 }
@@ -124,15 +126,16 @@ std::size_t axis_named(const Experiment& experiment, const std::string& name) {
   }
   if (found.size() == 1) return found.front();
   if (found.size() > 1) {
-    throw text::UsageError(fmt::format("{} may mean {} or {}; write one of them", scene::in_quotes(name),
+    throw text::UsageError(fmt::format("{} may mean {} or {}; write one of them",
+                                       scene::in_quotes(name),
                                        scene::in_quotes(experiment.axes[found[0]].name),
                                        scene::in_quotes(experiment.axes[found[1]].name)));
   }
-  throw text::UsageError(
-      fmt::format("the sweep has no axis {}; {}", scene::in_quotes(name),
-                  text::advice(name, known,
-                               known.empty() ? std::string("it has none")
-                                             : fmt::format("known here: {}", fmt::join(known, ", ")))));
+  throw text::UsageError(fmt::format(
+      "the sweep has no axis {}; {}", scene::in_quotes(name),
+      text::advice(name, known,
+                   known.empty() ? std::string("it has none")
+                                 : fmt::format("known here: {}", fmt::join(known, ", ")))));
 }
 
 }  // namespace ziggurat::sweep

@@ -15,8 +15,8 @@ namespace ziggurat::sweep {
 struct Estimate {
   std::size_t count = 0;  ///< of the values
   double mean = std::numeric_limits<double>::quiet_NaN();
-  /// Half of the confidence interval of the mean, by Student's t for unknown variance (Gosset 1908):
-  /// t · s / √n. Not a number for fewer than two values.
+  /// Half of the confidence interval of the mean, by Student's t for unknown variance (Gosset
+  /// 1908): t · s / √n. Not a number for fewer than two values.
   double half_width = std::numeric_limits<double>::quiet_NaN();
 };
 /// @param confidence  in (0, 1): 0.95
@@ -35,7 +35,8 @@ std::vector<Group> group(const Experiment& experiment, std::span<const Result> r
                          std::span<const std::size_t> axes, std::span<const std::string> measures,
                          double confidence);
 
-/// What can be averaged: the metrics, ticks, simulated_s, wall_s, …; metrics first, by name.
+/// Names of columns that can be averaged: the metrics, ticks, simulated_s, wall_s, …; metrics
+/// first, by name.
 std::vector<std::string> measures_of(std::span<const Result> results);
 /// A metric or another number of a run; not a number if the run has none.
 double value_of(const Result& result, const std::string& measure);

@@ -31,9 +31,10 @@ void check_is_written_here(const fs::path& script) {
   const auto status = fs::status(script, error);
   if (!fs::exists(status)) return;
   if (fs::is_regular_file(status) && read_file(script).starts_with(first_line)) return;
-  throw text::UsageError(fmt::format("'{}' is there and was not written by sweep plot: the program of gnuplot would "
-                                     "replace it; move it, or name another picture with --file",
-                                     script.string()));
+  throw text::UsageError(
+      fmt::format("'{}' is there and was not written by sweep plot: the program of gnuplot would "
+                  "replace it; move it, or name another picture with --file",
+                  script.string()));
 }
 
 /// A text as gnuplot writes it: between single quotes, which are doubled inside.
@@ -55,7 +56,7 @@ bool is_number(const std::string& text) {
   return end != text.c_str() && *end == '\0' && std::isfinite(value);
 }
 
-/// Where the values of an axis stand: as numbers, otherwise side by side.
+/// Positions of an axis' values: as numbers, otherwise side by side.
 struct Abscissa {
   bool is_numeric = false;
   const std::vector<std::string>& values;
@@ -114,21 +115,22 @@ std::string gnuplot_program(const Experiment& experiment, std::span<const Result
     data += fmt::format("$curve{} << END\n{}END\n", i, text);
     const std::string title =
         plot.series ? fmt::format("{} = {}", experiment.axes[*plot.series].name, names[i]) : "";
-    curves += fmt::format("{} $curve{} using 1:2:3 with yerrorlines linewidth 2 pointtype 7 "
-                          "pointsize 0.6 {}",
-                          curves.empty() ? "" : ",\\\n    ", i,
-                          title.empty() ? "notitle" : "title " + shown(title));
+    curves += fmt::format(
+        "{} $curve{} using 1:2:3 with yerrorlines linewidth 2 pointtype 7 "
+        "pointsize 0.6 {}",
+        curves.empty() ? "" : ",\\\n    ", i, title.empty() ? "notitle" : "title " + shown(title));
   }
   if (curves.empty()) {
     throw text::UsageError(fmt::format("no run that finished has a value of {}", plot.measure));
   }
-  const std::string label = fmt::format("{} (mean, {:g} % confidence)", plot.measure,
-                                        100 * plot.confidence);
+  const std::string label =
+      fmt::format("{} (mean, {:g} % confidence)", plot.measure, 100 * plot.confidence);
   return fmt::format(
       "{}set terminal svg size 800,500 dynamic font 'sans-serif,14' noenhanced background 'white'\n"
       "set output {}\nset xlabel {}\nset ylabel {}\nset grid\nset offsets graph 0.03, graph 0.03, "
       "graph 0.03, graph 0.03\nset key outside right\n{}{}plot{}\n",
-      first_line, in_single_quotes(svg.string()), shown(x.name), shown(label), abscissa.ticks(), data, curves);
+      first_line, in_single_quotes(svg.string()), shown(x.name), shown(label), abscissa.ticks(),
+      data, curves);
 }
 
 fs::path program_beside(const fs::path& svg) { return fs::path(svg).replace_extension(".gnuplot"); }
@@ -146,7 +148,8 @@ void draw(const Experiment& experiment, std::span<const Result> results, const P
     processes::ChildProcess gnuplot({{"gnuplot", fs::absolute(script).string()}, {}, log.string()});
     processes::end_all({&gnuplot}, 60'000, [] { return false; });
     if (!gnuplot.ended_well()) {
-      throw text::UsageError(fmt::format("gnuplot {}: {}", gnuplot.how_it_ended(), text::trimmed(read_file(log))));
+      throw text::UsageError(
+          fmt::format("gnuplot {}: {}", gnuplot.how_it_ended(), text::trimmed(read_file(log))));
     }
   } catch (const std::system_error& error) {
     if (error.code() != std::errc::no_such_file_or_directory) throw;

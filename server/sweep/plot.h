@@ -22,11 +22,12 @@ struct Plot {
 std::string gnuplot_program(const Experiment& experiment, std::span<const Result> results,
                             const Plot& plot, const std::filesystem::path& svg);
 
-/// Where the program for gnuplot that draws a picture stands: the ending is .gnuplot.
+/// Path of the program for gnuplot that draws a picture: the ending is .gnuplot.
 std::filesystem::path program_beside(const std::filesystem::path& svg);
 
 /// Writes the picture, and the program for gnuplot beside it.
-/// @throws text::UsageError if gnuplot is missing or fails, or a file of another origin stands where the program would
+/// @throws text::UsageError if gnuplot is missing or fails, or a file of another origin stands
+/// where the program would
 void draw(const Experiment& experiment, std::span<const Result> results, const Plot& plot,
           const std::filesystem::path& svg);
 

@@ -71,7 +71,8 @@ bool read_summary(const std::string& path, Result& result) {
     result.not_converged = value_at<std::uint64_t>(*solver, "not_converged");
     result.worst_residual = value_at<double>(*solver, "worst_residual");
   }
-  if (const auto metrics = summary.find("metrics"); metrics != summary.end() && metrics->is_object()) {
+  if (const auto metrics = summary.find("metrics");
+      metrics != summary.end() && metrics->is_object()) {
     for (const auto& [name, value] : metrics->items()) {
       if (value.is_number()) result.metrics[name] = value.get<double>();
     }

@@ -1,5 +1,5 @@
 #pragma once
-// What is known of a run that has ended: a row of the table.
+// Result of a run that has ended: a row of the table.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,8 +13,8 @@ namespace ziggurat::sweep {
 
 enum class Outcome {
   finished,
-  failed,    ///< it ended with another exit code than 0, or without a summary
-  timed_out, ///< it took more wall time than `--timeout` allows
+  failed,     ///< it ended with another exit code than 0, or without a summary
+  timed_out,  ///< it took more wall time than `--timeout` allows
 };
 const char* to_text(Outcome outcome);
 /// Nothing for another text.
@@ -26,7 +26,7 @@ struct Result {
   Outcome outcome = Outcome::finished;
   int exit_code = 0;  ///< 128 + N: signal N killed it
 
-  // Of its summary; without one these are empty.
+  // Fields of its summary; without one these are empty.
   std::string ending;  ///< `finished`, `shut_down`, … as in the summary
   std::optional<std::uint64_t> ticks;
   std::optional<double> simulated_s;

@@ -40,7 +40,7 @@ scene::Variation variation(const Experiment& experiment, std::size_t index) {
   return variation;
 }
 
-/// What the reader says of `--set` was written as `--axis` here.
+/// Messages of the reader about `--set` name `--axis` here.
 void name_option(std::vector<scene::Problem>& problems) {
   for (scene::Problem& problem : problems) {
     for (std::size_t at = 0; (at = problem.text.find("--set '", at)) != std::string::npos;) {
@@ -62,7 +62,8 @@ void take_problems(std::vector<scene::Problem> problems, std::vector<scene::Prob
     const bool is_known = std::ranges::any_of(warnings, [&](const auto& known) {
       return scene::to_string(known) == scene::to_string(each);
     });
-    if (each.severity == scene::Problem::Severity::warning && !is_known) warnings.push_back(std::move(each));
+    if (each.severity == scene::Problem::Severity::warning && !is_known)
+      warnings.push_back(std::move(each));
   }
 }
 
@@ -82,8 +83,8 @@ SceneFiles read_scene(const Experiment& experiment) {
   std::vector<fs::path> scripts;
   for (std::size_t i = 0; i < most_values; ++i) {
     scene::ReadOptions options;
-    options.lenient = std::ranges::find(experiment.run_arguments, "--lenient") !=
-                      experiment.run_arguments.end();
+    options.lenient =
+        std::ranges::find(experiment.run_arguments, "--lenient") != experiment.run_arguments.end();
     options.variation = variation(experiment, i);
     options.open = keep;
     auto scene = scene::read_file(experiment.scene, options);

@@ -59,8 +59,8 @@ std::string to_ranges(const std::vector<std::size_t>& numbers) {
     std::size_t last = i;
     while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
     text += text.empty() ? "" : ",";
-    text += last == i ? fmt::format("{}", numbers[i])
-                      : fmt::format("{}-{}", numbers[i], numbers[last]);
+    text +=
+        last == i ? fmt::format("{}", numbers[i]) : fmt::format("{}-{}", numbers[i], numbers[last]);
     i = last + 1;
   }
   return text;
@@ -73,9 +73,12 @@ std::string slurm_script(const Folder& folder, const std::vector<std::size_t>& t
                          const SlurmOptions& options) {
   std::string text = "#!/bin/sh\n";
   const auto option = [&](const std::string& line) {
-    if (line.find_first_of("\r\n") != line.npos) {  // what stands behind would be a command of the script
-      throw text::UsageError(fmt::format("'{}' has a line break, which no option of Slurm may have; choose another folder, or "
-                                         "option", line));
+    if (line.find_first_of("\r\n") !=
+        line.npos) {  // what stands behind would be a command of the script
+      throw text::UsageError(fmt::format(
+          "'{}' has a line break, which no option of Slurm may have; choose another folder, or "
+          "option",
+          line));
     }
     text += "#SBATCH " + line + "\n";
   };
@@ -87,8 +90,9 @@ std::string slurm_script(const Folder& folder, const std::vector<std::size_t>& t
   option(fmt::format("--output=\"{}/task-%a.log\"", in_pattern(folder.of_cluster().string())));
   if (!options.partition.empty()) option("--partition=" + options.partition);
   for (const std::string& each : options.options) option(each);
-  text += "# A task that is submitted again, or requeued, goes on with the runs that it has not yet "
-          "written down.\nexec";
+  text +=
+      "# A task that is submitted again, or requeued, goes on with the runs that it has not yet "
+      "written down.\nexec";
   for (const std::string& word : command) text += " " + text::shell_word(word);
   return text + "\n";
 }
@@ -96,9 +100,10 @@ std::string slurm_script(const Folder& folder, const std::vector<std::size_t>& t
 void refuse_if_queued(const Folder& folder) {
   const auto queued = slurm_status(folder);
   if (!queued) return;
-  throw text::UsageError(fmt::format("the tasks of {} are still queued ({}); wait for them, or end them "
-                                     "with scancel",
-                                     folder.path().string(), *queued));
+  throw text::UsageError(
+      fmt::format("the tasks of {} are still queued ({}); wait for them, or end them "
+                  "with scancel",
+                  folder.path().string(), *queued));
 }
 
 std::string submit_to_slurm(const Folder& folder, const std::string& script) {
@@ -107,11 +112,13 @@ std::string submit_to_slurm(const Folder& folder, const std::string& script) {
   const auto said =
       run_program({"sbatch", "--parsable", path.string()}, folder.of_cluster() / "sbatch.log");
   if (!said) {
-    throw text::UsageError(fmt::format("--slurm needs sbatch, which is not in the PATH; on Debian: "
-                                       "apt-get install slurm-client. The script is {}",
-                                       path.string()));
+    throw text::UsageError(
+        fmt::format("--slurm needs sbatch, which is not in the PATH; on Debian: "
+                    "apt-get install slurm-client. The script is {}",
+                    path.string()));
   }
-  if (!said->well) throw text::UsageError(fmt::format("sbatch refused {}: {}", path.string(), said->text));
+  if (!said->well)
+    throw text::UsageError(fmt::format("sbatch refused {}: {}", path.string(), said->text));
   // `7` or `7;cluster`, behind warnings.
   const std::string last = said->text.substr(said->text.rfind('\n') + 1);
   const std::string id = last.substr(0, last.find(';'));

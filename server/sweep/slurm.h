@@ -23,15 +23,16 @@ std::string slurm_script(const Folder& folder, const std::vector<std::size_t>& t
                          const std::vector<std::string>& command, unsigned jobs,
                          const SlurmOptions& options);
 
-/// @throws text::UsageError if a job of the folder is still queued: its tasks and other runs would do the same
+/// @throws text::UsageError if a job of the folder is still queued: its tasks and other runs would
+/// do the same
 void refuse_if_queued(const Folder& folder);
 
 /// Writes the script to the folder and submits it. @returns the job's id
 /// @throws text::UsageError if sbatch fails
 std::string submit_to_slurm(const Folder& folder, const std::string& script);
 
-/// What squeue tells of the folder's job, as `Slurm job 7: 3 RUNNING, 2 PENDING`; nothing if there is
-/// none, it is over, or squeue is not there.
+/// State of the folder's job from squeue, as `Slurm job 7: 3 RUNNING, 2 PENDING`. Nothing if there
+/// is none, it is over, or squeue is not there.
 std::optional<std::string> slurm_status(const Folder& folder);
 
 }  // namespace ziggurat::sweep

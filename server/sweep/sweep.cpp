@@ -18,7 +18,7 @@ constexpr int most_kills = 3;             // of a run by other programs, until t
 constexpr std::size_t most_messages = 5;  // on runs that failed
 constexpr int wait_ms = 200;              // for signals; longest time between looks at the clock
 constexpr std::chrono::seconds log_interval{60};  // of progress that is no line of a terminal
-constexpr int interrupt_patience_ms = 250;                  // for runs that were interrupted
+constexpr int interrupt_patience_ms = 250;        // for runs that were interrupted
 
 }  // namespace
 
@@ -69,7 +69,8 @@ void Sweep::start_jobs() {
     const std::size_t run = waiting_.front();
     waiting_.pop_front();
     try {
-      jobs_.push_back(std::make_unique<Job>(experiment_, folder_, settings_, run, signals_.guardian()));
+      jobs_.push_back(
+          std::make_unique<Job>(experiment_, folder_, settings_, run, signals_.guardian()));
     } catch (const std::system_error&) {
       ledger_.check_place();  // which says more, if its folder is gone
       throw;
@@ -141,7 +142,8 @@ void Sweep::interrupt() {
     job->process().signal(SIGTERM);
     children.push_back(&job->process());
   }
-  processes::end_all(children, interrupt_patience_ms, [&] { return signals_.take().interruptions > 0; });
+  processes::end_all(children, interrupt_patience_ms,
+                     [&] { return signals_.take().interruptions > 0; });
   jobs_.clear();
 }
 

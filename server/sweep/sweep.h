@@ -25,8 +25,8 @@ std::vector<std::size_t> runs_to_do(const std::vector<std::size_t>& runs,
 class Sweep {
  public:
   /// All must outlive this.
-  Sweep(const Experiment& experiment, const Folder& folder, const Settings& settings, Ledger& ledger,
-        reports::Console& console, processes::Signals& signals);
+  Sweep(const Experiment& experiment, const Folder& folder, const Settings& settings,
+        Ledger& ledger, reports::Console& console, processes::Signals& signals);
 
   struct Counts {
     std::size_t finished = 0, failed = 0;

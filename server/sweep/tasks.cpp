@@ -32,8 +32,7 @@ std::vector<std::size_t> runs_of_task(const Experiment& experiment, std::size_t 
 
 std::vector<std::size_t> tasks_to_do(const Experiment& experiment, std::size_t chunk,
                                      const std::vector<Result>& known, bool retries) {
-  const auto left =
-      runs_to_do(runs_of_task(experiment, run_count(experiment), 0), known, retries);
+  const auto left = runs_to_do(runs_of_task(experiment, run_count(experiment), 0), known, retries);
   std::vector<std::size_t> tasks;
   for (const std::size_t run : left) {
     const std::size_t task = (run - 1) / chunk;
@@ -45,8 +44,9 @@ std::vector<std::size_t> tasks_to_do(const Experiment& experiment, std::size_t c
 std::size_t kept_chunk(const Folder& folder) {
   const std::string text(text::trimmed(read_file(chunk_file(folder))));
   if (text.empty()) {
-    throw text::UsageError(fmt::format("no tasks were submitted from {}; write: ziggurat sweep … --slurm",
-                                       folder.path().string()));
+    throw text::UsageError(
+        fmt::format("no tasks were submitted from {}; write: ziggurat sweep … --slurm",
+                    folder.path().string()));
   }
   const std::size_t chunk = text::to_integer(chunk_file(folder).string(), text);
   if (chunk == 0) throw text::UsageError(fmt::format("{} is 0", chunk_file(folder).string()));
@@ -73,15 +73,15 @@ std::size_t fix_chunk(const Folder& folder, const Experiment& experiment,
   return kept;
 }
 
-std::vector<std::string> task_command(const Folder& folder, const Settings& settings, bool retries) {
+std::vector<std::string> task_command(const Folder& folder, const Settings& settings,
+                                      bool retries) {
   std::vector<std::string> command = {settings.program, "sweep", "task", folder.path().string()};
   command.insert(command.end(), {"--jobs", fmt::format("{}", settings.jobs)});
   if (settings.timeout) {
     command.insert(command.end(), {"--timeout", fmt::format("{}", *settings.timeout)});
   }
   if (settings.record != Record::none) {
-    command.insert(command.end(),
-                   {"--record", settings.record == Record::all ? "all" : "failed"});
+    command.insert(command.end(), {"--record", settings.record == Record::all ? "all" : "failed"});
   }
   if (retries) command.emplace_back("--retry-failed");
   return command;
@@ -91,8 +91,9 @@ std::size_t task_of_environment() {
   for (const char* name : {"SLURM_ARRAY_TASK_ID", "JOB_COMPLETION_INDEX"}) {
     if (const char* value = std::getenv(name)) return text::to_integer(name, value);
   }
-  throw text::UsageError("which task is not known: neither SLURM_ARRAY_TASK_ID nor "
-                         "JOB_COMPLETION_INDEX is in the environment; write --task N");
+  throw text::UsageError(
+      "which task is not known: neither SLURM_ARRAY_TASK_ID nor "
+      "JOB_COMPLETION_INDEX is in the environment; write --task N");
 }
 
 }  // namespace ziggurat::sweep

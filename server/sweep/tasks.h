@@ -21,7 +21,7 @@ std::vector<std::size_t> runs_of_task(const Experiment& experiment, std::size_t 
 std::vector<std::size_t> tasks_to_do(const Experiment& experiment, std::size_t chunk,
                                      const std::vector<Result>& known, bool retries);
 
-/// How many runs a task has, which is fixed when the first one is submitted: kept in the folder.
+/// Number of runs of a task, which is fixed when the first one is submitted: kept in the folder.
 /// @param wanted  none: as kept, otherwise as many as make 100 tasks or fewer
 /// @throws text::UsageError if another number is kept
 std::size_t fix_chunk(const Folder& folder, const Experiment& experiment,

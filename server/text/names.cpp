@@ -26,7 +26,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::string closest(std::string_view word, std::span<const std::string> candidates) {
-  constexpr std::size_t longest = 256;  // of what a person has mistyped; the cost grows with its square
+  constexpr std::size_t longest =
+      256;  // of what a person has mistyped; the cost grows with its square
   if (word.size() > longest) return {};
   const std::string* best = nullptr;
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;

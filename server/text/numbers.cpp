@@ -12,8 +12,10 @@ std::uint64_t to_integer(std::string_view option, const std::string& text) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) {
-    const std::string most = error == std::errc::result_out_of_range ? fmt::format("to {}", ~std::uint64_t{0}) : "on";
-    throw UsageError(fmt::format("{} is '{}'; it must be a whole number from 0 {}", option, text, most));
+    const std::string most =
+        error == std::errc::result_out_of_range ? fmt::format("to {}", ~std::uint64_t{0}) : "on";
+    throw UsageError(
+        fmt::format("{} is '{}'; it must be a whole number from 0 {}", option, text, most));
   }
   return value;
 }
@@ -39,7 +41,8 @@ std::vector<std::string> split(std::string_view text, char separator) {
   return parts;
 }
 
-void to_numbers(std::string_view option, const std::string& text, std::string_view form, std::span<double> places) {
+void to_numbers(std::string_view option, const std::string& text, std::string_view form,
+                std::span<double> places) {
   const auto parts = split(text, ',');
   if (parts.size() != places.size()) {
     throw UsageError(fmt::format("{} is '{}'; it must be {}", option, text, form));

@@ -27,9 +27,10 @@ std::vector<std::string> split(std::string_view text, char separator);
 
 /// As many numbers with commas between them as there are places, and no more.
 /// @param form  what must be written, such as "x,y,z in metres, as 1,-1,0.5"
-void to_numbers(std::string_view option, const std::string& text, std::string_view form, std::span<double> places);
+void to_numbers(std::string_view option, const std::string& text, std::string_view form,
+                std::span<double> places);
 
-/// How many seconds a unit of time has: us, ms or s; nothing for another word.
+/// Length of a unit of time: us, ms or s [s]; nothing for another word.
 std::optional<double> seconds_in(std::string_view unit);
 
 /// Bytes, with an optional K, M or G (powers of 1024) behind the number.

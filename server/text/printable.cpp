@@ -43,7 +43,8 @@ std::size_t length_of_character(std::string_view text) {
 char32_t code_of(std::string_view character) {
   constexpr std::array<unsigned char, 5> first_bits{0, 0x7f, 0x1f, 0x0f, 0x07};  // by length
   char32_t code = byte(character, 0) & first_bits[character.size()];
-  for (std::size_t i = 1; i < character.size(); ++i) code = code << 6 | (byte(character, i) & 0x3fU);
+  for (std::size_t i = 1; i < character.size(); ++i)
+    code = code << 6 | (byte(character, i) & 0x3fU);
   return code;
 }
 
@@ -51,16 +52,18 @@ struct Range {
   char32_t first, last;
 };
 
-/// Unicode 15's categories Cc above ASCII, Cf, Zl and Zp: they control the terminal, change the order in which
-/// others are shown, begin a line, or are not seen at all.
+/// Unicode 15's categories Cc above ASCII, Cf, Zl and Zp: they control the terminal, change the
+/// order in which others are shown, begin a line, or are not seen at all.
 constexpr Range unseen[] = {
-    {0x80, 0x9f},       {0xad, 0xad},       {0x600, 0x605},     {0x61c, 0x61c},     {0x6dd, 0x6dd},
-    {0x70f, 0x70f},     {0x890, 0x891},     {0x8e2, 0x8e2},     {0x180e, 0x180e},   {0x200b, 0x200f},
-    {0x2028, 0x202e},   {0x2060, 0x206f},   {0xfeff, 0xfeff},   {0xfff9, 0xfffb},   {0x110bd, 0x110bd},
-    {0x110cd, 0x110cd}, {0x13430, 0x1343f}, {0x1bca0, 0x1bca3}, {0x1d173, 0x1d17a}, {0xe0001, 0xe007f}};
+    {0x80, 0x9f},       {0xad, 0xad},       {0x600, 0x605},     {0x61c, 0x61c},
+    {0x6dd, 0x6dd},     {0x70f, 0x70f},     {0x890, 0x891},     {0x8e2, 0x8e2},
+    {0x180e, 0x180e},   {0x200b, 0x200f},   {0x2028, 0x202e},   {0x2060, 0x206f},
+    {0xfeff, 0xfeff},   {0xfff9, 0xfffb},   {0x110bd, 0x110bd}, {0x110cd, 0x110cd},
+    {0x13430, 0x1343f}, {0x1bca0, 0x1bca3}, {0x1d173, 0x1d17a}, {0xe0001, 0xe007f}};
 
 bool is_unseen(char32_t code) {
-  return std::ranges::any_of(unseen, [=](Range range) { return range.first <= code && code <= range.last; });
+  return std::ranges::any_of(
+      unseen, [=](Range range) { return range.first <= code && code <= range.last; });
 }
 
 /// A character that is not plain; empty: a byte that is none.
@@ -71,7 +74,8 @@ std::string shown(std::string_view character, bool is_json = false) {
   std::array<char, 16> escaped;
   if (is_json && code > 0xffff) {  // half of it each
     const unsigned rest = code - 0x10000;
-    std::snprintf(escaped.data(), escaped.size(), "\\u%04x\\u%04x", 0xd800 | rest >> 10, 0xdc00 | (rest & 0x3ff));
+    std::snprintf(escaped.data(), escaped.size(), "\\u%04x\\u%04x", 0xd800 | rest >> 10,
+                  0xdc00 | (rest & 0x3ff));
   } else {
     std::snprintf(escaped.data(), escaped.size(), "\\u%04x", static_cast<unsigned>(code));
   }
@@ -119,12 +123,14 @@ std::string printable_json(std::string_view json) { return all_shown(json, true)
 
 std::string printable_part(std::string_view text, std::size_t most) {
   constexpr std::string_view more = "\u2026";
-  std::string result = printable(text.substr(0, most + 1));  // a character that is cut is beyond the part
+  std::string result =
+      printable(text.substr(0, most + 1));  // a character that is cut is beyond the part
   if (result.size() <= most) return result;
   result.clear();
   for (;;) {
     const std::size_t length = length_of_character(text);
-    const std::string next = is_plain(text[0]) ? std::string(1, text[0]) : shown(text.substr(0, length));
+    const std::string next =
+        is_plain(text[0]) ? std::string(1, text[0]) : shown(text.substr(0, length));
     if (result.size() + next.size() + more.size() > most) return result.append(more);
     result += next;
     text.remove_prefix(std::max<std::size_t>(length, 1));

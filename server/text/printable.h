@@ -7,19 +7,21 @@
 
 namespace ziggurat::text {
 
-/// The text with control characters written as \u001b, other than line feeds and tabs, and so those that change
-/// the order of what follows or are not seen: escape sequences have no effect on a terminal, and two names
-/// that differ look different. Bytes that are not UTF-8 become U+FFFD.
+/// Text in which control characters, except line feeds and tabs, are written as \u001b. The same
+/// holds for characters that change the order of text or are invisible. Escape sequences have no
+/// effect on a terminal, and two names that differ look different. Bytes that are not UTF-8 become
+/// U+FFFD.
 std::string printable(std::string_view text);
 
 /// The same for JSON, in which a character beyond U+FFFF is written as two numbers.
 std::string printable_json(std::string_view json);
 
-/// Of a longer text its beginning, and "…": what a peer may make a program print.
+/// Beginning of a longer text, and "…", for text that comes from a peer.
 /// @param most  bytes of the result
 std::string printable_part(std::string_view text, std::size_t most = 4096);
 
-/// The text with four spaces before each line but the first: none of them looks like one of the program's own.
+/// The text with four spaces before each line but the first: none of them looks like one of the
+/// program's own.
 std::string indented(std::string_view text);
 
 bool is_utf8(std::string_view text);

@@ -12,8 +12,9 @@ bool is_plain_word(std::string_view word);
 /// A word for /bin/sh: in single quotes, unless it is plain.
 std::string shell_word(std::string_view word);
 
-/// A field of CSV (RFC 4180): in double quotes only if it must be. Before a text that a spreadsheet would compute as a
-/// formula stands an apostrophe: one that begins with = + - @, a tab or the end of a line, other than numbers.
+/// A field of CSV (RFC 4180): in double quotes only if it must be. Before a text that a spreadsheet
+/// would compute as a formula stands an apostrophe: one that begins with = + - @, a tab or the end
+/// of a line, other than numbers.
 std::string csv_field(const std::string& text);
 
 }  // namespace ziggurat::text

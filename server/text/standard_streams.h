@@ -2,12 +2,12 @@
 
 namespace ziggurat::text {
 
-/// What main() calls first: open_standard_streams(); and a file that grows beyond `ulimit -f` is an error of write(),
-/// with its sentence, instead of SIGXFSZ.
+/// Prepares the output of main(), which calls it first. It calls open_standard_streams(). A file
+/// that grows beyond `ulimit -f` becomes an error of write() instead of SIGXFSZ.
 void prepare_output();
 
-/// Opens /dev/null for each of stdin, stdout and stderr that the parent has closed (`>&-`): otherwise the
-/// first file or socket that is opened would get its number, and what is printed.
+/// Opens /dev/null for each of stdin, stdout and stderr that the parent has closed (`>&-`):
+/// otherwise the first file or socket that is opened would get its number, and what is printed.
 void open_standard_streams();
 
 }  // namespace ziggurat::text

@@ -61,14 +61,14 @@ std::optional<std::string> token_in(std::string_view target) {
   return std::nullopt;
 }
 
-Access access_of(const Rules& rules, const Asker& asker) {
-  if (!rules.any_host && !http::allows_host(rules.host, asker.host)) return Access::refused;
-  if (const auto token = token_in(asker.target)) {
-    return equal(*token, rules.token) ? Access::steer : Access::refused;
+Permission permission_of(const Rules& rules, const RequestHead& head) {
+  if (!rules.any_host && !http::allows_host(rules.host, head.host)) return Permission::refused;
+  if (const auto token = token_in(head.target)) {
+    return equal(*token, rules.token) ? Permission::steer : Permission::refused;
   }
-  if (rules.look_needs_token) return Access::refused;
-  const bool is_own_page = !asker.origin || *asker.origin == fmt::format("http://{}", asker.host);
-  return is_own_page ? Access::look : Access::refused;
+  if (rules.look_needs_token) return Permission::refused;
+  const bool is_own_page = !head.origin || *head.origin == fmt::format("http://{}", head.host);
+  return is_own_page ? Permission::look : Permission::refused;
 }
 
 }  // namespace ziggurat::view

@@ -1,5 +1,5 @@
 #pragma once
-// Who may connect to a viewer's port, and what they may do (docs/viewing.md, docs/security.md).
+// Access control of a viewer's port (docs/viewing.md, docs/security.md).
 
 #include <cstdint>
 #include <optional>
@@ -15,23 +15,23 @@ std::string random_token();
 void check_token(const std::string& token);
 
 struct Rules {
-  std::string host;              ///< of the option: a name that clients may call the port
-  bool any_host = false;         ///< any name
-  bool look_needs_token = false; ///< also programs and pages of this server need it
+  std::string host;               ///< of the option: a name that clients may call the port
+  bool any_host = false;          ///< any name
+  bool look_needs_token = false;  ///< also programs and pages of this server need it
   std::string token;
 };
 
 /// The parts of a request that decide. Of HTTP, `origin` does not matter.
-struct Asker {
+struct RequestHead {
   std::string_view host;                   ///< of `Host`; empty: there is none
   std::optional<std::string_view> origin;  ///< of `Origin`
   std::string_view target;                 ///< path and query
 };
 
-enum class Access { refused, look, steer };
+enum class Permission { refused, look, steer };
 
-/// Of a WebSocket handshake.
-Access access_of(const Rules& rules, const Asker& asker);
+/// Permission of a WebSocket handshake.
+Permission permission_of(const Rules& rules, const RequestHead& head);
 
 /// The value of `token` in a query; nothing: it has none.
 std::optional<std::string> token_in(std::string_view target);

@@ -1,5 +1,5 @@
 #pragma once
-// What a viewer with the token asks for.
+// Requests of a viewer with the token.
 
 #include <cstdint>
 #include <optional>
@@ -16,8 +16,8 @@ struct Parameter {
   std::variant<std::monostate, bool, double, std::string> value;  ///< nothing: no such parameter
 };
 
-/// Answered once, by Server::answer() or refuse().
-struct Call {
+/// Answered once, by ViewerServer::answer() or refuse().
+struct ViewerCall {
   std::uint64_t viewer = 0;
   std::uint32_t service = 0, number = 0;
   wire::Request request;        ///< without kind: it is about the speed

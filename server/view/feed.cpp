@@ -18,7 +18,8 @@ void add(const std::vector<std::uint32_t>& from, std::vector<std::uint32_t>& to)
 
 }  // namespace
 
-// --- the run's thread -----------------------------------------------------------------------------
+// --- the run's thread
+// -----------------------------------------------------------------------------
 
 std::unique_ptr<channels::TickCopy> Feed::take_copy() {
   const std::lock_guard lock(mutex_);
@@ -99,7 +100,8 @@ void Feed::show_event(channels::Message message) {
   waiting_.push_back(std::move(message));
 }
 
-// --- the server's thread --------------------------------------------------------------------------
+// --- the server's thread
+// --------------------------------------------------------------------------
 
 void Feed::encode(const Tick& tick, std::vector<channels::Message>& to) {
   const channels::Moment moment = tick.world->view();

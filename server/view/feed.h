@@ -1,6 +1,6 @@
 #pragma once
-// What is to be shown, on its way from the run's thread to that of the server, which encodes it. The
-// run's thread only copies; the newest tick wins.
+// Ticks on their way from the run's thread to the server's thread, which encodes them. The run's
+// thread only copies; the newest tick wins.
 
 #include <cstdint>
 #include <deque>
@@ -16,7 +16,7 @@
 
 namespace ziggurat::view {
 
-/// What a tick is encoded for: ids of channels, ascending.
+/// Channels that a tick is encoded for: ids, ascending.
 struct Wanted {
   std::vector<std::uint32_t> tick;     ///< for messages of each tick
   std::vector<std::uint32_t> latched;  ///< for latched messages and commands
@@ -30,8 +30,8 @@ class Feed {
 
   // On the run's thread. None of them waits until something is encoded.
 
-  /// The world began, or entities came or went. Ticks of before that still wait are not shown: show()
-  /// follows, with all that is wanted.
+  /// The world began, or entities came or went. Ticks of before that still wait are not shown:
+  /// show() follows, with all that is wanted.
   void populate(const channels::Population& population);
   void set_layers(const channels::Layers& layers);
   /// If too many wait, the oldest is dropped; what must arrive of it goes to the next.
@@ -60,12 +60,12 @@ class Feed {
 
   std::mutex mutex_;  // of all up to the next remark
   std::deque<Item> waiting_;
-  std::size_t ticks_ = 0, events_ = 0;  // that wait; without answers
+  std::size_t ticks_ = 0, events_ = 0;                               // that wait; without answers
   std::shared_ptr<const channels::PopulationCopy> next_population_;  // null: none waits
   std::optional<channels::Layers> next_layers_;
   std::vector<std::unique_ptr<channels::TickCopy>> free_;  // whose memory is used again
 
-  // Of the server's thread:
+  // Members of the server's thread:
   std::shared_ptr<const channels::PopulationCopy> population_;  // that channels_ refers to
   channels::Channels channels_;
   std::vector<channels::Message> messages_;  // of one tick; keeps its memory

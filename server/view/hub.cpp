@@ -19,25 +19,26 @@ bool is_kept(channels::Kind kind) {
 }
 
 /// Names of parameters that viewers may set, and their values; what is wrong with a value.
-std::string check(const Parameter& wish) {
-  const auto* number = std::get_if<double>(&wish.value);
-  if (wish.name == "real_time_factor") {
+std::string check(const Parameter& parameter) {
+  const auto* number = std::get_if<double>(&parameter.value);
+  if (parameter.name == "real_time_factor") {
     const bool is_valid = number && (*number == 0 || (*number >= 1e-6 && *number <= 1e6));
     return is_valid ? "" : "real_time_factor must be 1e-6 to 1e6, or 0 for as fast as it goes";
   }
-  if (wish.name == "frames_per_second") {
+  if (parameter.name == "frames_per_second") {
     const bool is_valid = number && *number >= 1 && *number <= 1000;
     return is_valid ? "" : "frames_per_second must be 1 to 1000";
   }
-  if (wish.name == "draw_labels" || wish.name == "draw_frusta") {
-    const bool is_valid = std::holds_alternative<bool>(wish.value);
-    return is_valid ? "" : wish.name + " must be true or false";
+  if (parameter.name == "draw_labels" || parameter.name == "draw_frusta") {
+    const bool is_valid = std::holds_alternative<bool>(parameter.value);
+    return is_valid ? "" : parameter.name + " must be true or false";
   }
-  return fmt::format("The parameter \"{}\" can't be set.", wish.name.substr(0, 64));
+  return fmt::format("The parameter \"{}\" can't be set.", parameter.name.substr(0, 64));
 }
 
-/// Those of the names; all if there is none.
-std::vector<Parameter> values_of(std::span<const std::string> names, const std::vector<Parameter>& all) {
+/// Parameters of these names; all if there is none.
+std::vector<Parameter> values_of(std::span<const std::string> names,
+                                 const std::vector<Parameter>& all) {
   if (names.empty()) return all;
   std::vector<Parameter> values;
   for (const Parameter& parameter : all) {
@@ -46,8 +47,9 @@ std::vector<Parameter> values_of(std::span<const std::string> names, const std::
   return values;
 }
 
-/// The clock comes before the messages of its time, to each viewer: one that has none takes the first for a jump, and
-/// may forget what was shown before. Some take a step away from 0 for a jump, too.
+/// The clock comes before the messages of its time, to each viewer: one that has none takes the
+/// first for a jump, and may forget what was shown before. Some take a step away from 0 for a jump,
+/// too.
 void tell_time(std::int64_t time_ns, Viewer& viewer, std::vector<Item>& to) {
   if (std::exchange(viewer.time_ns, time_ns) == time_ns) return;
   to.push_back(time(std::max<std::int64_t>(time_ns, 1)));
@@ -55,8 +57,10 @@ void tell_time(std::int64_t time_ns, Viewer& viewer, std::vector<Item>& to) {
 
 }  // namespace
 
-Hub::Hub(Introduction introduction, std::vector<Parameter> parameters, Desk& desk)
-    : introduction_(std::move(introduction)), parameters_(std::move(parameters)), desk_(desk) {}
+Hub::Hub(Introduction introduction, std::vector<Parameter> parameters, ViewerRequests& requests)
+    : introduction_(std::move(introduction)),
+      parameters_(std::move(parameters)),
+      requests_(requests) {}
 
 Viewer& Hub::add(bool may_steer) {
   auto viewer = std::make_unique<Viewer>();
@@ -68,7 +72,7 @@ Viewer& Hub::add(bool may_steer) {
   introduction.may_steer = may_steer;
   send(added, server_info(introduction));
   if (may_steer) send(added, advertise_services());
-  desk_.viewer_came(added.id);
+  requests_.add_viewer(added.id);
   return added;
 }
 
@@ -77,7 +81,7 @@ void Hub::remove(std::uint64_t id) {
   if (!viewer) return;
   for (const auto& [subscription, channel] : viewer->channels) --subscribers_[channel];
   viewers_.erase(id);
-  desk_.viewer_left(id);
+  requests_.remove_viewer(id);
   count_subscribers({});
 }
 
@@ -92,7 +96,7 @@ const channels::Channel* Hub::channel(std::uint32_t id) const {
 }
 
 void Hub::send(Viewer& viewer, Item item) {
-  if (!viewer.output.add_answer(std::move(item))) viewer.is_over = true;
+  if (!viewer.send_queue.add_answer(std::move(item))) viewer.is_over = true;
 }
 
 void Hub::receive(Viewer& viewer, std::string_view message, bool is_text) {
@@ -102,10 +106,10 @@ void Hub::receive(Viewer& viewer, std::string_view message, bool is_text) {
 }
 
 std::optional<Item> Hub::next(Viewer& viewer) {
-  if (viewer.output.has_answer()) return viewer.output.next();
+  if (viewer.send_queue.has_answer()) return viewer.send_queue.next();
   if (auto news = viewer.known.next(channels_)) return news;
   if (std::exchange(viewer.lacks_graph, false)) return graph();
-  return viewer.output.next();
+  return viewer.send_queue.next();
 }
 
 void Hub::handle(Viewer& viewer, const Wrong& message) {
@@ -119,9 +123,9 @@ void Hub::handle(Viewer& viewer, const Subscribe& message) {
   for (const auto& [id, wanted] : message.entries) {
     const channels::Channel* found = channel(wanted);
     if (!found || viewer.channels.contains(id) || viewer.subscriptions.contains(wanted)) {
-      handle(viewer, Wrong{fmt::format(
-          "subscription {} of channel {}: {}", id, wanted,
-          found ? "that subscription is there already" : "there is no such channel")});
+      handle(viewer, Wrong{fmt::format("subscription {} of channel {}: {}", id, wanted,
+                                       found ? "that subscription is there already"
+                                             : "there is no such channel")});
       continue;
     }
     viewer.channels.emplace(id, wanted);
@@ -133,7 +137,7 @@ void Hub::handle(Viewer& viewer, const Subscribe& message) {
     }
     if (++subscribers_[wanted] == 1) fresh.push_back(wanted);
   }
-  viewer.output.add_frame(std::move(known));
+  viewer.send_queue.add_frame(std::move(known));
   count_subscribers(std::move(fresh));
 }
 
@@ -158,27 +162,28 @@ void Hub::count_subscribers(std::vector<std::uint32_t> fresh) {
     wanted.push_back(id);
     if (const auto* found = channel(id)) kinds.set(channels::index_of(found->kind));
   }
-  desk_.set_wanted(std::move(wanted), std::move(fresh), kinds);
+  requests_.set_wanted(std::move(wanted), std::move(fresh), kinds);
 }
 
 void Hub::handle(Viewer& viewer, const GetParameters& message) {
   send(viewer, parameter_values(values_of(message.names, parameters_), message.id));
 }
 
-/// What is wrong with it; empty: it holds now.
-std::string Hub::set(const Parameter& wish) {
-  if (std::string why = check(wish); !why.empty()) return why;
-  desk_.add_wish(wish);
-  set_parameter(wish);
+/// Sets a parameter. @return  its fault; empty: it is set
+std::string Hub::set(const Parameter& parameter) {
+  if (std::string why = check(parameter); !why.empty()) return why;
+  requests_.add_parameter(parameter);
+  set_parameter(parameter);
   return {};
 }
 
 void Hub::handle(Viewer& viewer, const SetParameters& message) {
   std::vector<std::string> names;
-  for (const Parameter& wish : message.parameters) {
-    names.push_back(wish.name);
-    const std::string why =
-        viewer.may_steer ? set(wish) : "Parameters are set with the token in the address only.";
+  for (const Parameter& parameter : message.parameters) {
+    names.push_back(parameter.name);
+    const std::string why = viewer.may_steer
+                                ? set(parameter)
+                                : "Parameters are set with the token in the address only.";
     if (!why.empty()) send(viewer, warning(why));
   }
   if (!names.empty()) send(viewer, parameter_values(values_of(names, parameters_), message.id));
@@ -217,8 +222,8 @@ void Hub::handle(Viewer& viewer, const CallService& message) {
     return refuse(fmt::format("{} calls wait for their answers already.", most_unanswered));
   }
   ++viewer.unanswered;
-  std::get<Call>(call).viewer = viewer.id;
-  desk_.add_call(std::move(std::get<Call>(call)));
+  std::get<ViewerCall>(call).viewer = viewer.id;
+  requests_.add_call(std::move(std::get<ViewerCall>(call)));
 }
 
 void Hub::set_channels(std::vector<channels::Channel> list) {
@@ -228,7 +233,8 @@ void Hub::set_channels(std::vector<channels::Channel> list) {
       gone.push_back(old.id);
     }
   }
-  const bool is_all_old = std::ranges::all_of(list, [&](const auto& each) { return channel(each.id); });
+  const bool is_all_old =
+      std::ranges::all_of(list, [&](const auto& each) { return channel(each.id); });
   channels_ = std::move(list);
   for (auto& [id, viewer] : viewers_) {
     for (const std::uint32_t channel : gone) {
@@ -238,7 +244,7 @@ void Hub::set_channels(std::vector<channels::Channel> list) {
       viewer->subscriptions.erase(found);
       --subscribers_[channel];
     }
-    viewer->output.forget(gone);
+    viewer->send_queue.forget(gone);
     viewer->known.change(gone, is_all_old);
     viewer->lacks_graph |= viewer->wants_graph && !(gone.empty() && is_all_old);
   }
@@ -262,8 +268,8 @@ void Hub::show(std::int64_t time_ns, std::span<const channels::Message> messages
       if (!found || subscription == viewer->subscriptions.end()) continue;
       items.push_back(view::message(subscription->second, each, keep_of(*found)));
     }
-    viewer->output.add_frame(std::move(items));
-    viewer->is_over |= viewer->output.is_too_much();
+    viewer->send_queue.add_frame(std::move(items));
+    viewer->is_over |= viewer->send_queue.is_too_much();
   }
 }
 
@@ -278,7 +284,7 @@ void Hub::set_parameter(const Parameter& parameter) {
   }
 }
 
-void Hub::answer(const Call& call, bool is_done, const std::string& text) {
+void Hub::answer(const ViewerCall& call, bool is_done, const std::string& text) {
   Viewer* viewer = find(call.viewer);
   if (!viewer) return;
   --viewer->unanswered;

@@ -1,5 +1,5 @@
 #pragma once
-// The viewers: what each subscribes to, and what waits for it. No sockets here.
+// Viewers with their subscriptions and send queues. No sockets here.
 
 #include <cstdint>
 #include <map>
@@ -13,23 +13,23 @@
 
 #include "channels/channel.h"
 #include "channels/message.h"
-#include "view/desk.h"
 #include "view/known_channels.h"
 #include "view/messages.h"
-#include "view/output.h"
+#include "view/send_queue.h"
+#include "view/viewer_requests.h"
 
 namespace ziggurat::view {
 
 struct Viewer {
   std::uint64_t id = 0;
   bool may_steer = false;
-  Output output;
-  std::unordered_map<std::uint32_t, std::uint32_t> channels;  ///< subscription -> channel
+  SendQueue send_queue;
+  std::unordered_map<std::uint32_t, std::uint32_t> channels;       ///< subscription -> channel
   std::unordered_map<std::uint32_t, std::uint32_t> subscriptions;  ///< channel -> subscription
   KnownChannels known;
   bool wants_parameters = false;
   bool wants_graph = false, lacks_graph = false;  ///< at each change; the one of now
-  std::int64_t time_ns = -1;  ///< the clock that it was told; -1: none yet
+  std::int64_t time_ns = -1;                      ///< the clock that it was told; -1: none yet
   unsigned faults = 0;      ///< messages in a row that are none of the protocol
   unsigned unanswered = 0;  ///< calls
   bool is_over = false;     ///< to be disconnected: it sends nonsense, or does not read
@@ -39,11 +39,12 @@ class Hub {
  public:
   static constexpr unsigned most_faults = 100;
   static constexpr unsigned most_unanswered = 64;
-  static constexpr std::size_t largest_queued = std::size_t{64} << 10;  ///< a call behind others [bytes]
+  static constexpr std::size_t largest_queued = std::size_t{64}
+                                                << 10;  ///< a call behind others [bytes]
 
   /// @param parameters  at the start
-  /// @param desk  must outlive this
-  Hub(Introduction introduction, std::vector<Parameter> parameters, Desk& desk);
+  /// @param requests  must outlive this
+  Hub(Introduction introduction, std::vector<Parameter> parameters, ViewerRequests& requests);
 
   Viewer& add(bool may_steer);
   void remove(std::uint64_t viewer);
@@ -51,7 +52,7 @@ class Hub {
   std::size_t size() const { return viewers_.size(); }
 
   void receive(Viewer& viewer, std::string_view message, bool is_text);
-  /// What the viewer is to be sent next: answers, changes of the channels, then ticks.
+  /// Next item to send to the viewer: answers, changes of the channels, then ticks.
   std::optional<Item> next(Viewer& viewer);
 
   /// @param list  all channels of now, ascending by id
@@ -60,7 +61,7 @@ class Hub {
   void show(std::int64_t time_ns, std::span<const channels::Message> messages);
   void set_parameter(const Parameter& parameter);
   /// @param text  JSON of an answer, or a sentence why it was refused
-  void answer(const Call& call, bool is_done, const std::string& text);
+  void answer(const ViewerCall& call, bool is_done, const std::string& text);
 
   /// Calls visit(viewer) for each.
   template <class Visit>
@@ -78,19 +79,19 @@ class Hub {
   void handle(Viewer& viewer, const CallService& message);
   void handle(Viewer& viewer, const Wrong& message);
   void send(Viewer& viewer, Item item);
-  std::string set(const Parameter& wish);
+  std::string set(const Parameter& parameter);
   const channels::Channel* channel(std::uint32_t id) const;
   void count_subscribers(std::vector<std::uint32_t> fresh);
   Item graph() const;
 
   Introduction introduction_;
   std::vector<Parameter> parameters_;
-  Desk& desk_;
+  ViewerRequests& requests_;
   std::uint64_t next_viewer_ = 1;
   std::map<std::uint64_t, std::unique_ptr<Viewer>> viewers_;
   std::vector<channels::Channel> channels_;
-  std::map<std::uint32_t, std::size_t> subscribers_;                    // by channel
-  std::unordered_map<std::uint32_t, channels::Message> newest_;         // of these
+  std::map<std::uint32_t, std::size_t> subscribers_;             // by channel
+  std::unordered_map<std::uint32_t, channels::Message> newest_;  // of these
   std::int64_t time_ns_ = -1;
 };
 

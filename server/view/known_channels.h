@@ -1,6 +1,6 @@
 #pragma once
-// Which channels a viewer knows, and what it is still to be told of them. Lists are made when they can be sent, so that a
-// viewer that does not read holds none.
+// Channels that a viewer knows, and changes that it is still to be sent. Lists are made when they
+// can be sent, so that a viewer that does not read holds none.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,13 +9,14 @@
 #include <vector>
 
 #include "channels/channel.h"
-#include "view/output.h"
+#include "view/send_queue.h"
 
 namespace ziggurat::view {
 
 class KnownChannels {
  public:
-  static constexpr std::size_t longest_list = std::size_t{512} << 10;  ///< of topics and schemas [bytes]
+  static constexpr std::size_t longest_list = std::size_t{512}
+                                              << 10;  ///< of topics and schemas [bytes]
 
   /// @param gone  channels that are there no more
   /// @param is_all_old  no channel is new
@@ -25,9 +26,9 @@ class KnownChannels {
   std::optional<Item> next(std::span<const channels::Channel> channels);
 
  private:
-  std::vector<bool> told_;            // by channel
+  std::vector<bool> told_;           // by channel
   std::vector<std::uint32_t> gone_;  // to be unadvertised
-  bool is_all_ = false;               // none is to be advertised
+  bool is_all_ = false;              // none is to be advertised
 };
 
 }  // namespace ziggurat::view

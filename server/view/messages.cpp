@@ -33,11 +33,12 @@ constexpr std::array services{
             R"({"type":"object","properties":{"seed":{"type":"integer","minimum":1}}})"},
     Service{"/speed", Kind::none,
             R"({"type":"object","properties":{"factor":{"type":"number"}},"required":["factor"]})"},
-    Service{"/move", Kind::move,
-            R"({"type":"object","properties":{"entity":{"type":"string"},"position":{"type":"array",)"
-            R"("items":{"type":"number"}},"orientation":{"type":"array","items":{"type":"number"}},)"
-            R"("may_overlap":{"type":"boolean"}},)"
-            R"("required":["entity","position"]})"},
+    Service{
+        "/move", Kind::move,
+        R"({"type":"object","properties":{"entity":{"type":"string"},"position":{"type":"array",)"
+        R"("items":{"type":"number"}},"orientation":{"type":"array","items":{"type":"number"}},)"
+        R"("may_overlap":{"type":"boolean"}},)"
+        R"("required":["entity","position"]})"},
     Service{"/spawn", Kind::spawn,
             R"({"type":"object","properties":{"xml":{"type":"string"}},"required":["xml"]})"},
     Service{"/remove", Kind::remove,
@@ -87,7 +88,8 @@ std::string base64(std::string_view bytes) {
 
 /// None if it is no JSON, or has so many values that they would take much memory.
 std::optional<Json> parse(std::string_view text) {
-  if (text.find('\0') != text.npos) return std::nullopt;  // for nlohmann's parser the end of the text
+  if (text.find('\0') != text.npos)
+    return std::nullopt;  // for nlohmann's parser the end of the text
   std::size_t values = 0;
   bool is_in_text = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -104,7 +106,8 @@ std::optional<Json> parse(std::string_view text) {
   return json;
 }
 
-// --- reading; each of these throws Wrong ----------------------------------------------------------
+// --- reading; each of these throws Wrong
+// ----------------------------------------------------------
 
 const Json& field(const Json& object, const char* name) {
   const auto found = object.find(name);
@@ -209,7 +212,7 @@ std::vector<double> numbers(const Json& json, const char* name) {
 }
 
 /// Fields of the request that are there.
-void read_fields(const Json& json, Call& call) {
+void read_fields(const Json& json, ViewerCall& call) {
   wire::Request& request = call.request;
   switch (request.kind) {
     case Kind::none: {
@@ -274,18 +277,19 @@ Incoming read_binary(std::string_view bytes) {
                      std::string(bytes.substr(head + length))};
 }
 
-std::variant<Call, std::string> read_call(const CallService& from) {
+std::variant<ViewerCall, std::string> read_call(const CallService& from) {
   if (from.service == 0 || from.service > services.size()) return "There is no such service.";
   const Service& service = services[from.service - 1];
   if (from.encoding != "json") {
     return fmt::format("The encoding of {} must be json.", service.name);
   }
-  Call call{.service = from.service, .number = from.call, .request = {}, .speed = {}};
+  ViewerCall call{.service = from.service, .number = from.call, .request = {}, .speed = {}};
   call.request.kind = service.kind;
   call.request.id = from.call;
   const auto json = from.payload.empty() ? Json::object() : parse(from.payload);
   if (!json || !json->is_object()) {
-    return fmt::format("The request of {} must be a JSON object of at most {} values.", service.name, most_values);
+    return fmt::format("The request of {} must be a JSON object of at most {} values.",
+                       service.name, most_values);
   }
   try {
     read_fields(*json, call);
@@ -295,7 +299,8 @@ std::variant<Call, std::string> read_call(const CallService& from) {
   return call;
 }
 
-// --- writing --------------------------------------------------------------------------------------
+// --- writing
+// --------------------------------------------------------------------------------------
 
 Item server_info(const Introduction& from) {
   return text_item({{"op", "serverInfo"},
@@ -324,8 +329,8 @@ Item advertise(std::span<const channels::Channel* const> channels) {
 }
 
 Item unadvertise(std::span<const std::uint32_t> ids) {
-  return text_item({{"op", "unadvertise"},
-                    {"channelIds", std::vector<std::uint32_t>(ids.begin(), ids.end())}});
+  return text_item(
+      {{"op", "unadvertise"}, {"channelIds", std::vector<std::uint32_t>(ids.begin(), ids.end())}});
 }
 
 Item advertise_services() {

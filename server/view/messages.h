@@ -1,5 +1,5 @@
 #pragma once
-// The Foxglove WebSocket protocol: what viewers send, and what they are sent. No sockets here.
+// Messages of the Foxglove WebSocket protocol, from and to viewers. No sockets here.
 
 #include <cstdint>
 #include <optional>
@@ -11,11 +11,12 @@
 
 #include "channels/channel.h"
 #include "view/call.h"
-#include "view/output.h"
+#include "view/send_queue.h"
 
 namespace ziggurat::view {
 
-// --- from viewers ---------------------------------------------------------------------------------
+// --- from viewers
+// ---------------------------------------------------------------------------------
 
 struct Subscribe {
   struct Entry {
@@ -57,9 +58,10 @@ Incoming read_text(std::string_view text);
 Incoming read_binary(std::string_view bytes);
 
 /// A call of a service, or what is wrong with it as a sentence.
-std::variant<Call, std::string> read_call(const CallService& call);
+std::variant<ViewerCall, std::string> read_call(const CallService& call);
 
-// --- to viewers -----------------------------------------------------------------------------------
+// --- to viewers
+// -----------------------------------------------------------------------------------
 
 struct Introduction {
   std::string version, scene, session;

@@ -71,7 +71,8 @@ http::Answer Page::get(std::string_view target, std::string_view known_etag) con
     return {404, http::Answer().type, {}, "There is no such file.\n"};
   }
   auto content = read(folder_ + path);
-  if (!content && path == "/index.html") return {200, http::Answer().type, {}, std::string(not_built)};
+  if (!content && path == "/index.html")
+    return {200, http::Answer().type, {}, std::string(not_built)};
   if (!content) return {404, http::Answer().type, {}, "There is no such file.\n"};
   math::Hash hash;
   hash.add(std::string_view(*content));

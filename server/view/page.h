@@ -21,7 +21,7 @@ class Page {
   std::string folder_;
 };
 
-/// What pages of this server may load: only files of it, and its WebSocket.
+/// Content security policy of this server's pages: they load only its files and its WebSocket.
 /// @param host  of the request
 std::string content_security_policy(std::string_view host);
 

@@ -18,7 +18,8 @@ std::optional<Fault> check_positions(const google::protobuf::RepeatedField<std::
     const std::string& id = layout.robots[roster.robots[position]].id;
     if (roster.gone[position] && !roster.taken[position]) {
       return make_fault(ErrorCode::not_yours, "robots",
-                        fmt::format("Robot '{}' has left the run; leave it out of `robots`.", id), id);
+                        fmt::format("Robot '{}' has left the run; leave it out of `robots`.", id),
+                        id);
     }
     if (named[position]) {
       return make_fault(ErrorCode::bad_value, "robots",
@@ -50,7 +51,8 @@ std::optional<Fault> check(const v1::Command& command, const Roster& roster,
 std::optional<Fault> check(const v1::Leave& leave, const Roster& roster,
                            const world::Layout& layout) {
   if (leave.reason() != v1::Leave::DONE && leave.reason() != v1::Leave::FAILED) {
-    return make_fault(ErrorCode::bad_value, "reason", "The reason of a Leave must be DONE or FAILED.");
+    return make_fault(ErrorCode::bad_value, "reason",
+                      "The reason of a Leave must be DONE or FAILED.");
   }
   if (auto found = check_positions(leave.robots(), roster, layout)) return found;
   return check(leave.log(), roster);

@@ -13,7 +13,7 @@
 
 namespace ziggurat::wire {
 
-/// What is wrong with a command of this session, if anything; the tick is the caller's to check.
+/// Checks a command of this session; its tick is left to the caller.
 std::optional<Fault> check(const v1::Command& command, const Roster& roster,
                            const world::Layout& layout);
 
@@ -32,7 +32,7 @@ void apply(const v1::Command& command, const Roster& roster, world::Commands& co
 void append(const google::protobuf::RepeatedPtrField<v1::LogLine>& log, const Roster& roster,
             std::vector<LogLine>& lines);
 
-/// What is wrong with the messages, if the command's robots are right.
+/// Checks the radio messages of a command whose robots are right.
 std::optional<Fault> check_radio_messages(const v1::Command& command, const Roster& roster,
                                           const world::Layout& layout);
 

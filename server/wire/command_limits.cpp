@@ -14,12 +14,13 @@ constexpr std::size_t bytes_per_value = 64;  // of a number in either form, with
 constexpr std::size_t bytes_per_tag = kibibyte;
 constexpr std::size_t bytes_per_metric = 128;  // in either form, and of its fields
 constexpr std::size_t metrics_per_robot = 100;
-constexpr std::size_t bytes_per_robot = 2 * kibibyte + metrics_per_robot * bytes_per_metric;  // 2 KiB: log lines
-constexpr std::size_t radio_bytes_per_robot = 4 * kibibyte;   // of those that send
+constexpr std::size_t bytes_per_robot =
+    2 * kibibyte + metrics_per_robot * bytes_per_metric;     // 2 KiB: log lines
+constexpr std::size_t radio_bytes_per_robot = 4 * kibibyte;  // of those that send
 constexpr std::size_t radio_bytes_per_field = 64;
 constexpr std::size_t longest_json = 24 * mebibyte;
 
-/// What all robots of a session share [bytes].
+/// Size of the parts that all robots of a session share [bytes].
 struct Shared {
   std::size_t any;
   std::size_t radios;  // if one of the robots sends
@@ -27,7 +28,7 @@ struct Shared {
 constexpr Shared shared_in_binary{512 * kibibyte, 2 * mebibyte};
 constexpr Shared shared_in_json{64 * kibibyte, 128 * kibibyte};
 
-/// What the robot's devices but radios take in binary form [bytes].
+/// Size of the values of the robot's devices without radios in binary form [bytes].
 std::size_t bytes_of(const world::RobotLayout& robot, const world::Layout& layout) {
   const std::size_t values = robot.joint_actuators.count + robot.leds.count +
                              robot.directional_leds.count + robot.tags.count + robot.magnets.count +

@@ -63,7 +63,7 @@ std::optional<Fault> check(const v1::RadioMessage& message, const Roster& roster
   return std::nullopt;
 }
 
-/// What a robot sends at one tick. All messages are sound by themselves.
+/// Checks the totals that a robot sends at one tick. Each message was checked before.
 std::optional<Fault> check_totals(const RadioMessages& messages, const Roster& roster,
                                   const world::Layout& layout) {
   struct Total {

@@ -111,7 +111,7 @@ std::string anchor_of(const world::Layout& all, const world::Mount& mount) {
   return mount.link ? v1::valid_utf8(all.links[*mount.link].id) : "origin";
 }
 
-/// Where a device is fixed: anchor, position, orientation.
+/// Describes the mount of a device: anchor, position, orientation.
 template <class Description>
 void describe_mount(const world::Layout& all, const world::Mount& mount, Description& to) {
   to.set_anchor(anchor_of(all, mount));

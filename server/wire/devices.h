@@ -16,7 +16,7 @@ namespace ziggurat::wire {
 /// @param robot  into the layout's robots
 void describe(const Run& run, std::size_t robot, v1::RobotDescription& description);
 
-/// Writes what a session's robots sense.
+/// Writes the readings of a session's robots.
 void add_channels(const Roster& roster, const world::Observations& from, v1::Observation& to);
 
 /// Writes all that a session's robots want, without their radio messages.

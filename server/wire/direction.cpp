@@ -27,7 +27,8 @@ bool is_vector(const Numbers& values) {
 }
 
 std::optional<Fault> check_push(const v1::Push& push, std::size_t act) {
-  for (const auto& [values, name] : {std::pair(&push.force(), "force"), {&push.torque(), "torque"}}) {
+  for (const auto& [values, name] :
+       {std::pair(&push.force(), "force"), {&push.torque(), "torque"}}) {
     if (is_vector(*values)) continue;
     return fault_of(ErrorCode::bad_value, act, fmt::format("push.{}", name),
                     fmt::format("A {} must be empty or three numbers from -1e6 to 1e6.", name));
@@ -102,12 +103,14 @@ std::optional<Fault> check(const v1::Direction& direction) {
                       fmt::format("A Direction has {} log lines; {} are allowed.",
                                   direction.log_size(), most_direction_logs));
   }
-  const auto spawns = static_cast<std::size_t>(
-      std::ranges::count_if(direction.acts(), [](const v1::DirectorAct& act) { return act.has_spawn(); }));
+  const auto spawns = static_cast<std::size_t>(std::ranges::count_if(
+      direction.acts(), [](const v1::DirectorAct& act) { return act.has_spawn(); }));
   if (spawns > most_spawns) {
-    return make_fault(ErrorCode::too_many, "acts",
-                      fmt::format("A Direction spawns {} entities; {} are allowed: spawn the others at later ticks.",
-                                  spawns, most_spawns));
+    return make_fault(
+        ErrorCode::too_many, "acts",
+        fmt::format(
+            "A Direction spawns {} entities; {} are allowed: spawn the others at later ticks.",
+            spawns, most_spawns));
   }
   for (std::size_t i = 0; i < acts; ++i) {
     if (auto fault = check_act(direction.acts(static_cast<int>(i)), i)) return fault;

@@ -1,5 +1,5 @@
 #pragma once
-// What directors do to the world, as plain data.
+// Acts of directors on the world, as plain data.
 
 #include <array>
 #include <cstdint>
@@ -18,9 +18,9 @@ class Direction;
 
 namespace ziggurat::wire {
 
-inline constexpr std::size_t most_acts = 10'000;         // of a Direction
-inline constexpr std::size_t most_spawns = 1000;         // among them: each takes longer than another act
-inline constexpr std::size_t most_direction_logs = 1000;  // lines of a Direction
+inline constexpr std::size_t most_acts = 10'000;  // of a Direction
+inline constexpr std::size_t most_spawns = 1000;  // among them: each takes longer than another act
+inline constexpr std::size_t most_direction_logs = 1000;                // lines of a Direction
 inline constexpr std::size_t longest_direction = std::size_t{4} << 20;  // [bytes]
 inline constexpr std::size_t longest_result = 1024;                     // of a run [bytes]
 
@@ -45,12 +45,12 @@ using DirectorAct = std::variant<Request, Show, Push>;
 /// Checked, but for what only the world can tell.
 struct Direction {
   std::vector<DirectorAct> acts;
-  std::vector<Metric> metrics;  ///< `robot` has no meaning
-  std::vector<LogLine> log;     ///< likewise
+  std::vector<Metric> metrics;        ///< `robot` has no meaning
+  std::vector<LogLine> log;           ///< likewise
   std::optional<std::string> finish;  ///< the run ends with this result
 };
 
-/// What is wrong with a Direction, whatever the world is. Its tick is not checked.
+/// Checks a Direction without regard to the world or its tick.
 std::optional<Fault> check(const v1::Direction& direction);
 /// @param direction  checked
 Direction read(const v1::Direction& direction);

@@ -40,16 +40,15 @@ Subscription read(const v1::Subscription& from) {
 }  // namespace
 
 struct Inbox::Message {
-  /// A message in an arena: if decoding runs out of memory, it must not be destroyed, because
-  /// protobuf marks a part as being there before it has made it, and forgets one that it can't put
-  /// in its place.
+  /// A message in an arena, which is never destroyed if decoding runs out of memory. Otherwise
+  /// protobuf would read parts that it marked as present before it had made them, and leak others.
   template <class Content>
   class InArena {
    public:
     const Content& content() const {
       return content_ == nullptr ? Content::default_instance() : *content_;
     }
-    /// What it holds stays, for reuse. @throws std::bad_alloc
+    /// Content, which keeps its memory for reuse. @throws std::bad_alloc
     Content& made() {
       if (content_ == nullptr) content_ = google::protobuf::Arena::CreateMessage<Content>(&arena_);
       return *content_;
@@ -74,8 +73,8 @@ struct Inbox::Message {
     return kind == Kind::command ? command->metrics() : other.content().leave().metrics();
   }
 
-  // What protobuf keeps for reuse is as large as the largest of each part ever was. Peers decide
-  // on that, so now and then both messages begin anew.
+  // Memory that protobuf keeps for reuse is as large as the largest of each part ever was. Peers
+  // decide on that, so now and then both messages begin anew.
   std::size_t parsed = 0;  // [bytes] since they last did
   void forget(std::size_t size) {
     constexpr std::size_t enough = std::size_t{64} << 20;
@@ -241,7 +240,8 @@ std::optional<Fault> Inbox::check_direction() const {
   }
   const v1::Leave& leave = message_->other.content().leave();
   if (leave.reason() != v1::Leave::DONE && leave.reason() != v1::Leave::FAILED) {
-    return make_fault(ErrorCode::bad_value, "reason", "The reason of a Leave must be DONE or FAILED.");
+    return make_fault(ErrorCode::bad_value, "reason",
+                      "The reason of a Leave must be DONE or FAILED.");
   }
   if (!leave.robots().empty()) {
     return make_fault(ErrorCode::unknown_robot, "robots", "A director has no robots.");
@@ -258,8 +258,7 @@ Direction Inbox::direction() const {
 }
 
 std::optional<Fault> Inbox::check(const Roster& roster, const world::Layout& layout) const {
-  if (message_->kind == Kind::command)
-    return wire::check(*message_->command, roster, layout);
+  if (message_->kind == Kind::command) return wire::check(*message_->command, roster, layout);
   return wire::check(message_->other.content().leave(), roster, layout);
 }
 

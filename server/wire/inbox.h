@@ -35,30 +35,30 @@ class Inbox {
   Inbox();
   ~Inbox();
 
-  /// In either form, see encoding_of(). A message with more than `most` fields is too large; with more than
-  /// `most_fields` it is malformed, and so is one for which there is not enough memory.
+  /// In either form, see encoding_of(). A message with more than `most` fields is too large; with
+  /// more than `most_fields` it is malformed, and so is one for which there is not enough memory.
   Kind parse(std::string_view bytes, std::size_t most = most_fields);
-  /// What makes the current message malformed, for people; may be empty.
+  /// Fault that makes the current message malformed, for users; may be empty.
   const std::string& complaint() const;
 
-  // Of the current message, if it is of that kind.
+  // Content of the current message, if it is of that kind.
   Hello hello() const;
   Leave leave() const;
-  std::uint64_t heartbeat() const;  ///< its sequence
-  std::uint64_t command_tick() const;  ///< of a command or direction
+  std::uint64_t heartbeat() const;                     ///< its sequence
+  std::uint64_t command_tick() const;                  ///< of a command or direction
   std::optional<std::uint64_t> command_epoch() const;  ///< likewise; none: it does not say
   std::uint64_t request_id() const;
   Request request() const;
   bool is_question() const;  ///< a Request that changes nothing
   bool is_answer() const;    ///< a command or direction
 
-  /// What is wrong with the current direction, or with the leave of a director, if anything. What only the
-  /// world can tell is not checked, nor its tick.
+  /// Checks the current direction, or the leave of a director, without regard to the world or its
+  /// tick.
   std::optional<Fault> check_direction() const;
   /// The checked direction; of a leave its last words.
   Direction direction() const;
 
-  /// What is wrong with the current command or leave, if anything. Its tick is not checked.
+  /// Checks the current command or leave, but not its tick.
   std::optional<Fault> check(const Roster& roster, const world::Layout& layout) const;
   /// The same for its metrics, which sessions of earlier versions do not have.
   std::optional<Fault> check_metrics(const Roster& roster) const;

@@ -19,36 +19,36 @@ template <class Value>
 using Setter = void (Reflection::*)(Message*, const FieldDescriptor*, Value) const;
 
 template <class Value>
-bool store(const Place& place, Value value, Setter<Value> set, Setter<Value> add) {
-  const Reflection& reflection = *place.message.GetReflection();
-  (reflection.*(place.field.is_repeated() ? add : set))(&place.message, &place.field,
-                                                        std::move(value));
+bool store(const FieldTarget& target, Value value, Setter<Value> set, Setter<Value> add) {
+  const Reflection& reflection = *target.message.GetReflection();
+  (reflection.*(target.field.is_repeated() ? add : set))(&target.message, &target.field,
+                                                         std::move(value));
   return true;
 }
 
 /// @param value  of one of the 64-bit types
 template <class Number>
-bool put_integer(const Place& place, Number value) {
-  switch (place.field.cpp_type()) {
+bool put_integer(const FieldTarget& target, Number value) {
+  switch (target.field.cpp_type()) {
     case FieldDescriptor::CPPTYPE_INT32:
       return std::in_range<std::int32_t>(value) &&
-             store(place, static_cast<std::int32_t>(value), &Reflection::SetInt32,
+             store(target, static_cast<std::int32_t>(value), &Reflection::SetInt32,
                    &Reflection::AddInt32);
     case FieldDescriptor::CPPTYPE_UINT32:
       return std::in_range<std::uint32_t>(value) &&
-             store(place, static_cast<std::uint32_t>(value), &Reflection::SetUInt32,
+             store(target, static_cast<std::uint32_t>(value), &Reflection::SetUInt32,
                    &Reflection::AddUInt32);
     case FieldDescriptor::CPPTYPE_INT64:
       return std::in_range<std::int64_t>(value) &&
-             store(place, static_cast<std::int64_t>(value), &Reflection::SetInt64,
+             store(target, static_cast<std::int64_t>(value), &Reflection::SetInt64,
                    &Reflection::AddInt64);
     case FieldDescriptor::CPPTYPE_UINT64:
       return std::in_range<std::uint64_t>(value) &&
-             store(place, static_cast<std::uint64_t>(value), &Reflection::SetUInt64,
+             store(target, static_cast<std::uint64_t>(value), &Reflection::SetUInt64,
                    &Reflection::AddUInt64);
     case FieldDescriptor::CPPTYPE_ENUM:
       return std::in_range<int>(value) &&
-             store(place, static_cast<int>(value), &Reflection::SetEnumValue,
+             store(target, static_cast<int>(value), &Reflection::SetEnumValue,
                    &Reflection::AddEnumValue);
     default:
       return false;
@@ -60,14 +60,14 @@ bool is_real(const FieldDescriptor& field) {
          field.cpp_type() == FieldDescriptor::CPPTYPE_FLOAT;
 }
 
-bool put_real(const Place& place, double value) {
-  if (place.field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
-    return store(place, value, &Reflection::SetDouble, &Reflection::AddDouble);
+bool put_real(const FieldTarget& target, double value) {
+  if (target.field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
+    return store(target, value, &Reflection::SetDouble, &Reflection::AddDouble);
   }
   const bool is_too_large =
       std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max();
-  return !is_too_large && store(place, static_cast<float>(value), &Reflection::SetFloat,
-                                &Reflection::AddFloat);
+  return !is_too_large &&
+         store(target, static_cast<float>(value), &Reflection::SetFloat, &Reflection::AddFloat);
 }
 
 /// The whole text as a number.
@@ -80,19 +80,19 @@ std::optional<Number> number_of(std::string_view text) {
   return number;
 }
 
-bool put_real_text(const Place& place, std::string_view text) {
+bool put_real_text(const FieldTarget& target, std::string_view text) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  if (text == "NaN") return put_real(place, std::numeric_limits<double>::quiet_NaN());
-  if (text == "Infinity") return put_real(place, infinity);
-  if (text == "-Infinity") return put_real(place, -infinity);
+  if (text == "NaN") return put_real(target, std::numeric_limits<double>::quiet_NaN());
+  if (text == "Infinity") return put_real(target, infinity);
+  if (text == "-Infinity") return put_real(target, -infinity);
   const auto number = number_of<double>(text);
-  return number && std::isfinite(*number) && put_real(place, *number);
+  return number && std::isfinite(*number) && put_real(target, *number);
 }
 
-bool put_integer_text(const Place& place, std::string_view text) {
-  if (const auto number = number_of<std::uint64_t>(text)) return put_integer(place, *number);
+bool put_integer_text(const FieldTarget& target, std::string_view text) {
+  if (const auto number = number_of<std::uint64_t>(text)) return put_integer(target, *number);
   const auto number = number_of<std::int64_t>(text);
-  return number && put_integer(place, *number);
+  return number && put_integer(target, *number);
 }
 
 /// The six bits of each character of base64, of both alphabets; 64: none.
@@ -108,7 +108,7 @@ constexpr auto make_digits() {
   return digits;
 }
 
-/// What base64 stands for, with or without padding.
+/// Bytes of a base64 text, with or without padding.
 std::optional<std::string> bytes_of(std::string_view text) {
   static constexpr auto digits = make_digits();
   const bool is_padded = text.size() % 4 == 0;
@@ -131,48 +131,50 @@ std::optional<std::string> bytes_of(std::string_view text) {
 }
 
 /// An unknown name is as an unknown number: what must not be left out is refused later.
-bool put_enumeration(const Place& place, const std::string& name) {
+bool put_enumeration(const FieldTarget& target, const std::string& name) {
   constexpr std::int64_t unknown = -1;
-  const auto* value = place.field.enum_type()->FindValueByName(name);
-  if (value != nullptr) return put_integer(place, std::int64_t{value->number()});
-  return put_integer_text(place, name) || put_integer(place, unknown);
+  const auto* value = target.field.enum_type()->FindValueByName(name);
+  if (value != nullptr) return put_integer(target, std::int64_t{value->number()});
+  return put_integer_text(target, name) || put_integer(target, unknown);
 }
 
 }  // namespace
 
-bool put(const Place& place, bool value) {
-  return place.field.cpp_type() == FieldDescriptor::CPPTYPE_BOOL &&
-         store(place, value, &Reflection::SetBool, &Reflection::AddBool);
+bool put(const FieldTarget& target, bool value) {
+  return target.field.cpp_type() == FieldDescriptor::CPPTYPE_BOOL &&
+         store(target, value, &Reflection::SetBool, &Reflection::AddBool);
 }
 
-bool put(const Place& place, std::int64_t value) {
-  return is_real(place.field) ? put_real(place, static_cast<double>(value))
-                              : put_integer(place, value);
+bool put(const FieldTarget& target, std::int64_t value) {
+  return is_real(target.field) ? put_real(target, static_cast<double>(value))
+                               : put_integer(target, value);
 }
 
-bool put(const Place& place, std::uint64_t value) {
-  return is_real(place.field) ? put_real(place, static_cast<double>(value))
-                              : put_integer(place, value);
+bool put(const FieldTarget& target, std::uint64_t value) {
+  return is_real(target.field) ? put_real(target, static_cast<double>(value))
+                               : put_integer(target, value);
 }
 
-bool put(const Place& place, double value) {
-  if (is_real(place.field)) return put_real(place, value);
+bool put(const FieldTarget& target, double value) {
+  if (is_real(target.field)) return put_real(target, value);
   constexpr double beyond = 0x1p64;
   if (value != std::trunc(value) || value < -0x1p63 || value >= beyond) return false;
-  return value < 0 ? put_integer(place, static_cast<std::int64_t>(value))
-                   : put_integer(place, static_cast<std::uint64_t>(value));
+  return value < 0 ? put_integer(target, static_cast<std::int64_t>(value))
+                   : put_integer(target, static_cast<std::uint64_t>(value));
 }
 
-bool put(const Place& place, const std::string& text) {
-  if (place.field.type() == FieldDescriptor::TYPE_STRING) {
-    return store(place, text, &Reflection::SetString, &Reflection::AddString);
+bool put(const FieldTarget& target, const std::string& text) {
+  if (target.field.type() == FieldDescriptor::TYPE_STRING) {
+    return store(target, text, &Reflection::SetString, &Reflection::AddString);
   }
-  if (place.field.type() == FieldDescriptor::TYPE_BYTES) {
+  if (target.field.type() == FieldDescriptor::TYPE_BYTES) {
     auto bytes = bytes_of(text);
-    return bytes && store(place, *std::move(bytes), &Reflection::SetString, &Reflection::AddString);
+    return bytes &&
+           store(target, *std::move(bytes), &Reflection::SetString, &Reflection::AddString);
   }
-  if (place.field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM) return put_enumeration(place, text);
-  return is_real(place.field) ? put_real_text(place, text) : put_integer_text(place, text);
+  if (target.field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM)
+    return put_enumeration(target, text);
+  return is_real(target.field) ? put_real_text(target, text) : put_integer_text(target, text);
 }
 
 }  // namespace ziggurat::wire

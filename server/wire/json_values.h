@@ -10,18 +10,18 @@
 namespace ziggurat::wire {
 
 /// A field of a message that is not itself a message.
-struct Place {
+struct FieldTarget {
   google::protobuf::Message& message;
   const google::protobuf::FieldDescriptor& field;
 };
 
-bool put(const Place& place, bool value);
-bool put(const Place& place, std::int64_t value);
-bool put(const Place& place, std::uint64_t value);
+bool put(const FieldTarget& target, bool value);
+bool put(const FieldTarget& target, std::int64_t value);
+bool put(const FieldTarget& target, std::uint64_t value);
 /// An integer's field takes it if it has no fraction.
-bool put(const Place& place, double value);
+bool put(const FieldTarget& target, double value);
 /// A text, base64 of bytes, the name of an enumeration's value, or a number. An unknown name of an
 /// enumeration's value is ignored.
-bool put(const Place& place, const std::string& text);
+bool put(const FieldTarget& target, const std::string& text);
 
 }  // namespace ziggurat::wire

@@ -36,10 +36,11 @@ struct Version {
 
 /// Version of the server. A client must have the same major version.
 inline constexpr Version version{1, 4};
-/// From this minor version on a session is told of dropped and spawned robots, and what was commanded
-/// before it was resumed.
+/// From this minor version on a session is told of dropped and spawned robots, and what was
+/// commanded before it was resumed.
 inline constexpr std::uint32_t minor_with_events = 1;
-/// From this minor version on ticks have an epoch, and a session may be told that the world went back.
+/// From this minor version on ticks have an epoch, and a session may be told that the world went
+/// back.
 inline constexpr std::uint32_t minor_with_epochs = 2;
 /// From this minor version on there are metrics.
 inline constexpr std::uint32_t minor_with_metrics = 3;
@@ -48,7 +49,7 @@ inline constexpr std::uint32_t minor_with_directors = 4;
 
 enum class Role { unspecified, controller, supervisor, observer, director };
 
-/// What a director wants to be told at each tick.
+/// Parts of the world that a director is sent at each tick.
 struct Subscription {
   bool poses = false, links = false, joints = false, leds = false, tags = false, magnets = false,
        radio_messages = false, contacts = false;
@@ -69,9 +70,9 @@ struct Hello {
   std::string session_token;  ///< of a session to resume; empty: a new one
   /// A wish. The action may be a number that is none; unspecified is read as wait.
   std::optional<DeadlinePolicy> deadline;
-  bool takeover = false;  ///< take robots from other sessions too
-  bool can_restore = false;  ///< its controllers can go back to a snapshot
-  std::string director;      ///< of that role: its id
+  bool takeover = false;                     ///< take robots from other sessions too
+  bool can_restore = false;                  ///< its controllers can go back to a snapshot
+  std::string director;                      ///< of that role: its id
   std::optional<Subscription> subscription;  ///< likewise; none: it is told of no entity
 };
 
@@ -135,9 +136,9 @@ struct Fault {
   Severity severity = Severity::discard;
   bool retryable = false;
   std::uint64_t tick = 0;
-  std::string robot;    ///< id, where one is concerned
-  std::string field;    ///< where one is concerned
-  std::string message;  ///< a sentence for people
+  std::string robot;                        ///< id, where one is concerned
+  std::string field;                        ///< where one is concerned
+  std::string message;                      ///< a sentence for people
   std::vector<std::uint32_t> dropped = {};  ///< robots_dropped: positions in the session
 };
 
@@ -147,7 +148,7 @@ struct Refusal {
   std::string holder;  ///< robot_taken: name of the client that has it
 };
 
-/// What Welcome tells a session about itself.
+/// Description of a session in its Welcome.
 struct Welcome {
   std::string_view token;
   std::uint32_t minor = 0;  ///< of the protocol, as agreed
@@ -156,8 +157,9 @@ struct Welcome {
   std::uint32_t wall_heartbeat_ms = 0;
   std::uint64_t max_message_bytes = std::uint64_t{64} << 20;  ///< of the client's messages
   std::vector<DeadlinePolicy> deadlines = {};  ///< per robot of the session; empty: all wait
-  bool is_resumed = false;  ///< and its client is told of the present state
-  const world::Commands* commands = nullptr;  ///< resumed: of all robots; null: nothing was commanded
+  bool is_resumed = false;                     ///< and its client is told of the present state
+  const world::Commands* commands =
+      nullptr;  ///< resumed: of all robots; null: nothing was commanded
   const scene::Director* director = nullptr;  ///< of that role: which; its script is a path
 };
 
@@ -189,7 +191,7 @@ struct End {
   std::uint64_t tick = 0;  ///< the last one
 };
 
-/// What Welcome tells every session about the run.
+/// Description of the run in every Welcome.
 struct Run {
   const world::Layout& layout;
   const std::vector<scene::Controller>& controllers;  ///< of the scene
@@ -200,7 +202,7 @@ struct Run {
   std::uint32_t ticks_per_second = 10;
   std::string scene_hash;  ///< 16 hexadecimal digits
   std::string server_version;
-  bool is_hardware_in_the_loop = false;  ///< paced by the clock; no session is waited for
+  bool is_hardware_in_the_loop = false;         ///< paced by the clock; no session is waited for
   std::vector<scene::Director> directors = {};  ///< of the scene; their scripts are resolved paths
 };
 

@@ -10,7 +10,7 @@
 
 namespace ziggurat::wire {
 
-/// What is wrong with the metrics of a session, if anything.
+/// Checks the metrics of a session.
 std::optional<Fault> check(const google::protobuf::RepeatedPtrField<v1::Metric>& metrics,
                            const Roster& roster);
 

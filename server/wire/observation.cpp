@@ -58,23 +58,25 @@ void add_packets(const Roster& roster, const world::Observations& from, v1::Obse
 
 }  // namespace
 
-Sensed sensed_by(const Roster& roster, const world::Observations& from, std::span<const std::string> tag_payloads) {
+ReadingSize size_of_readings(const Roster& roster, const world::Observations& from,
+                             std::span<const std::string> tag_payloads) {
   constexpr std::size_t size_of_message = 32, size_of_packet = 64;
-  Sensed sensed;
+  ReadingSize size;
   for_each(
       roster.radios, from.radio_messages.entries, [](const auto& entry) { return entry.radio; },
       [&](const world::RadioMessages::Entry& entry, std::size_t) {
-        sensed.add(1, size_of_message, v1::counted_radio_message);
-        sensed.add_payload(entry.size);
+        size.add(1, size_of_message, v1::counted_radio_message);
+        size.add_payload(entry.size);
       });
   for_each(
-      roster.range_and_bearing, from.range_and_bearing, [](const auto& packet) { return packet.receiver; },
+      roster.range_and_bearing, from.range_and_bearing,
+      [](const auto& packet) { return packet.receiver; },
       [&](const world::RangeAndBearingPacket& packet, std::size_t) {
-        sensed.add(1, size_of_packet, v1::counted_packet);
-        sensed.add_content(packet.data.count);
+        size.add(1, size_of_packet, v1::counted_packet);
+        size.add_content(packet.data.count);
       });
-  count_cameras(roster, from, tag_payloads, sensed);
-  return sensed;
+  count_cameras(roster, from, tag_payloads, size);
+  return size;
 }
 
 void fill(const Roster& roster, const world::Observations& from,

@@ -5,26 +5,27 @@
 #include <span>
 #include <string>
 
+#include "wire/reading_size.h"
 #include "wire/roster.h"
-#include "wire/sensed.h"
 #include "world/state.h"
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::wire {
 
-/// What a session's robots hear and see.
+/// Readings of a session's robots from radios, tags and cameras.
 /// @param tag_payloads  of the same tick, for each of Layout::tags
-Sensed sensed_by(const Roster& roster, const world::Observations& from, std::span<const std::string> tag_payloads);
+ReadingSize size_of_readings(const Roster& roster, const world::Observations& from,
+                             std::span<const std::string> tag_payloads);
 
 /// The part of it that cameras see.
-void count_cameras(const Roster& roster, const world::Observations& from, std::span<const std::string> tag_payloads,
-                   Sensed& to);
+void count_cameras(const Roster& roster, const world::Observations& from,
+                   std::span<const std::string> tag_payloads, ReadingSize& to);
 
 /// Writes what they see. A camera without a picture yet sends an empty one.
 void add_cameras(const Roster& roster, const world::Observations& from,
                  std::span<const std::string> tag_payloads, v1::Observation& to);
 
-/// Writes what a session's robots sense; `to` is clear.
+/// Writes the readings of a session's robots; `to` is clear.
 /// @param tag_payloads  of the same tick, for each of Layout::tags
 void fill(const Roster& roster, const world::Observations& from,
           std::span<const std::string> tag_payloads, v1::Observation& to);

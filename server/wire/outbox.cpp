@@ -50,8 +50,8 @@ void fill(const std::vector<DeadlinePolicy>& policies, v1::Welcome& welcome) {
 
 constexpr std::size_t longest_commanded = std::size_t{1} << 20;  // [bytes]
 
-/// What was commanded last.
-/// @return  false if it is too long for a message
+/// Writes the last commands.
+/// @return  false if they are too long for a message
 bool fill(const Roster& roster, const world::Commands& commands, v1::Command& command) {
   if (payload_bytes(roster, commands) > longest_commanded) return false;
   add_channels(roster, commands, command);
@@ -94,11 +94,11 @@ v1::End::Reason reason_of(EndReason reason) {
 struct Outbox::Message {
   v1::ServerMessage message;
   std::size_t size = 0;
-  std::string text;  // its JSON, or what is sent of an answer; empty otherwise
+  std::string text;          // its JSON, or what is sent of an answer; empty otherwise
   Answer* answer = nullptr;  // the message is made from this one
 
-  // What protobuf keeps for reuse is as large as the largest of each part ever was: now and then
-  // it begins anew.
+  // Memory that protobuf keeps for reuse is as large as the largest of each part ever was: now and
+  // then it begins anew.
   std::size_t filled = 0;  // [bytes] of parts whose size changes, since it last did
   void forget(std::size_t changing) {
     constexpr std::size_t enough = std::size_t{64} << 20;
@@ -186,9 +186,9 @@ void Outbox::refusal(const Refusal& from) {
 bool Outbox::observation(const Roster& roster, const world::Observations& observations,
                          std::span<const std::string> tag_payloads, std::size_t limit,
                          std::optional<std::uint64_t> epoch) {
-  const Sensed sensed = sensed_by(roster, observations, tag_payloads);
-  if (sensed.size > limit || sensed.memory > v1::most_counted) return false;
-  message_->forget(sensed.payloads);
+  const ReadingSize needed = size_of_readings(roster, observations, tag_payloads);
+  if (needed.size > limit || needed.memory > v1::most_counted) return false;
+  message_->forget(needed.payloads);
   v1::Observation& observation = *message_->message.mutable_observation();
   observation.Clear();
   fill(roster, observations, tag_payloads, observation);
@@ -206,7 +206,8 @@ bool world_layout(Outbox& outbox, const Run& run, const Truth& truth, WorldView&
   const std::size_t size = outbox.message_->size;
   bool fits = is_short && size <= limit;
   if (fits) {
-    view.laid_out += v1::decoded_size(layout.SerializeAsString(), *v1::WorldLayout::descriptor(), v1::most_laid_out);
+    view.laid_out += v1::decoded_size(layout.SerializeAsString(), *v1::WorldLayout::descriptor(),
+                                      v1::most_laid_out);
     fits = view.laid_out <= v1::most_laid_out;
   }
   if (!fits) layout.Clear();
@@ -216,9 +217,9 @@ bool world_layout(Outbox& outbox, const Run& run, const Truth& truth, WorldView&
 
 bool world_state(Outbox& outbox, const Truth& truth, const WorldView& view, std::size_t limit,
                  std::uint64_t epoch) {
-  const Sensed sensed = sensed_by(view, truth);
-  if (sensed.size > limit || sensed.memory > v1::most_counted) return false;
-  outbox.message_->forget(sensed.payloads);
+  const ReadingSize needed = size_of_readings(view, truth);
+  if (needed.size > limit || needed.memory > v1::most_counted) return false;
+  outbox.message_->forget(needed.payloads);
   v1::WorldState& state = *outbox.message_->message.mutable_world_state();
   state.Clear();
   fill(view, truth, state);
@@ -288,7 +289,8 @@ void Outbox::restart(const Roster& roster, const Restart& from) {
   finish();
 }
 
-void Outbox::response(std::uint64_t request, std::uint64_t tick, const std::optional<std::string>& overlapped) {
+void Outbox::response(std::uint64_t request, std::uint64_t tick,
+                      const std::optional<std::string>& overlapped) {
   v1::Response& response = *message_->message.mutable_response();
   response.Clear();
   response.set_id(request);

@@ -41,16 +41,17 @@ class Outbox {
 
   void welcome(const Run& run, const Roster& roster, const Welcome& session);
   void refusal(const Refusal& refusal);
-  /// False if it would have more than `limit` bytes in binary form, or take more memory than v1::most_counted when it is
-  /// decoded; then there is no message.
+  /// False if it would have more than `limit` bytes in binary form, or take more memory than
+  /// v1::most_counted when it is decoded; then there is no message.
   /// @param tag_payloads  of the same tick, for each of Layout::tags
   /// @param epoch         of the tick; none: the session knows of no epochs
   bool observation(const Roster& roster, const world::Observations& observations,
                    std::span<const std::string> tag_payloads,
                    std::size_t limit = max_observation_bytes,
                    std::optional<std::uint64_t> epoch = {});
-  /// Before a director's first state, and whenever what it is told of has changed. False if it would have
-  /// more than `limit` bytes in binary form; then there is no message, and the view is of no use any more.
+  /// Before a director's first state, and whenever what it is told of has changed. False if it
+  /// would have more than `limit` bytes in binary form; then there is no message, and the view is
+  /// of no use any more.
   friend bool world_layout(Outbox& outbox, const Run& run, const Truth& truth, WorldView& view,
                            std::size_t limit);
   /// False if it would have more than `limit` bytes in binary form; then there is no message.
@@ -62,7 +63,8 @@ class Outbox {
   void restart(const Roster& roster, const Restart& restart);
   // A request was done at this tick, with its result.
   /// @param overlapped  is_free: id of the entity that is at the place, or empty
-  void response(std::uint64_t request, std::uint64_t tick, const std::optional<std::string>& overlapped = {});
+  void response(std::uint64_t request, std::uint64_t tick,
+                const std::optional<std::string>& overlapped = {});
   void response(std::uint64_t request, const Status& status);
   /// @param entities  into Layout::entities, ascending;  @param hash  16 hexadecimal digits
   void response(std::uint64_t request, const world::Layout& layout, const world::State& state,

@@ -120,7 +120,7 @@ class Reader final : public nlohmann::json_sax<json> {
     return put({*levels_.back().message, *field}, value) ||
            complain(fmt::format("'{}' can't have that value", name_));
   }
-  /// Of the fields of which a message has one at most.
+  /// Whether no other field of the same oneof is set.
   bool is_only_one_of_its_kind() {
     const Message& owner = *levels_.back().message;
     const auto* choice = known()->real_containing_oneof();
@@ -154,7 +154,8 @@ class Reader final : public nlohmann::json_sax<json> {
 
 std::string read_json(std::string_view text, Message& message) {
   // nlohmann's parser takes it for the end of the text.
-  if (const std::size_t nul = text.find('\0'); nul != text.npos) return fmt::format("not JSON at byte {}", nul + 1);
+  if (const std::size_t nul = text.find('\0'); nul != text.npos)
+    return fmt::format("not JSON at byte {}", nul + 1);
   Reader reader(message);
   const bool is_right =
       json::sax_parse(text.begin(), text.end(), &reader, json::input_format_t::json, true);

@@ -1,7 +1,7 @@
 #pragma once
-// protobuf's canonical JSON, read as strictly as RFC 8259 has it. protobuf's own parser also takes
-// single quotes, names without quotes, trailing commas and a text where a list belongs, and it may
-// end the process if memory runs out.
+// Parser of protobuf's canonical JSON, as strict as RFC 8259. protobuf's own parser also takes
+// single quotes, names without quotes, trailing commas, and a text in place of a list. It may end
+// the process if memory runs out.
 
 #include <google/protobuf/message.h>
 
@@ -10,7 +10,7 @@
 
 namespace ziggurat::wire {
 
-/// How deep objects and arrays may be nested, unknown fields included.
+/// Greatest depth of nested objects and arrays, unknown fields included.
 inline constexpr std::size_t deepest_json = 64;
 
 /// Adds what the text says to an empty message. Unknown fields are ignored, and names of unknown

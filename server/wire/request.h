@@ -33,21 +33,22 @@ struct Request {
   Kind kind = Kind::none;
   std::uint64_t ticks = 0;            ///< step
   std::optional<std::uint64_t> seed;  ///< reset
-  /// spawn: XML; remove, move, set_joint: id of an entity; snapshot, restore: its name; shutdown: the reason, or
-  /// nothing; is_free: one of the first two
+  /// spawn: XML; remove, move, set_joint: id of an entity; snapshot, restore: its name; shutdown:
+  /// the reason, or nothing; is_free: one of the first two
   std::string text;
-  bool is_element = false;   ///< is_free: the text is XML
-  bool may_overlap = false;  ///< move: also onto others
+  bool is_element = false;            ///< is_free: the text is XML
+  bool may_overlap = false;           ///< move: also onto others
   std::vector<std::string> entities;  ///< read: ids or globs
-  std::vector<std::string> held_up;   ///< ids of robots or directors whose sessions can't answer before the Response
-  std::vector<double> position;       ///< move, is_free: as given; x, y, z [m] if it is right
-  std::vector<double> orientation;    ///< move, is_free: as given; w, x, y, z or nothing
-  std::string joint;                  ///< set_joint: its id
-  double joint_position = 0;          ///< set_joint: as given [m] or [rad]
-  double joint_velocity = 0;          ///< set_joint: as given [m/s] or [rad/s]
+  std::vector<std::string>
+      held_up;  ///< ids of robots or directors whose sessions can't answer before the Response
+  std::vector<double> position;     ///< move, is_free: as given; x, y, z [m] if it is right
+  std::vector<double> orientation;  ///< move, is_free: as given; w, x, y, z or nothing
+  std::string joint;                ///< set_joint: its id
+  double joint_position = 0;        ///< set_joint: as given [m] or [rad]
+  double joint_velocity = 0;        ///< set_joint: as given [m/s] or [rad/s]
 };
 
-/// Of wall time [s].
+/// Percentiles of wall time [s].
 struct Latency {
   double p50 = 0, p99 = 0, max = 0;
 };
@@ -67,7 +68,7 @@ struct SessionStatus {
   std::string director;  ///< its id
 };
 
-/// How well the physics' solver did since the world began.
+/// Convergence of the physics' solver since the world began.
 struct SolverStatus {
   std::uint64_t islands = 0;        ///< of bodies that touch, solved over all substeps
   std::uint64_t not_converged = 0;  ///< of them
@@ -93,7 +94,7 @@ struct Status {
   };
   std::vector<PhaseBudget> budget;
   double wall_uptime_s = 0;
-  SolverStatus solver;  ///< without islands: the solver does not tell
+  SolverStatus solver;
   std::vector<world::Metric> metrics;  ///< last values, in scene order
 };
 

@@ -100,7 +100,8 @@ void fill(const Status& from, v1::Status& to) {
   for (const SessionStatus& session : from.sessions) fill(session, *to.add_sessions());
   for (const std::string& robot : from.free_robots) to.add_free_robots(v1::valid_utf8(robot));
   for (const std::string& robot : from.gone_robots) to.add_gone_robots(v1::valid_utf8(robot));
-  for (const std::string& director : from.free_directors) to.add_free_directors(v1::valid_utf8(director));
+  for (const std::string& director : from.free_directors)
+    to.add_free_directors(v1::valid_utf8(director));
   for (const Status::PhaseBudget& phase : from.budget) {
     v1::PhaseBudget& budget = *to.add_budget();
     budget.set_phase(phase.phase);

@@ -1,6 +1,6 @@
 #pragma once
-// The robots of one session, and where each device value stands: in the session's packed arrays
-// on one side, in the world's flat arrays on the other.
+// Robots of one session, and the position of each device value: in the session's packed arrays on
+// one side, in the world's flat arrays on the other.
 
 #include <array>
 #include <cstddef>

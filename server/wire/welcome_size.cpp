@@ -7,7 +7,8 @@
 namespace ziggurat::wire {
 namespace {
 
-// Beside descriptions a Welcome has up to 1 MiB of commanded values, and of each robot a deadline's policy and whether it is gone.
+// Beside descriptions a Welcome has up to 1 MiB of commanded values, and of each robot a deadline's
+// policy and whether it is gone.
 constexpr std::size_t other_bytes = std::size_t{2} << 20, other_fields = std::size_t{1} << 17;
 constexpr std::size_t policy_bytes = 24, policy_fields = 4;
 
@@ -15,7 +16,9 @@ struct Extent {
   std::size_t bytes = other_bytes;
   std::size_t fields = other_fields;
 
-  bool is_decoded() const { return bytes <= v1::longest_sent_once && fields <= v1::most_fields_sent_once; }
+  bool is_decoded() const {
+    return bytes <= v1::longest_sent_once && fields <= v1::most_fields_sent_once;
+  }
 };
 
 }  // namespace
@@ -29,7 +32,9 @@ bool are_decoded(const Run& run, std::span<const std::size_t> robots) {
     describe(run, robot, description);
     const std::string bytes = description.SerializeAsString();
     extent.bytes += bytes.size() + policy_bytes;
-    extent.fields += 1 + policy_fields + v1::count_fields(bytes, *description.GetDescriptor(), v1::most_fields_sent_once);
+    extent.fields +=
+        1 + policy_fields +
+        v1::count_fields(bytes, *description.GetDescriptor(), v1::most_fields_sent_once);
     if (!extent.is_decoded()) return false;
   }
   return true;

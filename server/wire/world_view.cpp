@@ -20,8 +20,8 @@ void append(const math::Pose& from, Numbers& to) {
   for (const double value : world::numbers(from)) to.Add(value);
 }
 
-/// Calls visit(index into the layout's list) for each device of a kind that an entity carries. The lists
-/// ascend by entity.
+/// Calls visit(index into the layout's list) for each device of a kind that an entity carries. The
+/// lists ascend by entity.
 template <class Device, class Visit>
 void for_each_of(const std::vector<Device>& devices, std::size_t entity, Visit visit) {
   auto device = std::ranges::lower_bound(devices, entity, {},
@@ -174,26 +174,27 @@ bool fill(WorldView& view, const Truth& truth, const std::vector<scene::Controll
   return true;
 }
 
-Sensed sensed_by(const WorldView& view, const Truth& truth) {
-  Sensed sensed;
+ReadingSize size_of_readings(const WorldView& view, const Truth& truth) {
+  ReadingSize size;
   const Subscription& wanted = view.subscription;
   if (wanted.radio_messages) {
     for (const auto& entry : truth.observations.radio_messages.entries) {
       if (view.radio_places[entry.radio] < 0) continue;
-      sensed.add(1, 2, v1::counted_radio_message);
-      sensed.add_payload(entry.size);
+      size.add(1, 2, v1::counted_radio_message);
+      size.add_payload(entry.size);
     }
   }
   for (const std::size_t index : view.entities) {
     const world::EntityLayout& entity = truth.layout.entities[index];
-    if (wanted.leds) sensed.add(entity.leds.count + entity.directional_leds.count, 1, v1::counted_color);
+    if (wanted.leds)
+      size.add(entity.leds.count + entity.directional_leds.count, 1, v1::counted_color);
     const world::Range& tags = entity.tags;
     for (std::size_t t = tags.begin; wanted.tags && t < tags.end(); ++t) {
-      sensed.add(1, 2, v1::counted_payload);
-      sensed.add_payload(truth.state.tag_payloads[t].size());
+      size.add(1, 2, v1::counted_payload);
+      size.add_payload(truth.state.tag_payloads[t].size());
     }
   }
-  return sensed;
+  return size;
 }
 
 void fill(const WorldView& view, const Truth& truth, v1::WorldState& to) {
@@ -218,7 +219,8 @@ void fill(const WorldView& view, const Truth& truth, v1::WorldState& to) {
     }
   }
   if (wanted.magnets) {
-    for (const std::size_t magnet : view.magnets) append(state.magnet_fields[magnet], *to.mutable_magnets());
+    for (const std::size_t magnet : view.magnets)
+      append(state.magnet_fields[magnet], *to.mutable_magnets());
   }
   if (wanted.radio_messages) add_radio_messages(view, truth, to);
   if (wanted.contacts) add_contacts(view, truth, to);

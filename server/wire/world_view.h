@@ -1,5 +1,5 @@
 #pragma once
-// What a director is told: the world's true state, of the entities that it subscribed to.
+// World view of a director: the true state of the entities that it subscribed to.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 #include "scene/scene.h"
 #include "wire/messages.h"
-#include "wire/sensed.h"
+#include "wire/reading_size.h"
 #include "world/contact.h"
 #include "world/layout.h"
 #include "world/state.h"
@@ -29,7 +29,8 @@ struct Truth {
   const std::vector<world::Contact>& contacts;
 };
 
-/// The entities that a session is told of, and where their parts stand in its arrays. It only grows.
+/// The entities that a session is told of, and where their parts stand in its arrays. It only
+/// grows.
 struct WorldView {
   Subscription subscription;
   std::vector<std::size_t> entities;  ///< into Layout::entities, in scene order
@@ -57,7 +58,7 @@ bool fill(WorldView& view, const Truth& truth, const std::vector<scene::Controll
           std::size_t limit, v1::WorldLayout& to);
 
 /// The parts of a state whose number or size is not that of devices alone.
-Sensed sensed_by(const WorldView& view, const Truth& truth);
+ReadingSize size_of_readings(const WorldView& view, const Truth& truth);
 /// The state in the order of the view; `to` is clear.
 void fill(const WorldView& view, const Truth& truth, v1::WorldState& to);
 

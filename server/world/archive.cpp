@@ -28,7 +28,8 @@ void archive_messages(math::Archive& archive, const Layout& layout, RadioMessage
   archive.list("bytes", messages.bytes);
   archive.list("entries", messages.entries, [&](RadioMessages::Entry& entry) {
     math::archive_index(archive, "radio", entry.radio, layout.radios.size());
-    math::archive_index(archive, "sender", entry.sender, std::max<std::size_t>(layout.radios.size(), 1));
+    math::archive_index(archive, "sender", entry.sender,
+                        std::max<std::size_t>(layout.radios.size(), 1));
     archive_range(archive, entry.begin, entry.size, messages.bytes.size());
   });
 }
@@ -107,7 +108,8 @@ void archive_sights(math::Archive& archive, const Layout& layout, const State& s
     archive.list("image", image.rgb);
     const auto [width, height] = layout.cameras[image.camera].resolution;
     const std::size_t size = std::size_t{3} * width * height;
-    archive.require(image.rgb.empty() || image.rgb.size() == size, "has another size than its camera");
+    archive.require(image.rgb.empty() || image.rgb.size() == size,
+                    "has another size than its camera");
   }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// What is true at a tick, in an archive. What indexes a list is checked against the layout.
+// State of a tick in an archive. Indices into lists are checked against the layout.
 
 #include "math/archive.h"
 #include "world/commands.h"

@@ -30,7 +30,7 @@ struct Commands;
 struct State;
 struct EntityLayout;
 
-/// Where a robot's values stand in the array of a channel.
+/// Range of a robot's values in the array of a channel.
 using DevicesOf = Range (*)(const DeviceLists&, const DeviceRanges&);
 /// Id of the device at a place of that array.
 using IdOf = const std::string& (*)(const DeviceLists&, std::size_t);
@@ -69,7 +69,7 @@ struct ByHand {
 template <class Owner, class T>
 ByHand(T Owner::*, Hashed) -> ByHand<Owner, T>;
 
-/// What a robot senses.
+/// Channel of a robot's readings.
 template <class T>
 struct Sensed {
   std::vector<T> Observations::*values;
@@ -79,7 +79,7 @@ struct Sensed {
   Hashed hashed = Hashed::second;
 };
 
-/// What others can perceive of an entity.
+/// Channel of an entity's visible state.
 template <class T>
 struct Shown {
   std::vector<T> State::*values;
@@ -96,10 +96,10 @@ struct Rule {
   bool limits_size = false;
 };
 
-/// What becomes of a channel's values when their robot leaves.
+/// Treatment of a channel's values when their robot leaves.
 enum class Released { kept, zeroed };
 
-/// What a robot sets.
+/// Channel of a robot's commands.
 template <class T>
 struct Commanded {
   std::vector<T> Commands::*values;
@@ -189,7 +189,7 @@ std::array<double, sizeof(T) / sizeof(double)> numbers(const T& value) {
   return std::bit_cast<std::array<double, sizeof(T) / sizeof(double)>>(value);
 }
 
-/// How many values of a message a value is: one unless it is several numbers.
+/// Number of message values per value: one unless it is several numbers.
 template <class T>
 inline constexpr std::size_t width = 1;
 template <Numbers T>

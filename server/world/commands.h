@@ -1,5 +1,5 @@
 #pragma once
-// What a robot sets. All arrays are in scene order and indexed by the lists of Layout. A field of
+// Commands of robots. All arrays are in scene order and indexed by the lists of Layout. A field of
 // Commands has its row in the table below it.
 
 #include <cmath>
@@ -15,7 +15,7 @@
 
 namespace ziggurat::world {
 
-/// How a turret turns.
+/// Control mode of a turret.
 enum class TurretMode : std::uint8_t { passive, position, speed };
 
 struct WheelsCommand {
@@ -29,7 +29,7 @@ struct Push {
   math::Vector3 torque = math::Vector3::Zero();  ///< in W [N m]
 };
 
-/// What all robots want. Values persist until changed; initially they are those of the scene.
+/// Commands of all robots. Values persist until changed; initially they are those of the scene.
 /// Values of entities that no robot may set stay.
 struct Commands {
   std::vector<double> joint_targets;  ///< [m], [rad], [m/s] or [rad/s] by the actuator's mode

@@ -1,5 +1,5 @@
-// Each field of what is true at one tick is in its table. The compiler takes a second for it: here, not in each source
-// that includes the tables.
+// Each field of what is true at one tick is in its table. The compiler takes a second for it: here,
+// not in each source that includes the tables.
 
 #include "world/channel.h"
 #include "world/commands.h"

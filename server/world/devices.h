@@ -22,7 +22,7 @@ namespace ziggurat::world {
 /// A colour as 0xRRGGBB. 0 is off: not visible to anyone.
 using Color = std::uint32_t;
 
-/// Where a device is fixed.
+/// Mount of a device.
 struct Mount {
   std::size_t entity = 0;           ///< into Layout::entities and State::origins
   std::optional<std::size_t> link;  ///< into State::links; none: the entity's origin frame
@@ -114,15 +114,15 @@ struct BatteryLayout {
   std::size_t entity = 0;
 };
 
-/// What a camera looks for, and on which medium.
+/// Targets of a camera's detector, and their medium.
 struct DetectorLayout {
   std::size_t medium = 0;   ///< into scene::Scene::media
   bool shows_rays = false;  ///< its lines of sight go to State::rays
 };
 
-/// A pinhole camera of a robot whose controller has the sensor. A point at (X, Y, Z) in the
-/// camera's frame, +z forward, +x right, +y down, is seen at u = fx X/Z + cx, v = fy Y/Z + cy:
-/// real pixels from the image's top left corner, u to the right, v down.
+/// A pinhole camera of a robot whose controller has the sensor. Its frame has +z forward, +x right
+/// and +y down. A point (X, Y, Z) of it is seen at u = fx X/Z + cx, v = fy Y/Z + cy. These are real
+/// pixels from the image's top left corner, u to the right, v down.
 struct CameraLayout {
   std::string id;
   Mount mount;
@@ -184,8 +184,8 @@ struct DeviceLists {
   std::vector<ContactSensorLayout> contact_sensors;
 };
 
-/// Those of one robot: into the list of the same name. Empty unless its controller enables them.
-/// Of range and bearing, positioning, batteries, wheels and turrets a robot has at most one.
+/// Devices of one robot: into the list of the same name. Empty unless its controller enables them.
+/// A robot has at most one of range and bearing, positioning, batteries, wheels and turrets.
 struct DeviceRanges {
   Range joint_sensors, joint_actuators;
   Range radios;
@@ -244,13 +244,13 @@ struct WheelsReading {
 
 /// In the frame of the sensor, means over the last tick.
 struct ImuReading {
-  /// What an accelerometer feels [m/s^2]: acceleration minus that of free fall. At rest it points
-  /// up with the strength of gravity, in free fall it is 0.
+  /// Specific force of an accelerometer [m/s^2]: acceleration minus that of free fall. At rest it
+  /// points up with the strength of gravity, in free fall it is 0.
   std::array<double, 3> acceleration{};
   std::array<double, 3> angular_velocity{};  ///< relative to the world [rad/s]
 };
 
-/// What touched a link during the last tick: other entities and the floor.
+/// Contacts of a link during the last tick, with other entities and the floor.
 struct ContactReading {
   double touches = 0;             ///< 1: something did, if only for a substep; 0: nothing
   std::array<double, 3> force{};  ///< sum of all contact forces on the link, normal and friction,
@@ -266,7 +266,7 @@ struct Image {
   std::vector<std::uint8_t> rgb;
 };
 
-/// What all robots sense at one tick.
+/// Readings of all robots at one tick.
 struct Observations {
   std::uint64_t tick = 0;
   std::int64_t time_ns = 0;

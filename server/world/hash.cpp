@@ -1,10 +1,11 @@
 // The fields of State and Observations in the order of their tables: those that are hashed first,
 // then the others.
 
+#include "math/hash.h"
+
 #include <span>
 #include <string_view>
 
-#include "math/hash.h"
 #include "world/state.h"
 
 namespace ziggurat::world {

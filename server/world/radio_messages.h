@@ -10,9 +10,9 @@ namespace ziggurat::world {
 /// Messages of radios. Their bytes stand in one buffer, and may be shared by several messages.
 struct RadioMessages {
   struct Entry {
-    std::size_t radio = 0;  ///< into Layout::radios
-    std::size_t begin = 0;  ///< into `bytes`
-    std::size_t size = 0;   ///< [bytes], may be 0
+    std::size_t radio = 0;   ///< into Layout::radios
+    std::size_t begin = 0;   ///< into `bytes`
+    std::size_t size = 0;    ///< [bytes], may be 0
     std::size_t sender = 0;  ///< of a message that was received: into Layout::radios
   };
   std::vector<Entry> entries;

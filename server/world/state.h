@@ -1,5 +1,5 @@
 #pragma once
-// What is true at one tick.
+// State of the world at one tick.
 
 #include <array>
 #include <cstddef>
@@ -36,7 +36,7 @@ struct Ray {
   bool hit = false;  ///< not radio: an entity was met at `end`
 };
 
-/// What a camera can see, from its near to its far plane; of cameras that ask for it.
+/// Frustum of a camera from its near to its far plane, if the camera asks for it.
 struct Frustum {
   std::size_t camera = 0;                ///< into Layout::cameras
   std::array<math::Vector3, 8> corners;  ///< in W [m]: of the near plane, then of the far one, each
@@ -51,7 +51,7 @@ struct State {
   std::vector<bool> absent;         ///< per entity: it was removed, its places hold what was there
                                     ///< last; may be shorter: the rest is present
 
-  // What others can perceive; each as long as its list in Layout.
+  // Visible state of entities; each array is as long as its list in Layout.
   std::vector<Color> led_colors;
   std::vector<Color> directional_led_colors;
   std::vector<std::string> tag_payloads;             ///< any bytes
@@ -82,7 +82,7 @@ inline constexpr std::tuple state_fields{
 
 /// X_WD of a device.
 math::Pose pose_of(const State& state, const Mount& mount);
-/// Of a device's origin, in W [m].
+/// Position of a device's origin, in W [m].
 math::Vector3 position_of(const State& state, const Mount& mount);
 
 /// Hash of a state and what was sensed in it: equal for equal runs, whatever the transport.

@@ -16,7 +16,8 @@ TEST(Hello, H2_AHelloWithoutVersionIsToldThat) {
   const auto refusal = peers.told("p").refusal();
   EXPECT_EQ(refusal.error().code(), v1::Error::VERSION_MISMATCH);
   EXPECT_EQ(refusal.error().message(),
-            "The Hello has no major version of the protocol; write the one of the client, as 1.4, the server's.");
+            "The Hello has no major version of the protocol; write the one of the client, as 1.4, "
+            "the server's.");
 }
 
 TEST(Hello, H9_AWelcomeThatClientsDoNotDecodeIsTooLarge) {

@@ -93,7 +93,7 @@ TEST(Deadline, W2_ADeadConnectionIsUnderTheSamePolicy) {
   pair.peers.pass(milliseconds{0});
   EXPECT_TRUE(pair.peers.is_complete()) << "no tick waits for it any more";
   EXPECT_EQ(pair.target(), 3);
-  // A session takes it: the tick in hand waits again, and the robot obeys.
+  // A session takes it: the current tick waits again, and the robot obeys.
   pair.peers.publish(7);
   pair.peers.say("q", Peers::command(7));
   pair.peers.join("heir", "robot0");
@@ -122,8 +122,8 @@ TEST(Deadline, W2_ATickThatWasMissedIsNotAwaitedOnceMoreWhenTheConnectionGoes) {
   EXPECT_FALSE(pair.peers.take_report().stopped.empty()) << "and two are not";
 }
 
-/// Clients take the robot one after the other and are gone before its deadline of 50 ms, as a program does that
-/// crashes and is started again.
+/// Clients take the robot one after the other and are gone before its deadline of 50 ms. A program
+/// does so that crashes and is started again.
 void crash_again_and_again(Pair& pair, int times) {
   for (int i = 0; i < times; ++i) {
     const std::string client = "crashes" + std::to_string(i);
@@ -155,9 +155,8 @@ TEST(Deadline, W11_ResumingATickAgainAndAgainHoldsItForThreeDeadlines) {
   Pair pair(with_deadline(DeadlineAction::hold, 50));
   auto resume = Peers::hello("");
   resume.mutable_hello()->clear_robots();
-  resume.mutable_hello()->set_session_token(pair.peers.barrier.sessions
-                                                .find(pair.peers.barrier.seats[0].holder)
-                                                ->token);
+  resume.mutable_hello()->set_session_token(
+      pair.peers.barrier.sessions.find(pair.peers.barrier.ownership[0].holder)->token);
   for (int i = 0; i < 3; ++i) {  // over a new connection each time, as L8 allows
     pair.peers.pass(milliseconds{40});
     pair.peers.say("again" + std::to_string(i), resume);

@@ -1,4 +1,5 @@
-// Limits of docs/protocol.md that follow from the robots of a session: T4, K5, D5. A test is named after its rule.
+// Limits of docs/protocol.md that follow from the robots of a session: T4, K5, D5. A test is named
+// after its rule.
 
 #include <gtest/gtest.h>
 
@@ -66,9 +67,11 @@ TEST(Transport, T4_AControllerMaySendWhatItsRobotsNeed) {
     small.layout().radios.resize(2);
     small.layout().radios[1].sends = true;
     small.layout().robots[1].radios = {0, 1};
-    EXPECT_LT(peers.join("q", "robot1").max_message_bytes(), shared + (64 << 10)) << "it can't send";
+    EXPECT_LT(peers.join("q", "robot1").max_message_bytes(), shared + (64 << 10))
+        << "it can't send";
     small.layout().robots[2].radios = {1, 1};
-    EXPECT_GE(peers.join("r", "robot2").max_message_bytes(), shared + (in_json ? 128 << 10 : 2 << 20));
+    EXPECT_GE(peers.join("r", "robot2").max_message_bytes(),
+              shared + (in_json ? 128 << 10 : 2 << 20));
   }
 }
 
@@ -91,7 +94,10 @@ TEST_F(Radios, D5_ASessionThatWouldHearTooMuchIsLost) {
   EXPECT_EQ(error.severity(), v1::Error::FATAL);
   const auto notices = peers.take_report().notices;
   ASSERT_EQ(notices.size(), 1U);
-  EXPECT_NE(notices[0].find("is lost: its robots heard and saw more at a tick than a message can hold; share them among more sessions"), std::string::npos) << notices[0];
+  EXPECT_NE(notices[0].find("is lost: its robots heard and saw more at a tick than a message can "
+                            "hold; share them among more sessions"),
+            std::string::npos)
+      << notices[0];
   EXPECT_EQ(peers.told("q").observation().tick(), 6U);
   EXPECT_FALSE(peers.is_complete());
 }

@@ -69,7 +69,8 @@ inline v1::ClientMessage pushes(std::uint64_t tick, std::vector<double> force) {
 
 /// Two robots that "c" has, and the directors `judge` and, with a deadline of 50 ms, `hasty`.
 struct Directing : ::testing::Test {
-  explicit Directing(const Config& config = {}) : small(make_run()), peers(small, config), boxes(2) {
+  explicit Directing(const Config& config = {})
+      : small(make_run()), peers(small, config), boxes(2) {
     peers.say("c", Peers::hello("*"));
     peers.inboxes.clear();
   }
@@ -96,7 +97,7 @@ struct Directing : ::testing::Test {
     const wire::Truth truth = boxes.truth();
     network::publish(peers.barrier, peers.observations, peers.payloads, &truth);
   }
-  /// What "p" was told since it was last asked.
+  /// Messages to "p" since the last call.
   std::vector<v1::ServerMessage> told() { return std::exchange(peers.inboxes["p"], {}); }
   Ids answered() {
     Ids ids;

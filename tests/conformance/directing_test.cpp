@@ -19,7 +19,8 @@ struct DirectingFromOutside : Directing {
   DirectingFromOutside() : Directing(open_config()) {}
 };
 
-/// Policies of the command line, and a link that delays what the judge is told by 5 ms, and what it answers.
+/// Policies of the command line, and a link that delays what the judge is told by 5 ms, and what it
+/// answers.
 struct DirectingByOptions : Directing {
   static Config make_config() {
     const Config::Deadline fixed{{scene::DeadlineAction::hold, 50, 0}, true};

@@ -1,7 +1,6 @@
-// What the server asks about directors at each tick takes no memory.
+// Questions of the server about directors at each tick take no memory.
 
 #include "allocations/allocations.h"
-
 #include "directed_run.h"
 
 namespace ziggurat::network {

@@ -1,5 +1,5 @@
-// What directors are told and answer (docs/protocol.md, R3 to R11). What their acts do to a world is tested by
-// tests/scenes/directing_test.py.
+// Messages to directors and their answers (docs/protocol.md, R3 to R11). The effect of their acts
+// on a world is tested by tests/scenes/directing_test.py.
 
 #include <gtest/gtest.h>
 
@@ -107,7 +107,8 @@ TEST_F(Directing, R5_ContactsAreToldByTheirLinks) {
   hello.mutable_hello()->mutable_subscription()->add_groups(v1::Subscription::CONTACTS);
   peers.say("p", hello);
   boxes.contacts.emplace_back().link = 0;
-  boxes.contacts.push_back({.link = 0, .other = 1, .point = {1, 2, 3}, .normal = {0, 0, 1}, .force = {0, 0, 5}});
+  boxes.contacts.push_back(
+      {.link = 0, .other = 1, .point = {1, 2, 3}, .normal = {0, 0, 1}, .force = {0, 0, 5}});
   boxes.contacts.emplace_back().link = 1;
   peers.inboxes.clear();
   publish(5);
@@ -142,8 +143,11 @@ TEST_F(Directing, R7_AWrongDirectionHasNoEffect) {
 TEST_F(Directing, R8_ValuesAreBounded) {
   begin();
   const double infinity = std::numeric_limits<double>::infinity();
-  for (const std::vector<double>& force : {std::vector<double>{1, 2}, {1, 2, 3, 4}, {infinity, 0, 0},
-                                           {0, std::numeric_limits<double>::quiet_NaN(), 0}, {0, 0, -1.1e6}}) {
+  for (const std::vector<double>& force : {std::vector<double>{1, 2},
+                                           {1, 2, 3, 4},
+                                           {infinity, 0, 0},
+                                           {0, std::numeric_limits<double>::quiet_NaN(), 0},
+                                           {0, 0, -1.1e6}}) {
     const v1::Error error = faulted(peers, pushes(5, force));
     EXPECT_EQ(error.code(), v1::Error::BAD_VALUE);
     EXPECT_EQ(error.field(), "acts[0].push.force");
@@ -152,7 +156,8 @@ TEST_F(Directing, R8_ValuesAreBounded) {
   show.mutable_direction()->add_acts()->mutable_show()->add_led_colors(0x1000000);
   EXPECT_EQ(faulted(peers, show).code(), v1::Error::BAD_VALUE);
   show.mutable_direction()->mutable_acts(0)->mutable_show()->clear_led_colors();
-  show.mutable_direction()->mutable_acts(0)->mutable_show()->add_tag_payloads(std::string(65537, 'x'));
+  show.mutable_direction()->mutable_acts(0)->mutable_show()->add_tag_payloads(
+      std::string(65537, 'x'));
   EXPECT_EQ(faulted(peers, show).code(), v1::Error::TOO_LARGE);
   auto empty = direction(5);
   empty.mutable_direction()->add_acts();
@@ -165,7 +170,8 @@ TEST_F(Directing, K5_ADirectionHas10000ActsAnd1000Lines) {
   for (int i = 0; i < 1001; ++i) lines.mutable_direction()->add_log();
   EXPECT_EQ(faulted(peers, lines).code(), v1::Error::TOO_MANY);
   auto acts = direction(5);
-  for (int i = 0; i < 10001; ++i) acts.mutable_direction()->add_acts()->mutable_push()->set_entity("b0");
+  for (int i = 0; i < 10001; ++i)
+    acts.mutable_direction()->add_acts()->mutable_push()->set_entity("b0");
   EXPECT_EQ(faulted(peers, acts).code(), v1::Error::TOO_MANY);
   acts.mutable_direction()->mutable_acts()->RemoveLast();
   peers.say("p", acts);
@@ -180,7 +186,8 @@ TEST_F(Directing, K5_ADirectionHas4MiB) {
   auto spawn = direction(5);
   spawn.mutable_direction()->add_acts()->mutable_spawn()->set_xml(std::string(4 << 20, ' '));
   EXPECT_EQ(faulted(peers, spawn).code(), v1::Error::TOO_LARGE);
-  spawn.mutable_direction()->mutable_acts(0)->mutable_spawn()->set_xml(std::string((1 << 20) - 100, ' '));
+  spawn.mutable_direction()->mutable_acts(0)->mutable_spawn()->set_xml(
+      std::string((1 << 20) - 100, ' '));
   peers.say("p", spawn);
   EXPECT_EQ(answered(), Ids{"judge"});
 }
@@ -188,7 +195,8 @@ TEST_F(Directing, K5_ADirectionHas4MiB) {
 TEST_F(Directing, K5_ADirectionSpawns1000Entities) {
   begin();
   auto spawns = direction(5);
-  for (int i = 0; i < 1001; ++i) spawns.mutable_direction()->add_acts()->mutable_spawn()->set_xml("<box />");
+  for (int i = 0; i < 1001; ++i)
+    spawns.mutable_direction()->add_acts()->mutable_spawn()->set_xml("<box />");
   const auto error = faulted(peers, spawns);
   EXPECT_EQ(error.code(), v1::Error::TOO_MANY);
   EXPECT_NE(error.message().find("1000"), std::string::npos);

@@ -1,4 +1,5 @@
-// The rules of docs/protocol.md on heartbeats and rates (section 4). A test is named after the rule it holds.
+// The rules of docs/protocol.md on heartbeats and rates (section 4). A test is named after the rule
+// it holds.
 
 #include <gtest/gtest.h>
 

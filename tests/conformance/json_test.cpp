@@ -1,5 +1,5 @@
-// Rule T6 of docs/protocol.md, the JSON twin. The kit plays its cases in both forms; here is what depends on the
-// text itself.
+// Rule T6 of docs/protocol.md, the JSON twin. The kit plays its cases in both forms; here is what
+// depends on the text itself.
 
 #include <gtest/gtest.h>
 
@@ -139,11 +139,11 @@ TEST_F(Twin, T6_WhatIsNotJsonIsMalformed) {
 TEST_F(Twin, T6_WhatDoesNotMatchTheMessageIsMalformed) {
   const std::string start = R"({"hello":{"version":{"major":1},"role":"ROLE_CONTROLLER",)";
   for (const std::string& text : {
-           start + R"("robots":"*"}})",           // a text for a list
-           start + R"("robots":[["*"]]}})",       // a list for a text
-           start + R"("robots":["*",null]}})",    // nothing for a text
-           start + R"("robots":[7]}})",           // a number for a text
-           start + R"("robots":{"0":"*"}}})",     // an object for a list
+           start + R"("robots":"*"}})",         // a text for a list
+           start + R"("robots":[["*"]]}})",     // a list for a text
+           start + R"("robots":["*",null]}})",  // nothing for a text
+           start + R"("robots":[7]}})",         // a number for a text
+           start + R"("robots":{"0":"*"}}})",   // an object for a list
            start + R"("robots":["*"],"takeover":"true"}})",
            start + R"("robots":["*"],"takeover":1}})",
            start + R"("robots":["*"],"clientName":7}})",

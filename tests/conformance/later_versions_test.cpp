@@ -1,5 +1,5 @@
-// Of what versions 1.1 and 1.2 of the protocol add (docs/protocol.md: W10, L13, V15; S13, L6, V17): policies of a
-// command line, crossings of a reset, and moments between two ticks.
+// Additions of versions 1.1 and 1.2 of the protocol (docs/protocol.md: W10, L13, V15; S13, L6,
+// V17). They are policies of a command line, crossings of a reset, and moments between two ticks.
 
 #include <gtest/gtest.h>
 
@@ -137,7 +137,8 @@ TEST(LaterVersions, M4_NorWithoutEpochs) {
   EXPECT_TRUE(peers.barrier.journal.take().notices.empty());
 }
 
-/// One robot whose client can go back; at tick 5 its world goes back to tick 3, which is not published yet.
+/// One robot whose client can go back; at tick 5 its world goes back to tick 3, which is not
+/// published yet.
 struct Back {
   Back() : small(1), peers(small) {
     auto begin = hello("*", 2);
@@ -165,8 +166,8 @@ TEST(LaterVersions, L13_ASessionThatIsResumedRightAfterARestoreIsToldWhatWasComm
   run.restore();
   // While the server gathers, it does not collect commands.
   const auto resume = [&](const std::string& peer) {
-    receive(run.peers.barrier, {peer, bytes_of(hello("*", 2, run.token), run.peers.json), true, Access{}},
-            nullptr);
+    receive(run.peers.barrier,
+            {peer, bytes_of(hello("*", 2, run.token), run.peers.json), true, Access{}}, nullptr);
     return run.peers.told(peer).welcome();
   };
   const v1::Welcome welcome = resume("q");

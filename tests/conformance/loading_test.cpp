@@ -141,7 +141,7 @@ TEST_F(CrowdedLoading, K5_NoMoreWaitThanSessionsMay) {
   const auto error = refused("second");
   EXPECT_EQ(error.code(), v1::Error::TOO_MANY);
   EXPECT_TRUE(error.retryable());
-  // Those who only look on take no place of a controller, and the other way round.
+  // Observers take no place of a controller, and the other way round.
   auto observer = Peers::hello("*");
   observer.mutable_hello()->clear_robots();
   observer.mutable_hello()->set_role(v1::ROLE_OBSERVER);

@@ -1,4 +1,4 @@
-// What peers without a session leave behind: nothing, and few lines.
+// Traces that peers without a session leave behind: nothing, and few lines.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What is kept of metrics (docs/protocol.md: S14).
+// Metrics that are kept (docs/protocol.md: S14).
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,8 @@
 namespace ziggurat::network {
 namespace {
 
-v1::ClientMessage measured(std::uint64_t tick, std::uint32_t robot, const std::string& name, double value) {
+v1::ClientMessage measured(std::uint64_t tick, std::uint32_t robot, const std::string& name,
+                           double value) {
   auto message = Peers::command(tick);
   v1::Metric& metric = *message.mutable_command()->add_metrics();
   metric.set_robot(robot);

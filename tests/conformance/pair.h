@@ -43,7 +43,7 @@ struct Pair {
     zero_missing(peers.barrier, peers.commands);
     return peers.commands.joint_targets[0];
   }
-  /// "p" is silent at the tick in hand, and a new one begins for both.
+  /// "p" is silent at the current tick, and a new one begins for both.
   void miss_and_go_on(std::uint64_t next) {
     peers.pass(std::chrono::milliseconds{50});
     EXPECT_TRUE(peers.is_complete()) << next;

@@ -1,5 +1,5 @@
-// The rules of docs/protocol.md on pausing (section 3.3) and reset (L6). A test is named after the rule it
-// holds.
+// The rules of docs/protocol.md on pausing (section 3.3) and reset (L6). A test is named after the
+// rule it holds.
 
 #include <gtest/gtest.h>
 
@@ -18,11 +18,11 @@ TEST(Pause, P1_TakesEffectWhenTheLastThatOwesIsClosedForItsMessages) {
   Pair pair{Config{}};
   pair.peers.say("p", Peers::leave({0}));  // it still owes its answer
   pause(pair.peers.barrier);
-  EXPECT_FALSE(pair.peers.barrier.gate.is_standing());
+  EXPECT_FALSE(pair.peers.barrier.gate.is_halted());
   for (unsigned i = 0; i <= Config{}.max_faults; ++i) pair.peers.send_bytes("p", "\xff");
   EXPECT_EQ(pair.peers.barrier.sessions.size(), 1U);
   pair.peers.pass(milliseconds{1});
-  EXPECT_TRUE(pair.peers.barrier.gate.is_standing());
+  EXPECT_TRUE(pair.peers.barrier.gate.is_halted());
 }
 
 TEST(Pause, P1_AWorldWithoutRobotsStandsAtEachTick) {
@@ -30,10 +30,10 @@ TEST(Pause, P1_AWorldWithoutRobotsStandsAtEachTick) {
   Peers peers(small);
   peers.publish(5);
   pause(peers.barrier);
-  EXPECT_TRUE(peers.barrier.gate.is_standing());
+  EXPECT_TRUE(peers.barrier.gate.is_halted());
   restart(peers.barrier, {42});
   peers.publish(0);
-  EXPECT_TRUE(peers.barrier.gate.is_standing());
+  EXPECT_TRUE(peers.barrier.gate.is_halted());
   EXPECT_FALSE(peers.is_complete());
 }
 

@@ -40,7 +40,7 @@ class Population : public ::testing::Test {
     layout.joint_actuators.resize(2);
     network::restart(peers.barrier, {42});
   }
-  /// A client that joins while a tick is in hand is told of it, too.
+  /// A client that joins during a tick is told of it, too.
   v1::Welcome join(const std::string& peer, const std::string& robots) {
     peers.say(peer, Peers::hello(robots));
     const auto told = all_told(peer);
@@ -125,10 +125,10 @@ TEST_F(Population, V13_ALostOneIsNotWaitedForAnyMore) {
 
 TEST_F(Population, V13_APausedWorldStandsOnceNoOtherSessionOwes) {
   pause(peers.barrier);
-  EXPECT_FALSE(peers.barrier.gate.is_standing());
+  EXPECT_FALSE(peers.barrier.gate.is_halted());
   remove(0);
   remove(1);
-  EXPECT_TRUE(peers.barrier.gate.is_standing());
+  EXPECT_TRUE(peers.barrier.gate.is_halted());
 }
 
 TEST_F(Population, V14_ASessionOfSuchARobotMayStillSendLeave) {

@@ -1,4 +1,5 @@
-// The rules of docs/protocol.md on leases and tokens (section 5). A test is named after the rule it holds.
+// The rules of docs/protocol.md on leases and tokens (section 5). A test is named after the rule it
+// holds.
 
 #include <gtest/gtest.h>
 
@@ -67,7 +68,8 @@ TEST(Resume, L9_AnAnswerOfBeforeIsReplacedNotRepeated) {
   peers.say("back", command);
   EXPECT_TRUE(peers.is_complete());
   EXPECT_EQ(peers.commands.radio_messages.entries.size(), 1U);
-  EXPECT_EQ(peers.commands.radio_messages.bytes.size(), 4U) << "a client may do that again and again";
+  EXPECT_EQ(peers.commands.radio_messages.bytes.size(), 4U)
+      << "a client may do that again and again";
   peers.inboxes.clear();
   peers.say("back", command);
   EXPECT_EQ(peers.told("back").error().code(), v1::Error::DUPLICATE_TICK);

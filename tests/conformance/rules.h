@@ -1,5 +1,5 @@
 #pragma once
-// What tests of several sections of docs/protocol.md use.
+// Common parts of the tests of several sections of docs/protocol.md.
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 namespace ziggurat::network {
 
-/// What the Refusal says that "p" gets for a Hello.
+/// Refusal that "p" gets for a Hello.
 inline v1::Error refused(Peers& peers, const v1::ClientMessage& hello) {
   peers.say("p", hello);
   const v1::ServerMessage told = peers.told("p");
@@ -17,7 +17,7 @@ inline v1::Error refused(Peers& peers, const v1::ClientMessage& hello) {
   return told.refusal().error();
 }
 
-/// What the Error says that "p" gets for a message, which has no other effect.
+/// Error that "p" gets for a message, which has no other effect.
 inline v1::Error faulted(Peers& peers, const v1::ClientMessage& message) {
   const auto commands = peers.commands.joint_targets;
   peers.say("p", message);

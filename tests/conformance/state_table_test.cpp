@@ -76,7 +76,7 @@ v1::ClientMessage message_of(const std::string& name) {
   return Peers::heartbeat(9);
 }
 
-/// What was done with a message, in the table's words.
+/// Effect of a message, in the table's words.
 std::string verdict(Peers& peers, const std::string& message) {
   peers.say("p", message_of(message));
   const v1::ServerMessage answer = peers.told("p");

@@ -1,7 +1,7 @@
 // Any bytes as a server's messages to the C++ client. Its session must continue or throw one of its
-// two exceptions, and the values for controllers must be consistent. Only the socket is replaced: the
-// messages are the input, split at `separator`. The first byte selects a controller's session or a
-// supervisor.
+// two exceptions, and the values for controllers must be consistent. Only the socket is replaced:
+// the messages are the input, split at `separator`. The first byte selects a controller's session
+// or a supervisor.
 
 #include <google/protobuf/stubs/logging.h>
 
@@ -27,7 +27,7 @@ constexpr std::string_view separator = "\n--\n";
 
 std::vector<std::string_view> frames;  // not received yet, in reverse order
 double seen = 0;                       // sum of all values, so that all are read
-int waits = 0;                         // questions whether a wait is interrupted, since a frame was wanted
+int waits = 0;  // questions whether a wait is interrupted, since a frame was wanted
 
 void split(std::string_view bytes) {
   frames.clear();
@@ -72,7 +72,9 @@ class Input final : public Transport {
 
 }  // namespace
 
-std::unique_ptr<Transport> make_transport(const SessionOptions&) { return std::make_unique<Input>(); }
+std::unique_ptr<Transport> make_transport(const SessionOptions&) {
+  return std::make_unique<Input>();
+}
 
 }  // namespace ziggurat
 

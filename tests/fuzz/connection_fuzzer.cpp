@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "network/zmtp/engine.h"
 #include "http/port.h"
+#include "network/zmtp/engine.h"
 #include "require.h"
 
 namespace {

@@ -1,6 +1,6 @@
-// Runs inputs that are known, without a fuzzer: fuzz_inputs NAME FOLDER... gives the fuzzer all files of the
-// folders, each also with a changed byte, and some drawn inputs. So each build shows that the fuzzers still
-// compile, and that what they hold still holds.
+// Runs inputs that are known, without a fuzzer: fuzz_inputs NAME FOLDER... gives the fuzzer all
+// files of the folders, each also with a changed byte, and some drawn inputs. So each build shows
+// that the fuzzers still compile, and that what they hold still holds.
 
 #include <cstdint>
 #include <cstdio>
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#define FUZZER(name)                                             \
+#define FUZZER(name)                                            \
   extern "C" int fuzz_##name(const std::uint8_t*, std::size_t); \
   extern "C" __attribute__((weak)) int initialize_##name(int*, char***);
 FUZZERS

@@ -1,6 +1,6 @@
 // Any text, with a `{` in front, is read as a client's message in JSON and as a server's. A message
-// that can be read must be the one that protobuf reads, and must be writable as JSON, and readable
-// again as the same kind of message.
+// that can be read must be the one that protobuf reads. It must also be writable as JSON, and
+// readable again as the same kind of message.
 
 #include <string>
 #include <vector>
@@ -15,20 +15,22 @@ namespace {
 using namespace ziggurat;
 using fuzz::require;
 
-/// Leaves out enumerations that are no value: those are the ones that we read from an unknown name, which protobuf
-/// leaves out.
+/// Leaves out enumerations that are no value: those are the ones that we read from an unknown name,
+/// which protobuf leaves out.
 void drop_unknown_names(google::protobuf::Message& message) {
   const google::protobuf::Reflection& reflection = *message.GetReflection();
   std::vector<const google::protobuf::FieldDescriptor*> fields;
   reflection.ListFields(message, &fields);
   for (const auto* field : fields) {
     if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_ENUM) {
-      if (!field->is_repeated() && reflection.GetEnumValue(message, field) == -1) reflection.ClearField(&message, field);
+      if (!field->is_repeated() && reflection.GetEnumValue(message, field) == -1)
+        reflection.ClearField(&message, field);
     } else if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE) {
       const int count = field->is_repeated() ? reflection.FieldSize(message, field) : 1;
       for (int i = 0; i < count; ++i) {
-        drop_unknown_names(field->is_repeated() ? *reflection.MutableRepeatedMessage(&message, field, i)
-                                                : *reflection.MutableMessage(&message, field));
+        drop_unknown_names(field->is_repeated()
+                               ? *reflection.MutableRepeatedMessage(&message, field, i)
+                               : *reflection.MutableMessage(&message, field));
       }
     }
   }

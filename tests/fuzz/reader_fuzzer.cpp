@@ -1,5 +1,6 @@
-// Recordings are files of anyone. Whatever their messages say, in files that are whole otherwise: all that reads
-// them without simulating ends with what could be read, or with the sentence that says what is wrong.
+// Recordings are files of anyone. Whatever their messages say, in files that are whole otherwise:
+// all that reads them without simulating ends with what could be read, or with the sentence that
+// says what is wrong.
 
 #include <numeric>
 
@@ -61,11 +62,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const replay::RecordingFile open("recording", mcap::bytes_of(recorded.bytes()));
   recorded.edit({data, size});
   const auto all = [](const std::string&) { return true; };
-  // What is slow has its turn less often, and so do inputs that are like those that had it.
+  // Slow readers have their turn less often, and so do readers of similar inputs.
   const auto turn = std::accumulate(data, data + size, std::uint8_t{0});
   switch (turn) {
     case 0:
-      attempt([] { require(replay::RecordingFile("recording", mcap::bytes_of(recorded.bytes())).shortcoming().empty()); });
+      attempt([] {
+        require(replay::RecordingFile("recording", mcap::bytes_of(recorded.bytes()))
+                    .shortcoming()
+                    .empty());
+      });
       break;
     case 1:
       attempt([&] { replay::export_jsonl(open, all, "/dev/null"); });

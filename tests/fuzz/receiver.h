@@ -87,13 +87,14 @@ inline void receive_command(const wire::Inbox& inbox, const wire::Roster& roster
   for (const wire::LogLine& line : lines) require(line.robot < layout.robots.size());
 }
 
-/// Must not crash. A command that passes the check must write to values of the session's robots only,
-/// and only finite values.
+/// Must not crash. A command that passes the check must write to values of the session's robots
+/// only, and only finite values.
 inline void receive(std::string_view bytes) {
   static const world::Layout layout = make_layout();
   static const std::vector<std::size_t> held{0, 2};
   static const wire::Roster roster = wire::make_roster(layout, held);
-  static wire::Inbox inbox;  // one for all inputs, as in a session: messages must not affect later ones
+  static wire::Inbox
+      inbox;  // one for all inputs, as in a session: messages must not affect later ones
   switch (inbox.parse(bytes)) {
     case wire::Inbox::Kind::malformed:
     case wire::Inbox::Kind::too_large:

@@ -1,5 +1,6 @@
-// Recordings are files of anyone. Whatever their messages say, in files that are whole otherwise: a replay and the
-// poses alone end with what could be read, or with the sentence that says what is wrong.
+// Recordings are files of anyone. Whatever their messages say, in files that are whole otherwise: a
+// replay and the poses alone end with what could be read, or with the sentence that says what is
+// wrong.
 
 #include <stdexcept>
 

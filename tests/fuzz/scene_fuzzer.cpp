@@ -1,6 +1,6 @@
-// Any text is read as a scene. The reader must not crash or hang, and a scene without faults must be
-// consistent, so that later code need not check it again. A text that does not begin like a whole scene
-// becomes the content of an arena.
+// Any text is read as a scene. The reader must not crash or hang, and a scene without faults must
+// be consistent, so that later code need not check it again. A text that does not begin like a
+// whole scene becomes the content of an arena.
 
 #include <cstdint>
 #include <string>

@@ -1,7 +1,7 @@
 // Any sequence of messages, losses, pauses, resets and time, from before the world is loaded to the
-// end: what the barrier says of itself stays consistent, no session gets what is not for it,
-// nothing grows without bound, and a tick is complete once every deadline has passed. Each byte of
-// the input is a step or a detail of one.
+// end. The barrier's status stays consistent, no session gets another's messages, and nothing grows
+// without bound. A tick is complete once every deadline has passed. Each byte of the input is a
+// step or a detail of one.
 
 #include <algorithm>
 #include <array>
@@ -29,7 +29,7 @@ void Play::pass() {
   require(next_event(barrier_) > now_);  // or the server would never sleep
 }
 
-/// What the program does when nothing is left to wait for.
+/// Step of the program when nothing is left to wait for.
 void Play::move_on() {
   advance(barrier_, now_);
   if (phase_ == Phase::loading) return open();
@@ -40,7 +40,7 @@ void Play::move_on() {
   }
   if (phase_ == Phase::between) {
     ++tick_;
-  } else if (phase_ != Phase::gathering || !barrier_.seats.all_taken()) {
+  } else if (phase_ != Phase::gathering || !barrier_.ownership.all_taken()) {
     return;
   }
   phase_ = Phase::collecting;
@@ -197,9 +197,9 @@ void Play::check() {
     is_awaited |= robot.awaited;
     require(robot.membership != Membership::held || !robot.holder.empty());
   }
-  require(barrier_.seats.all_taken() == !is_free);
+  require(barrier_.ownership.all_taken() == !is_free);
   if (barrier_.gate.is_complete()) require(!is_paused_ && !owes && !is_awaited);
-  if (barrier_.gate.is_standing()) require(is_paused_);
+  if (barrier_.gate.is_halted()) require(is_paused_);
   for (const double target : commands_.joint_targets) require(target == 0 || target == 1);
 }
 

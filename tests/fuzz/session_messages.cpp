@@ -1,4 +1,4 @@
-// What peers are sent, which is checked, and what they send.
+// Messages to peers, which are checked, and messages from peers.
 
 #include <string>
 
@@ -151,7 +151,8 @@ void Play::send_anything() {
   std::string bytes(input_.below(16), '\0');
   for (char& byte : bytes) byte = static_cast<char>(input_.byte());
   receive(from, bytes, !bytes.empty());
-  if (barrier_.connections.session_of(from) == network::SessionId::none) told_.at(from).welcomed = told_.at(from).waiting = false;
+  if (barrier_.connections.session_of(from) == network::SessionId::none)
+    told_.at(from).welcomed = told_.at(from).waiting = false;
 }
 
 /// Every peer answers the last observation that it was sent.

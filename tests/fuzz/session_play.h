@@ -15,7 +15,7 @@
 #include "network/barrier/exchange.h"
 #include "network/barrier/overview.h"
 #include "network/barrier/population.h"
-#include "network/barrier/timing.h"
+#include "network/barrier/timeouts.h"
 #include "network/small_run.h"
 #include "ziggurat/v1/protocol.pb.h"
 
@@ -41,7 +41,7 @@ struct Input {
   std::size_t below(std::size_t limit) { return byte() % limit; }
 };
 
-/// What a connection has been told.
+/// Messages that a connection has been sent.
 struct Told {
   bool welcomed = false;  ///< and nothing since that ends a session
   bool waiting = false;   ///< was told that the world is loading

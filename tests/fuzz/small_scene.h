@@ -48,8 +48,8 @@ inline constexpr const char* before =
     "<range_and_bearing id=\"rab\"/></media><arena size=\"9,9,9\">";
 inline constexpr const char* after = "</arena></argos-configuration>";
 
-/// Opens included files from memory, never from disk: names that start with `models` are the file of
-/// models, names that start with `s` the scene itself under another path.
+/// Opens included files from memory, never from disk: names that start with `models` are the file
+/// of models, names that start with `s` the scene itself under another path.
 inline std::variant<File, std::string> open_from_memory(const std::filesystem::path& path,
                                                         const std::string& scene) {
   const std::string name = path.filename().string();

@@ -1,6 +1,7 @@
 #pragma once
-// A small world with much of what has a state: a robot with an arm, a tag, a magnet, a battery, a radio and
-// sensors with noise, another magnet beside it, and boxes that fall on a floor.
+// A small world with much of the state that worlds can have. It has a robot with an arm, a tag, a
+// magnet, a battery, a radio and sensors with noise. Another magnet is beside it, and boxes fall on
+// a floor.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +17,8 @@
 
 namespace ziggurat::fuzz {
 
-inline constexpr const char* small_world = R"(<argos><framework><experiment ticks_per_second="10" random_seed="3"/>
+inline constexpr const char* small_world =
+    R"(<argos><framework><experiment ticks_per_second="10" random_seed="3"/>
   </framework><controllers><external_controller id="c"><actuators>
   <joints implementation="default"><joint id="hinge" mode="velocity" max_impulse="20"/></joints>
   <radios implementation="default"/><tags implementation="default"/></actuators><sensors>
@@ -52,8 +54,8 @@ inline scene::ReadResult read_small_world() {
   return read;
 }
 
-/// Changes valid bytes as the input says: each six bytes of it are one change. Most inputs so pass the first
-/// checks of a format.
+/// Changes valid bytes as the input says: each six bytes of it are one change. Most inputs so pass
+/// the first checks of a format.
 template <class Bytes>
 Bytes edited(Bytes bytes, std::span<const std::uint8_t> edits) {
   for (std::size_t i = 0; i + 6 <= edits.size() && !bytes.empty(); i += 6) {
@@ -75,11 +77,13 @@ Bytes edited(Bytes bytes, std::span<const std::uint8_t> edits) {
         data[at] = value;
         break;
       case 3:  // what stands elsewhere
-        if (left > 16) std::memmove(data + at, data + (std::size_t{value} << 8 | more) % (bytes.size() - 8), 8);
+        if (left > 16)
+          std::memmove(data + at, data + (std::size_t{value} << 8 | more) % (bytes.size() - 8), 8);
         break;
       case 4:
-        bytes.erase(bytes.begin() + static_cast<std::ptrdiff_t>(at),
-                    bytes.begin() + static_cast<std::ptrdiff_t>(at + std::min<std::size_t>(left, value)));
+        bytes.erase(
+            bytes.begin() + static_cast<std::ptrdiff_t>(at),
+            bytes.begin() + static_cast<std::ptrdiff_t>(at + std::min<std::size_t>(left, value)));
         break;
       default:
         bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(at), value % 32, {});

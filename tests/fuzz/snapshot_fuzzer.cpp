@@ -1,6 +1,6 @@
-// Snapshots are files of anyone. Whatever is changed in one: the world is restored to some state, which can be
-// stepped, or the snapshot is refused and the world stays as it is. Checksums and hashes are those of the changed
-// bytes: who changes a file can compute them.
+// Snapshots are files of anyone. Whatever is changed in one: the world is restored to some state,
+// which can be stepped, or the snapshot is refused and the world stays as it is. Checksums and
+// hashes are those of the changed bytes: who changes a file can compute them.
 
 #include <optional>
 #include <stdexcept>
@@ -60,7 +60,8 @@ void restore_state(World& own, const Snapshot& valid, std::span<const std::uint8
   step(own);
 }
 
-void restore_file(World& own, const std::vector<std::byte>& valid, std::span<const std::uint8_t> edits) {
+void restore_file(World& own, const std::vector<std::byte>& valid,
+                  std::span<const std::uint8_t> edits) {
   const std::uint64_t before = own.world->hash();
   std::vector<std::byte> bytes = fuzz::edited(valid, edits);
   math::Hash hash;
@@ -69,8 +70,9 @@ void restore_file(World& own, const std::vector<std::byte>& valid, std::span<con
   const auto* end = reinterpret_cast<const std::byte*>(&sum);
   bytes.insert(bytes.end(), end, end + sizeof sum);
   try {
-    own.world->restore(own.read.scene,
-                       simulation::from_bytes(bytes, {}, [&](const std::string& xml) { return own.entity(xml); }));
+    own.world->restore(
+        own.read.scene,
+        simulation::from_bytes(bytes, {}, [&](const std::string& xml) { return own.entity(xml); }));
   } catch (const std::runtime_error&) {
     require(own.world->hash() == before);
     return;

@@ -50,7 +50,8 @@ void read_secret(const std::string& text) {
 
 /// A slow and obvious match of `*` and `?`, to compare with.
 bool matches_simply(std::string_view pattern, std::string_view text) {
-  std::vector<bool> ends(text.size() + 1);  // ends[i]: the pattern so far matches the first i characters
+  std::vector<bool> ends(text.size() +
+                         1);  // ends[i]: the pattern so far matches the first i characters
   ends[0] = true;
   for (const char element : pattern) {
     std::vector<bool> next(text.size() + 1);
@@ -72,7 +73,8 @@ void match(std::string_view input) {
   const auto pattern = input.substr(0, line);
   const auto text = line == std::string_view::npos ? std::string_view() : input.substr(line + 1);
   const bool matched = network::matches(pattern, text);
-  if (pattern.find('[') == std::string_view::npos) require(matched == matches_simply(pattern, text));
+  if (pattern.find('[') == std::string_view::npos)
+    require(matched == matches_simply(pattern, text));
   if (!network::has_wildcards(pattern)) require(matched == (pattern == text));
 }
 

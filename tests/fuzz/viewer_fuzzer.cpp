@@ -1,6 +1,6 @@
-// What viewers send to the live server, behind WebSocket: messages of three viewers, two of them with the token,
-// between ticks, spawns and answers. What waits for a viewer is bounded, calls are only those of viewers with
-// the token, and each is answered once.
+// Messages of three viewers to the live server, behind WebSocket, two of them with the token,
+// between ticks, spawns and answers. The queue of a viewer is bounded. Calls are only those of
+// viewers with the token, and each is answered once.
 
 #include <algorithm>
 #include <cstdint>
@@ -44,7 +44,8 @@ class Play {
     hub_.receive(*viewer, message, (what & 4) != 0);
     require(viewer->unanswered <= view::Hub::most_unanswered);
     require(viewer->may_steer || viewer->unanswered == 0);
-    if (viewer->output.size() > view::Output::most_answers + view::Output::most_frames + message.size() + 4096) {
+    if (viewer->send_queue.size() >
+        view::SendQueue::most_answers + view::SendQueue::most_frames + message.size() + 4096) {
       require(viewer->is_over);
     }
     if (viewer->is_over) hub_.remove(viewer->id);
@@ -68,25 +69,26 @@ class Play {
   }
 
   void answer(bool is_done) {
-    const view::Desk::News news = desk_.take();
+    const view::ViewerRequests::Changes news = requests_.take();
     require(std::ranges::is_sorted(news.wanted));
-    for (const view::Call& call : news.calls) {
+    for (const view::ViewerCall& call : news.calls) {
       require(call.viewer != ids_[0]);
       hub_.answer(call, is_done, "{}");
     }
-    for (const view::Parameter& wish : news.wishes) hub_.set_parameter(wish);
+    for (const view::Parameter& parameter : news.parameters) hub_.set_parameter(parameter);
   }
 
   void read() {
     hub_.for_each([this](view::Viewer& viewer) {
       while (hub_.next(viewer)) {
       }
-      require(viewer.output.size() == 0);
+      require(viewer.send_queue.size() == 0);
     });
   }
 
-  view::Desk desk_;
-  view::Hub hub_{{"1", "s", "id", false}, {{"real_time_factor", 1.0}, {"phase", std::string("x")}}, desk_};
+  view::ViewerRequests requests_;
+  view::Hub hub_{
+      {"1", "s", "id", false}, {{"real_time_factor", 1.0}, {"phase", std::string("x")}}, requests_};
   std::vector<std::uint64_t> ids_;
   std::int64_t time_ = 0;
 };

@@ -63,14 +63,6 @@ class Same(Fork):
         outcome = self.ask("fork", recording, "--at", "15", "--ticks", "40", "--hash", "--quiet")
         self.assertEqual(outcome.lines[-1], end)
 
-    def test_sweeps_can_be_forked_too(self):
-        self.change("<dynamics3d ", '<dynamics3d solver="sweeps" ')
-        recording, end = self.record("--ticks", "20")
-        self.assertEqual(self.ask("fork", recording, "--at", "9", "--hash", "--quiet").lines[-1], end)
-        outcome = self.ask("fork", recording, "--at", "9", "--set", "physics_engines/*/@iterations=12",
-                           code=FAULT)
-        self.assert_is_sentence(outcome, r'solver="newton"')
-
 
 class Other(Fork):
     def other_script(self):

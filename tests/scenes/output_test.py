@@ -209,22 +209,11 @@ class Clock(SceneTest):
         self.assertNotEqual(self.hash_of("--ticks", 5),
                             self.hash_of("--ticks", 5, "--clock", "beta50"))
 
-    def solver_of(self, *options):
-        path = self.folder / "summary.json"
-        self.run_scene("--quiet", "--ticks", 1, "--summary", path, *options)
-        return json.loads(path.read_text())["solver"]["name"]
-
-    def test_the_clock_that_runs_chooses_the_solver(self):
-        """What a scene names holds; --clock is as good as the scene's."""
-        self.assertEqual(self.solver_of(), "newton")
-        self.assertEqual(self.solver_of("--clock", "beta50"), "sweeps")
-        self.assertIn("solver newton;", self.ziggurat("check", self.scene).out)
-        self.assertIn("solver sweeps;", self.ziggurat("check", self.scene, "--clock", "beta50").out)
-        newton, slow = (self.hash_of("--ticks", 5, *clock) for clock in ((), ("--clock", "beta50")))
-        self.change("<dynamics3d ", '<dynamics3d solver="sweeps" ')
-        self.assertEqual(self.solver_of(), "sweeps")
-        self.assertNotEqual(self.hash_of("--ticks", 5), newton)
-        self.assertEqual(self.hash_of("--ticks", 5, "--clock", "beta50"), slow)
+    def test_a_solver_that_is_named_changes_nothing(self):
+        plain = self.hash_of("--ticks", 5)
+        self.change("<dynamics3d ", '<dynamics3d solver="sweeps" solver_iterations="20" ')
+        self.assertEqual(self.hash_of("--ticks", 5), plain)
+        self.assertIn("solver of <dynamics3d> has no effect here", self.ziggurat("check", self.scene).err)
 
 
 class Commands(SceneTest):

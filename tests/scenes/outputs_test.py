@@ -57,27 +57,9 @@ class Outputs(Recorded):
             for name in ("arms.argos", "swing.lua"):
                 with self.subTest(f"{command[0]} {option} {name}"):
                     self.refuses(f"{option} is '{name}'", *command, option, name)
-        for link in self.links_to("arms.argos", ".csv"):
-            self.refuses("a scene, which it would replace", "export", "run.mcap", "--csv", link)
+        self.refuses("a scene, which it would replace", "export", "run.mcap", "--csv", self.links_to("arms.argos", ".csv")[0])
         self.refuses("a Lua script, which it would replace", "export", "run.mcap", "--jsonl",
                      self.links_to("swing.lua", ".jsonl")[0])
-
-    @unittest.skipIf(os.geteuid() != 0, "only root makes files of others")
-    def test_no_link_of_another_user_leads_to_an_output(self):
-        shared = self.folder / "shared"
-        shared.mkdir()
-        shared.chmod(0o1777)
-        link = shared / "link"
-        link.symlink_to(self.folder)
-        os.lchown(link, 12345, 12345)
-        before = sorted(path.name for path in self.folder.iterdir())
-        for command, option, name in ((("run", "magnets.argos", "--ticks", 1), "--hash-file", "out"),
-                                      (("run", "magnets.argos", "--ticks", 1), "--images", "out"),
-                                      (("serve", "magnets.argos"), "--snapshot-folder", "."),
-                                      (("export", "run.mcap"), "--csv", "out.csv")):
-            with self.subTest(option):
-                self.refuses("a link of another user in a folder that all can write", *command, option, link / name)
-        self.assertEqual(before, sorted(path.name for path in self.folder.iterdir()))
 
     def test_an_input_is_not_replaced(self):
         for name in ("run.mcap", "other.mcap"):
@@ -92,7 +74,6 @@ class Outputs(Recorded):
     def test_pictures_are_checked_with_their_numbers(self):
         for name, out in (("p_001.png", "p.png"), ("q0001.png", "q%04d.png")):
             os.link(self.scene, self.folder / name)
-            self.refuses(f"--out is '{name}', a scene", "render", "magnets.argos", "--at", "0,0.2", "--out", out)
             self.refuses(f"--out is '{name}', the file of the scene too", "render", self.scene, "--at", "0,0.2", "--out", out)
 
     def test_files_of_a_sweep_are_not_replaced(self):

@@ -298,6 +298,17 @@ class RecordingTest(SceneTest):
         for what in (secret, token, public, "server.secret"):
             self.assertNotIn(what.encode(), bytes_of_it)
 
+    def test_folders_and_the_command_line_of_the_author_are_not_recorded(self):
+        scene, folder = str(self.folder / "arms.argos"), str(self.folder).encode()
+        for options, is_told in (((), False), (("--record-paths",), True)):
+            code, _, err = self.outcome("run", scene, "--ticks", 3, "--record", "a.mcap", "--record-compression", "none", *options)
+            self.assertEqual(code, FINISHED, err)
+            bytes_of_it = (self.folder / "a.mcap").read_bytes()
+            self.assertEqual(folder in bytes_of_it, is_told)
+            self.assertEqual(b"--ticks" in bytes_of_it, is_told)
+            self.assertEqual(self.outcome("verify", "a.mcap")[0], FINISHED)
+            (self.folder / "a.mcap").unlink()
+
     def test_texts_of_a_recording_are_escaped(self):
         name = "evil\x1b]0;title\x07.argos"
         (self.folder / name).write_text(self.text)

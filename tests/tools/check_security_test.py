@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tools/check_security.py finds sentences without tests and tests that do not exist."""
+"""tools/check_security.py finds rows without tests and tests that do not exist."""
 
 import pathlib
 import subprocess
@@ -26,17 +26,15 @@ class CheckSecurity(unittest.TestCase):
             return done.returncode, done.stdout
 
     def test_takes_names_of_all_kinds(self):
-        code, out = self.run_on("- One (`network:Keys.AreRead`,\n  `network:Keys`). Two (`serve:listens`).\n"
-                                "- Three (`serve:Serve.test_listens`, `viewer:only_looks`). _An advice._\n\n"
-                                "| a | b |\n|---|---|\n| x | `network:Keys` |\n\n    an example\n")
+        code, out = self.run_on("| a | Tests |\n|---|---|\n| x | `network:Keys.AreRead`, `network:Keys` |\n"
+                                "| y | `serve:listens`, `serve:Serve.test_listens`, `viewer:only_looks` |\n\n"
+                                "| other | table |\n|---|---|\n| z | nothing |\n\n- _An advice._\n")
         self.assertEqual((code, out), (0, "docs/security.md names 5 tests, and all exist\n"))
 
-    def test_finds_sentences_without_tests(self):
-        for text in ("- One (`network:Keys`). Two.\n", "A paragraph (`network:Keys`).\n", "- One.\n",
-                     "- One, by construction (`network:Keys`).\n",
-                     "| a |\n|---|\n| x |\n"):
-            with self.subTest(text):
-                self.assertEqual(self.run_on(text)[0], 1)
+    def test_finds_rows_without_tests(self):
+        for row in ("| x | |", "| `network:Keys` | none |"):
+            with self.subTest(row):
+                self.assertEqual(self.run_on(f"| a | Tests |\n|---|---|\n{row}\n")[0], 1)
 
     def test_finds_names_without_tests(self):
         for name in ("network:Keys.AreWritten", "network:Key", "serve:answers", "viewer:looks", "nowhere:Keys"):

@@ -87,38 +87,42 @@ int e() { return '{' + "{"[0] + 1'000'000; }
 
 
 class Classes(unittest.TestCase):
-    def test_count_what_they_declare(self):
+    def test_count_data_members_and_friends(self):
         source = """
 class A final : public B<int> {
  public:
   A();
   explicit A(int x);
-  ~A();
   A(const A&) = delete;
-  A& operator=(const A&) = delete;
   int f() const { return x_; }
   static std::vector<int> g(std::function<int(int)> call = {});
-  virtual void h() = 0;
   bool operator==(const A&) const = default;
+  friend void h(A& a);
+  friend int of(const A& a) { return a.x_; }
 
  private:
-  struct Part {
+  class Part {
     int inner();
+    int one_ = 1, two_ = 2;
   };
+  enum class Kind { a, b };
+  static constexpr int most = 3;
   int x_ = count(3), y_{4};
   void (*pointer_)(int) = nullptr;
   std::function<void(int)> callback_;
 };
 """
-        self.assertEqual(classes(source), {"Part": 1, "A": 6})
+        self.assertEqual(classes(source), {"Part": (2, 0), "A": (4, 2)})
 
-    def test_forward_declarations_and_enumerations_are_none(self):
-        self.assertEqual(classes("class A;\nstruct B;\nenum class C { a, b };\n"), {})
+    def test_structs_forward_declarations_and_enumerations_are_none(self):
+        self.assertEqual(classes("class A;\nstruct B { int a = 0; };\nenum class C { a, b };\n"), {})
 
     def test_of_more_than_the_limit_are_violations(self):
-        for count, found in ((25, []), (26, [(1, "A has 26 functions; 25 are allowed, divide it")])):
-            source = "class A {\n" + "  void f();\n" * count + "};\n"
+        for count, found in ((30, []), (31, [(1, "A has 31 data members; 30 are allowed, divide it")])):
+            source = "class A {\n" + "  int a = 0;\n" * count + "};\n"
             self.assertEqual(list(check_sizes.violations(source)), found)
+        source = "class A {\n" + "  friend void f();\n" * 7 + "};\n"
+        self.assertEqual(list(check_sizes.violations(source)), [(1, "A has 7 friends; 6 are allowed, divide it")])
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 #pragma once
-// How much of the longest tests runs: a share of the rates and seeds in the normal run, all with ZIGGURAT_TEST_ALL=1.
+// Share of the longest tests that runs: a part of the rates and seeds in the normal run, all with
+// ZIGGURAT_TEST_ALL=1.
 
 #include <algorithm>
 #include <cmath>
@@ -34,14 +35,18 @@ inline unsigned runs(unsigned all, unsigned normal) {
 constexpr double a_minute = is_slow ? 2 : 60;  ///< simulated [s]
 constexpr int links_of_a_chain = is_slow ? 5 : 20;
 
-/// All values, mostly rates. The normal run takes the first, which a fault was found at, and 50 and 1 000; in place of
-/// one that is not among them the least and the greatest. Where the program is slow, the first alone.
+/// All values, mostly rates. The normal run takes the first, which a fault was found at, and 50 and
+/// 1 000; in place of one that is not among them the least and the greatest. Where the program is
+/// slow, the first alone.
 inline std::vector<double> some_of(const std::vector<double>& all) {
   if (is_slow) return {all.front()};
   if (takes_all()) return all;
-  const auto or_else = [&](double wanted, double other) { return std::ranges::find(all, wanted) != all.end() ? wanted : other; };
+  const auto or_else = [&](double wanted, double other) {
+    return std::ranges::find(all, wanted) != all.end() ? wanted : other;
+  };
   std::vector<double> out{all.front()};
-  for (const double next : {or_else(50, std::ranges::min(all)), or_else(1000, std::ranges::max(all))}) {
+  for (const double next :
+       {or_else(50, std::ranges::min(all)), or_else(1000, std::ranges::max(all))}) {
     if (std::ranges::find(out, next) == out.end()) out.push_back(next);
   }
   return out;

@@ -5,7 +5,7 @@
 
 namespace ziggurat {
 
-/// What a wait for an event takes at most: only a hang takes longer, on a busy machine too.
+/// Longest wait for an event: only a hang takes longer, on a busy machine too.
 constexpr std::chrono::seconds hang{60};
 
 /// Waits until the condition is true.

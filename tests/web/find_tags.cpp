@@ -17,8 +17,8 @@ int main(int argument_count, char** arguments) {
   // A plain header, P5\nWIDTH HEIGHT\n255\n, then a byte per pixel.
   std::FILE* file = std::fopen(arguments[1], "rb");
   int width = 0, height = 0;
-  if (!file || std::fscanf(file, "P5 %d %d 255", &width, &height) != 2 || std::fgetc(file) != '\n' ||
-      width < 1 || height < 1 || width > 10000 || height > 10000) {
+  if (!file || std::fscanf(file, "P5 %d %d 255", &width, &height) != 2 ||
+      std::fgetc(file) != '\n' || width < 1 || height < 1 || width > 10000 || height > 10000) {
     std::fprintf(stderr, "%s is no picture in the format PGM\n", arguments[1]);
     return 1;
   }

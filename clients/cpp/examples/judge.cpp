@@ -1,7 +1,8 @@
-// A director that ends the stacking scene when one block stands on the other, and reports how far aside it is:
-//   ziggurat serve scenes/prototype_srocs_system.argos --allow-director --endpoint tcp://127.0.0.1:7400
-//   ZIGGURAT_ENDPOINT=tcp://127.0.0.1:7400 example_judge        and the controllers of robot and blocks:
-//   ziggurat-lua --connect tcp://127.0.0.1:7400
+// A director that ends the stacking scene when one block stands on the other, and reports how far
+// aside it is:
+//   ziggurat serve scenes/prototype_srocs_system.argos --allow-director --endpoint
+//   tcp://127.0.0.1:7400 ZIGGURAT_ENDPOINT=tcp://127.0.0.1:7400 example_judge        and the
+//   controllers of robot and blocks: ziggurat-lua --connect tcp://127.0.0.1:7400
 // In a scene, <director id="judge" command="example_judge"/> starts it.
 
 #include <ziggurat/ziggurat.h>
@@ -15,9 +16,9 @@
 
 namespace {
 
-constexpr double block = 0.055;   // length of an edge [m]
-constexpr double height = 0.002;  // how far from that the upper block's height may be [m]
-constexpr double still = 0.001;   // a block that is slower is at rest [m/s]
+constexpr double block = 0.055;          // length of an edge [m]
+constexpr double height = 0.002;         // how far from that the upper block's height may be [m]
+constexpr double still = 0.001;          // a block that is slower is at rest [m/s]
 constexpr std::chrono::seconds rest{1};  // simulated, for which it must stand
 
 bool is_block(const ziggurat::Entity& entity) { return entity.id().starts_with("block"); }

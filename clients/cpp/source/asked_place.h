@@ -13,10 +13,12 @@ namespace ziggurat {
 
 /// @param what  an id, or an element, which begins with '<'
 inline void ask_for_place(std::string_view what, const std::array<double, 3>& position,
-                          const std::optional<std::array<double, 4>>& orientation, v1::IsFreeRequest& request) {
+                          const std::optional<std::array<double, 4>>& orientation,
+                          v1::IsFreeRequest& request) {
   const std::size_t first = what.find_first_not_of(" \t\r\n");
   const bool is_element = first != what.npos && what[first] == '<';
-  (is_element ? *request.mutable_xml() : *request.mutable_entity()) = v1::valid_utf8(std::string(what));
+  (is_element ? *request.mutable_xml() : *request.mutable_entity()) =
+      v1::valid_utf8(std::string(what));
   for (const double value : position) request.add_position(value);
   if (!orientation) return;
   for (const double value : *orientation) request.add_orientation(value);

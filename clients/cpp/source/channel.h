@@ -29,7 +29,8 @@ class Channel {
   virtual ~Channel() = default;
   /// @throws std::runtime_error if the message is not what Welcome announced
   virtual void check(const v1::Observation&) const {}
-  /// Of a checked message, which stays unchanged until the next is read: handles may point into it.
+  /// Reads a checked message, which stays unchanged until the next is read: handles may point into
+  /// it.
   virtual void read(const v1::Observation&) {}
   virtual void write(v1::Command&) {}  ///< adds the values that were set after sent()
   virtual void sent() {}               ///< after the command was sent

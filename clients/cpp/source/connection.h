@@ -14,7 +14,7 @@
 
 namespace ziggurat {
 
-// Of the protocol.
+// Version of the protocol.
 inline constexpr std::uint32_t version_major = 1;
 inline constexpr std::uint32_t version_minor = 4;
 
@@ -31,7 +31,8 @@ class Connection {
 
   void send(const v1::ClientMessage& message);
 
-  /// Whether it was closed, or silent for longer than the server promised: it is of no use any more.
+  /// Whether it was closed, or silent for longer than the server promised: it is of no use any
+  /// more.
   bool is_lost() const { return is_lost_; }
   /// Whether the server has accepted the connection: if it does not answer then, it is slow.
   bool is_accepted() { return transport_->is_accepted(); }
@@ -39,8 +40,8 @@ class Connection {
   [[noreturn]] void lose(const std::string& why);
   /// Starts to connect again, beside the lost connection.
   void reconnect();
-  /// A session has begun over this connection. A lost one before it is closed now: earlier, the server would
-  /// take the session's robots for free.
+  /// A session has begun over this connection. A lost one before it is closed now: earlier, the
+  /// server would take the session's robots for free.
   /// @param silence  wall time after which a connection without messages is lost; 0 = never
   void begin_session(std::chrono::milliseconds silence);
 
@@ -52,15 +53,14 @@ class Connection {
   std::optional<Kind> receive(std::optional<std::chrono::milliseconds> timeout,
                               const std::function<bool()>& is_interrupted);
 
-  // The last message, valid until the next is received. Observations and states of the world are in separate
-  // messages, which keep their memory.
+  // The last message, valid until the next is received. Observations and states of the world are in
+  // separate messages, which keep their memory.
   const v1::Observation& observation() const { return observation_; }
   const v1::WorldState& world_state() const { return world_state_; }
   const v1::ServerMessage& message() const { return message_; }
 
  private:
   Kind parse();
-  [[noreturn]] void throw_too_much_laid_out() const;
   void forget(std::size_t size);
   void check_alive(std::chrono::milliseconds waited);
 
@@ -73,7 +73,6 @@ class Connection {
   v1::Observation observation_;
   v1::WorldState world_state_;
   std::size_t parsed_ = 0;  // [bytes] since these two last released their memory
-  std::size_t message_size_ = 0, laid_out_ = 0;  // [bytes] of the message, and of all layouts since one that began anew
   v1::ServerMessage message_;
 };
 

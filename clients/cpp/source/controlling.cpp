@@ -31,9 +31,11 @@ void Controlling::begin(const v1::Welcome& welcome) {
 /// The session has the robots that it had, in their order (H9): their handles stay.
 void Controlling::go_on(const v1::Welcome& welcome, std::vector<v1::Leave>& failures) {
   const auto robots = fleet_->robots();
-  const bool are_the_same = std::equal(
-      robots.begin(), robots.end(), welcome.robots().begin(), welcome.robots().end(),
-      [](const Robot& ours, const v1::RobotDescription& theirs) { return ours.id() == theirs.id(); });
+  const bool are_the_same =
+      std::equal(robots.begin(), robots.end(), welcome.robots().begin(), welcome.robots().end(),
+                 [](const Robot& ours, const v1::RobotDescription& theirs) {
+                   return ours.id() == theirs.id();
+                 });
   if (!are_the_same) throw ProtocolError("the resumed session has other robots than before", {});
   fleet_->remove(welcome.resumed().gone_robots());
   std::erase_if(failures, [&](const v1::Leave& leave) { return robots[leave.robots(0)].gone(); });

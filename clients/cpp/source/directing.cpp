@@ -12,7 +12,8 @@ namespace {
 
 // As the server allows, in one answer.
 constexpr int most_acts = 10'000;
-constexpr std::size_t most_act_bytes = std::size_t{2} << 20;  // of texts; the rest of 4 MiB is for numbers and the log
+constexpr std::size_t most_act_bytes =
+    std::size_t{2} << 20;  // of texts; the rest of 4 MiB is for numbers and the log
 constexpr int most_lines = 1000;
 constexpr std::size_t most_log_bytes = std::size_t{1} << 20;
 constexpr std::size_t longest_result = 1024;
@@ -98,7 +99,7 @@ void Directing::warn(const v1::Error& error) {
   warnings_.push_back(text::printable_part(where + error.message()));
 }
 
-/// What was asked for and not yet sent was for the world before.
+/// Drops acts that were not sent yet: they were for the world before.
 void Directing::reset() {
   draft_.clear_acts();
   draft_.clear_finish();

@@ -16,7 +16,8 @@ namespace ziggurat {
 struct Director::State {
   explicit State(const DirectorOptions& from) : options(from), part(options), core(options, part) {}
 
-  /// Who finishes the run need not wait for a further tick: the present one is answered before the Leave.
+  /// Who finishes the run need not wait for a further tick: the present one is answered before the
+  /// Leave.
   void answer_with_finish() {
     if (part.wants_finish() && core.owes && !core.is_over && !core.ending) core.answer();
   }
@@ -44,7 +45,8 @@ void add_numbers(const Numbers& from, const char* what, std::string_view entity,
 /// @throws std::invalid_argument without an id
 const DirectorOptions& checked(const DirectorOptions& options) {
   if (!options.director.empty() || !options.session_token.empty()) return options;
-  throw std::invalid_argument("DirectorOptions::director is empty; it is the id of a director in the scene");
+  throw std::invalid_argument(
+      "DirectorOptions::director is empty; it is the id of a director in the scene");
 }
 
 }  // namespace
@@ -56,7 +58,8 @@ DirectorOptions DirectorOptions::from_environment() {
   return options;
 }
 
-Director::Director(const DirectorOptions& options) : state_(std::make_unique<State>(checked(options))) {
+Director::Director(const DirectorOptions& options)
+    : state_(std::make_unique<State>(checked(options))) {
   state_->core.open();
 }
 
@@ -95,20 +98,28 @@ std::uint64_t Director::seed() const noexcept { return state_->core.seed; }
 std::chrono::nanoseconds Director::tick_length() const noexcept { return state_->core.tick_length; }
 const std::string& Director::token() const noexcept { return state_->core.token; }
 
-std::span<Entity* const> Director::entities() const noexcept { return state_->part.world().present(); }
+std::span<Entity* const> Director::entities() const noexcept {
+  return state_->part.world().present();
+}
 bool Director::entities_have_changed() const noexcept { return state_->part.world().has_changed(); }
-const Entity* Director::find(std::string_view id) const noexcept { return state_->part.world().find(id); }
+const Entity* Director::find(std::string_view id) const noexcept {
+  return state_->part.world().find(id);
+}
 const Entity& Director::entity(std::string_view id) const {
   if (const Entity* found = find(id)) return *found;
-  throw std::out_of_range("the director is told of no entity '" + std::string(id) + "' in the world");
+  throw std::out_of_range("the director is told of no entity '" + std::string(id) +
+                          "' in the world");
 }
-std::span<const Contact> Director::contacts() const noexcept { return state_->part.world().contacts(); }
+std::span<const Contact> Director::contacts() const noexcept {
+  return state_->part.world().contacts();
+}
 std::span<const RadioMessage> Director::radio_messages() const noexcept {
   return state_->part.world().radio_messages();
 }
 
-std::optional<std::string> Director::overlapped(std::string_view what, const std::array<double, 3>& position,
-                                                const std::optional<std::array<double, 4>>& orientation) {
+std::optional<std::string> Director::overlapped(
+    std::string_view what, const std::array<double, 3>& position,
+    const std::optional<std::array<double, 4>>& orientation) {
   v1::ClientMessage question;
   ask_for_place(what, position, orientation, *question.mutable_request()->mutable_is_free());
   return overlapped_in(state_->core.ask(question));
@@ -119,17 +130,20 @@ void Director::move(std::string_view entity, const std::array<double, 3>& positi
   v1::MoveRequest move;
   move.set_entity(v1::valid_utf8(entity));
   add_numbers(position, "the position of", entity, *move.mutable_position());
-  if (orientation) add_numbers(*orientation, "the orientation of", entity, *move.mutable_orientation());
+  if (orientation)
+    add_numbers(*orientation, "the orientation of", entity, *move.mutable_orientation());
   move.set_may_overlap(onto == Onto::others);
   state_->part.add_act(entity.size()).mutable_move()->Swap(&move);
 }
 
-void Director::set_joint(std::string_view entity, std::string_view joint, double position, double velocity) {
+void Director::set_joint(std::string_view entity, std::string_view joint, double position,
+                         double velocity) {
   if (!std::isfinite(position) || !std::isfinite(velocity)) {
     throw std::invalid_argument("joint '" + std::string(joint) + "' of '" + std::string(entity) +
                                 "' must have a position and a velocity that are finite");
   }
-  v1::SetJointRequest& set = *state_->part.add_act(entity.size() + joint.size()).mutable_set_joint();
+  v1::SetJointRequest& set =
+      *state_->part.add_act(entity.size() + joint.size()).mutable_set_joint();
   set.set_entity(v1::valid_utf8(entity));
   set.set_joint(v1::valid_utf8(joint));
   set.set_position(position);

@@ -1,6 +1,6 @@
 #pragma once
-// Which thread drives which session of this program: a thread that waits for a supervisor's request can't answer for
-// its sessions meanwhile.
+// Which thread drives which session of this program: a thread that waits for a supervisor's request
+// can't answer for its sessions meanwhile.
 
 #include <string>
 #include <thread>
@@ -28,8 +28,9 @@ class Driven {
   std::thread::id thread_;  // none: no thread has waited for its ticks yet
 };
 
-/// Ids, one of each session with this server that the calling thread drives. One that no thread has begun yet may be
-/// that of a thread which is just starting: it has a second, and is the caller's then.
+/// Ids, one of each session with this server that the calling thread drives. One that no thread has
+/// begun yet may be that of a thread which is just starting: it has a second, and is the caller's
+/// then.
 std::vector<std::string> driven_here(const std::string& endpoint);
 
 }  // namespace ziggurat

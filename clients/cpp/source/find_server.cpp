@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where servers of this user listen, as docs/protocol.md, T11, has them.
+/// Folders in which servers of this user listen (docs/protocol.md, T11).
 std::vector<fs::path> folders() {
   std::vector<fs::path> found;
   const char* const runtime = std::getenv("XDG_RUNTIME_DIR");

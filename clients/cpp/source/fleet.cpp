@@ -10,9 +10,10 @@
 namespace ziggurat {
 
 Fleet::Fleet(const v1::Welcome& welcome) : robots_(size(welcome.robots_size())) {
-  // What a server allows at least (T4); half of smaller messages.
-  log_.max_bytes = std::min<std::size_t>(welcome.max_message_bytes() / 2,
-                                         (std::size_t{256} << 10) + robots_.size() * (std::size_t{2} << 10));
+  // Limit that every server allows at least (T4); half of smaller messages.
+  log_.max_bytes =
+      std::min<std::size_t>(welcome.max_message_bytes() / 2,
+                            (std::size_t{256} << 10) + robots_.size() * (std::size_t{2} << 10));
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     const v1::RobotDescription& from = welcome.robots(static_cast<int>(i));
     Robot& robot = robots_[i];
@@ -81,11 +82,11 @@ void Fleet::move_metrics_to(google::protobuf::RepeatedPtrField<v1::Metric>& metr
 
 void check_metric(std::string_view name, double value) {
   constexpr std::size_t longest = 64;
-  const bool is_name = !name.empty() && name.size() <= longest &&
-                       std::all_of(name.begin(), name.end(), [](char c) {
-                         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-                                (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
-                       });
+  const bool is_name =
+      !name.empty() && name.size() <= longest && std::all_of(name.begin(), name.end(), [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '_' || c == '-' || c == '.';
+      });
   if (!is_name) {
     throw std::invalid_argument("the name of a metric must have 1 to " + std::to_string(longest) +
                                 " letters, digits, '_', '-' or '.', not '" +

@@ -34,7 +34,8 @@ class Fleet {
   void reset();
   /// The session was resumed or the world restored: values become those that were commanded.
   void resume(v1::Command commanded);
-  /// These robots (positions) have left the run. Positions that the session does not have are ignored.
+  /// These robots (positions) have left the run. Positions that the session does not have are
+  /// ignored.
   void remove(const google::protobuf::RepeatedField<std::uint32_t>& robots);
   void remove(std::string_view id);
 

@@ -1,6 +1,6 @@
 #pragma once
-// What a session is there for: the robots of a controller, or the world of a director. Knows messages, but no
-// connection of its own.
+// Part that a session plays: the robots of a controller, or the world of a director. Knows
+// messages, but no connection of its own.
 
 #include <cstdint>
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace ziggurat {
 
-/// Of the message that is to be answered.
+/// Time of the message that is to be answered.
 struct Moment {
   std::uint64_t tick = 0;
   std::int64_t time_ns = 0;            ///< simulated
@@ -34,7 +34,7 @@ class Part {
   /// @throws ProtocolError if the session is not what it was
   virtual void go_on(const v1::Welcome& welcome, std::vector<v1::Leave>& failures) = 0;
 
-  /// Of the connection's last message, if that is one to answer.
+  /// Moment of the connection's last message, if that is one to answer.
   virtual std::optional<Moment> moment(Connection::Kind kind, const Connection& from) const = 0;
   /// Reads that message, which stays unchanged until the next is received.
   /// @throws std::runtime_error if it is not what was announced; nothing is read
@@ -42,18 +42,18 @@ class Part {
   /// Another message.
   virtual void hear(Connection::Kind, const v1::ServerMessage&) {}
 
-  /// What comes before the answer: a message for each robot that failed since the last call.
+  /// Messages to send before the answer: one for each robot that failed since the last call.
   virtual std::vector<v1::Leave> take_failures() { return {}; }
   /// The answer: what was set since the last one.
   virtual void write(v1::ClientMessage& answer, const Moment& moment) = 0;
   virtual void sent() {}    ///< after the answer was sent
   virtual void repeat() {}  ///< the server may have discarded the last answer
-  /// What was logged and measured since the last answer.
+  /// Adds log lines and metrics since the last answer.
   virtual void write(v1::Leave& leave) = 0;
 
-  virtual void warn(const v1::Error&) {}  ///< something that was asked for has no effect
-  virtual void reset() = 0;                        ///< the world begins anew
-  virtual void restore(const v1::Command&) {}      ///< after reset(): it has gone back to this
+  virtual void warn(const v1::Error&) {}       ///< something that was asked for has no effect
+  virtual void reset() = 0;                    ///< the world begins anew
+  virtual void restore(const v1::Command&) {}  ///< after reset(): it has gone back to this
   /// These robots (positions) have left the run.
   virtual void remove(const google::protobuf::RepeatedField<std::uint32_t>&) {}
 };

@@ -10,9 +10,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds usual_patience{10'000};   // as Options::connect_timeout
-constexpr milliseconds between_attempts{100};    // while there is no server
-constexpr milliseconds between_hellos{1000};     // of a server that answers (docs/protocol.md, H10)
+constexpr milliseconds usual_patience{10'000};  // as Options::connect_timeout
+constexpr milliseconds between_attempts{100};   // while there is no server
+constexpr milliseconds between_hellos{1000};    // of a server that answers (docs/protocol.md, H10)
 constexpr unsigned most_in_vain = 3;
 
 }  // namespace
@@ -46,7 +46,8 @@ bool SessionCore::resume(const std::string& loss) {
       rest = between_attempts;
     } catch (const ProtocolError& refused) {
       is_over = !refused.details().retryable || Clock::now() >= end;
-      if (is_over) throw ProtocolError(std::string(refused.what()) + " (" + loss + ")", refused.details());
+      if (is_over)
+        throw ProtocolError(std::string(refused.what()) + " (" + loss + ")", refused.details());
       rest = between_hellos;
     }
   }
@@ -88,8 +89,8 @@ void SessionCore::go_on(const v1::Welcome& welcome) {
 }
 
 /// The first message of a resumed session may be the one that was answered before: the caller must
-/// not see it twice, and the answer may have been lost. The same answer is sent again; the server takes it
-/// or ignores it (L9).
+/// not see it twice, and the answer may have been lost. The same answer is sent again; the server
+/// takes it or ignores it (L9).
 bool SessionCore::repeats_answer(const Moment& next) {
   if (!is_resumed) return false;
   is_resumed = false;

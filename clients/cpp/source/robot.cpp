@@ -46,8 +46,9 @@ void Robot::metric(std::string_view name, double value) {
   constexpr std::size_t most_names = 100;  // as the server allows
   if (!metric_names_.contains(name)) {
     if (metric_names_.size() == most_names) {
-      throw std::length_error("robot '" + text::printable_part(id_) + "' has " + std::to_string(most_names) +
-                              " metrics already; '" + std::string(name) + "' would be one more");
+      throw std::length_error("robot '" + text::printable_part(id_) + "' has " +
+                              std::to_string(most_names) + " metrics already; '" +
+                              std::string(name) + "' would be one more");
     }
     metric_names_.emplace(name);
   }

@@ -17,7 +17,8 @@ ProtocolError displaced(const v1::Displaced& by) {
 }
 
 /// The tick did not wait for our answer, or already had it: the next observation arrives anyway.
-/// @param may_have_jumped  the world was reset, or the session resumed: an answer that was sent before may have
+/// @param may_have_jumped  the world was reset, or the session resumed: an answer that was sent
+/// before may have
 ///                         a future tick
 bool is_harmless(const v1::Error& error, bool may_have_jumped) {
   if (error.severity() == v1::Error::FATAL) return false;
@@ -70,7 +71,8 @@ void SessionCore::send_answer() {
 }
 
 const v1::Response& SessionCore::ask(v1::ClientMessage& question) {
-  if (!owes || is_over || ending) throw std::logic_error("the world is asked at a tick, before its answer");
+  if (!owes || is_over || ending)
+    throw std::logic_error("the world is asked at a tick, before its answer");
   question.mutable_request()->set_id(++last_question);
   connection.send(question);
   for (;;) {
@@ -85,7 +87,8 @@ const v1::Response& SessionCore::ask(v1::ClientMessage& question) {
       take(message.error());
     } else if (*kind != Connection::Kind::kHeartbeat && *kind != Connection::Kind::kResponse) {
       heard = kind;
-      throw ConnectionError(options.endpoint + ": the world has gone on without this tick's answer");
+      throw ConnectionError(options.endpoint +
+                            ": the world has gone on without this tick's answer");
     }
   }
 }
@@ -95,7 +98,8 @@ bool SessionCore::wait() {
   const auto end = Clock::now() + options.wait_timeout.value_or(std::chrono::milliseconds{0});
   auto rest = options.wait_timeout;
   for (;;) {
-    const auto kind = heard ? std::exchange(heard, {}) : connection.receive(rest, options.is_interrupted);
+    const auto kind =
+        heard ? std::exchange(heard, {}) : connection.receive(rest, options.is_interrupted);
     if (rest) {
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now());
       rest = std::max(left, std::chrono::milliseconds{0});
@@ -156,7 +160,8 @@ void SessionCore::take(const v1::Error& error) {
     connection.lose("the server does not know the connection");
   }
   is_over = is_fatal;
-  if (!is_fatal && has_begun) {  // the answer was discarded as a whole: the tick still waits for one
+  if (!is_fatal &&
+      has_begun) {  // the answer was discarded as a whole: the tick still waits for one
     owes = true;
     part.repeat();
   }
@@ -174,7 +179,7 @@ void SessionCore::read_moment() {
 void SessionCore::take(const Moment& next) {
   read_moment();
   now = next;
-  event = is_restored ? Event::restored
+  event = is_restored  ? Event::restored
           : !has_begun ? Event::init
           : is_reset   ? Event::reset
                        : Event::step;

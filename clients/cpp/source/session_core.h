@@ -1,6 +1,6 @@
 #pragma once
-// What sessions of controllers and directors have in common: Hello and Welcome, ticks and their answers, the end,
-// and the way back after a lost connection.
+// Core of the sessions of controllers and directors: Hello and Welcome, ticks and their answers,
+// the end, and the way back after a lost connection.
 
 #include <exception>
 
@@ -43,8 +43,9 @@ struct SessionCore {
   /// @throws ConnectionError, ProtocolError if it is refused, std::logic_error if no tick waits
   const v1::Response& ask(v1::ClientMessage& question);
   bool wait();  // false if there is none
-  bool hear(Connection::Kind kind);  // a message that is not to be answered; false after the last one
-  void read_moment();  // the message to answer
+  bool hear(
+      Connection::Kind kind);  // a message that is not to be answered; false after the last one
+  void read_moment();          // the message to answer
   void take(const Moment& next);
   void take(const v1::Error& error);
   bool is_interrupted() const { return options.is_interrupted && options.is_interrupted(); }
@@ -61,19 +62,19 @@ struct SessionCore {
   Driven driven;
   int exceptions = std::uncaught_exceptions();  // when the session began
 
-  v1::ClientMessage outgoing;  // the last answer; long-lived: keeps its memory
+  v1::ClientMessage outgoing;       // the last answer; long-lived: keeps its memory
   std::vector<v1::Leave> failures;  // that were sent before it
 
   Event event = Event::init;
-  bool has_begun = false;  // a message to answer was delivered
-  bool is_reset = false;   // the next one is the first after a reset
-  v1::Command commanded;               // when the session was resumed last
-  bool is_restored = false;            // or after a restore
-  std::string snapshot;                // that was restored last
-  Moment now;                          // of the message to answer
-  bool was_reset = false;  // at some time
-  bool owes = false;       // the present message is not answered yet
-  bool is_over = false;    // nothing is sent any more
+  bool has_begun = false;    // a message to answer was delivered
+  bool is_reset = false;     // the next one is the first after a reset
+  v1::Command commanded;     // when the session was resumed last
+  bool is_restored = false;  // or after a restore
+  std::string snapshot;      // that was restored last
+  Moment now;                // of the message to answer
+  bool was_reset = false;    // at some time
+  bool owes = false;         // the present message is not answered yet
+  bool is_over = false;      // nothing is sent any more
   std::optional<Ending> ending;
   std::string fault;  // of the last next(), if it was thrown
 
@@ -92,8 +93,7 @@ struct SessionCore {
   std::optional<Connection::Kind> heard;  // instead of the answer to a question: the next message
 };
 
-/// @throws ConnectionError if the server speaks another major version of the protocol (H2), or names more robots than
-/// there can be handles for
+/// @throws ConnectionError if the server speaks another major version of the protocol (H2)
 void check_welcome(const v1::Welcome& welcome, const std::string& endpoint);
 /// @throws ProtocolError if the message is a Refusal or an Error
 void check_not_refused(Connection::Kind kind, const v1::ServerMessage& message);

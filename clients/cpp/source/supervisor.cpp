@@ -120,7 +120,8 @@ struct Supervisor::State {
   }
   /// Names the sessions that can't answer while this thread waits.
   void add_held_up() {
-    for (std::string& id : driven_here(options.endpoint)) outgoing.mutable_request()->add_held_up(std::move(id));
+    for (std::string& id : driven_here(options.endpoint))
+      outgoing.mutable_request()->add_held_up(std::move(id));
   }
   /// @param whole  time-out of which there is this rest; none = forever
   Connection::Kind hear(std::optional<std::chrono::milliseconds> rest,
@@ -263,7 +264,8 @@ std::uint64_t Supervisor::move(std::string_view entity, const std::array<double,
   return state_->ask().tick();
 }
 
-std::uint64_t Supervisor::set_joint(std::string_view entity, std::string_view joint, double position, double velocity) {
+std::uint64_t Supervisor::set_joint(std::string_view entity, std::string_view joint,
+                                    double position, double velocity) {
   v1::SetJointRequest& set = *state_->request().mutable_set_joint();
   set.set_entity(v1::valid_utf8(entity));
   set.set_joint(v1::valid_utf8(joint));
@@ -272,8 +274,9 @@ std::uint64_t Supervisor::set_joint(std::string_view entity, std::string_view jo
   return state_->ask().tick();
 }
 
-std::optional<std::string> Supervisor::overlapped(std::string_view what, const std::array<double, 3>& position,
-                                                  const std::optional<std::array<double, 4>>& orientation) {
+std::optional<std::string> Supervisor::overlapped(
+    std::string_view what, const std::array<double, 3>& position,
+    const std::optional<std::array<double, 4>>& orientation) {
   ask_for_place(what, position, orientation, *state_->request().mutable_is_free());
   return overlapped_in(state_->ask());
 }

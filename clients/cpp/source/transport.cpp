@@ -1,5 +1,8 @@
 #include "transport.h"
 
+#include <poll.h>
+#include <unistd.h>
+
 #include <array>
 #include <cerrno>
 #include <cstdint>
@@ -7,9 +10,10 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <tuple>
 #include <zmq.hpp>
 
-#include "plain_stream.h"
+#include "endpoint.h"
 #include "ziggurat/error.h"
 
 namespace ziggurat {
@@ -17,11 +21,17 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds longest_wait_to_send{500};  // between checks of whether the connection was refused
+constexpr milliseconds longest_wait_to_send{
+    500};  // between checks of whether the connection was refused
+constexpr milliseconds longest_linger{1000};  // when a connection ends, with output that waits
+constexpr const char* keys_are_missing =
+    "refused key? The endpoint is protected, and this client has no keys; set the server's public "
+    "key "
+    "and a secret key";
 constexpr const char* monitor_address = "inproc://monitor";
-constexpr int monitored = ZMQ_EVENT_CONNECTED | ZMQ_EVENT_DISCONNECTED | ZMQ_EVENT_HANDSHAKE_SUCCEEDED |
-                          ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
-                          ZMQ_EVENT_HANDSHAKE_FAILED_AUTH;
+constexpr int monitored = ZMQ_EVENT_CONNECTED | ZMQ_EVENT_DISCONNECTED |
+                          ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL |
+                          ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL | ZMQ_EVENT_HANDSHAKE_FAILED_AUTH;
 // A server that ends, or has no place, also breaks a handshake off: ZeroMQ tries again.
 constexpr unsigned most_failed_handshakes = 3;
 
@@ -35,10 +45,13 @@ bool receive_from(zmq::socket_t& socket, zmq::message_t& message, zmq::recv_flag
   }
 }
 
-/// A DEALER of libzmq: encrypted, and for endpoints that only libzmq knows.
+/// A DEALER of libzmq, and the monitor that reports what becomes of its connection.
 class ZeroMq final : public Transport {
  public:
   explicit ZeroMq(const SessionOptions& options);
+  ~ZeroMq() override;
+  ZeroMq(const ZeroMq&) = delete;
+  ZeroMq& operator=(const ZeroMq&) = delete;
 
   void send(std::size_t size, const std::function<void(char*)>& write) override;
   bool receive(milliseconds timeout) override;
@@ -49,15 +62,18 @@ class ZeroMq final : public Transport {
   void linger() override;
 
  private:
+  /// Whether the program was forked since: threads of libzmq are the parent's, and calls would wait
+  /// for them.
+  bool is_parents() const { return ::getpid() != process_; }
   void set_keys(const SessionOptions& options);
-  void take_events();
+  bool take_events();
   void take_event(std::uint16_t event, std::uint32_t value);
 
+  pid_t process_ = ::getpid();
   std::string endpoint_;
   zmq::context_t context_;
   zmq::socket_t socket_;
-  zmq::socket_t monitor_;  // reports that the connection was closed, or refused
-  milliseconds socket_timeout_{-1};
+  zmq::socket_t monitor_;
   bool is_accepted_ = false;
   bool is_open_ = false;  // the handshake has succeeded
   bool is_closed_ = false;
@@ -65,6 +81,7 @@ class ZeroMq final : public Transport {
   unsigned failed_handshakes_ = 0;  // without a reason
   std::string refusal_;             // of the handshake; empty: none
   zmq::message_t frame_;
+  int socket_fd_ = socket_.get(zmq::sockopt::fd), monitor_fd_ = monitor_.get(zmq::sockopt::fd);
 };
 
 ZeroMq::ZeroMq(const SessionOptions& options)
@@ -88,6 +105,11 @@ ZeroMq::ZeroMq(const SessionOptions& options)
   }
 }
 
+ZeroMq::~ZeroMq() {
+  // Kept for good in a forked child, where they can't be closed.
+  if (is_parents()) new std::tuple(std::move(monitor_), std::move(socket_), std::move(context_));
+}
+
 /// Encrypts the connection, if the options name keys.
 void ZeroMq::set_keys(const SessionOptions& options) {
   if (options.server_key.empty() && options.curve_secret.empty()) return;
@@ -96,7 +118,8 @@ void ZeroMq::set_keys(const SessionOptions& options) {
         "only one of server_key and curve_secret is set; an encrypted connection needs both");
   }
   std::error_code error;
-  const bool is_file = std::filesystem::is_regular_file(options.curve_secret, error);  // no pipe: it could wait
+  const bool is_file =
+      std::filesystem::is_regular_file(options.curve_secret, error);  // no pipe: it could wait
   std::ifstream file(is_file ? options.curve_secret : "");
   std::string secret, more;
   std::array<char, 41> own;
@@ -119,6 +142,7 @@ void ZeroMq::set_keys(const SessionOptions& options) {
 }
 
 void ZeroMq::linger() {
+  if (is_parents()) return;
   try {
     take_events();
     if (!is_open_ || is_closed_) return;
@@ -129,13 +153,17 @@ void ZeroMq::linger() {
 }
 
 void ZeroMq::send(std::size_t size, const std::function<void(char*)>& write) {
+  if (is_parents())
+    throw ConnectionError(endpoint_ +
+                          ": can't send: the connection is that of the program that was forked");
   zmq::message_t frame(size);
   write(frame.data<char>());
   for (;;) {
     try {
       if (socket_.send(frame, zmq::send_flags::none)) return;
       // ZeroMQ drops the queue of a connection that the server has refused.
-      if (was_closed()) throw ConnectionError(endpoint_ + ": can't send: the server closed the connection");
+      if (was_closed())
+        throw ConnectionError(endpoint_ + ": can't send: the server closed the connection");
     } catch (const zmq::error_t& error) {
       if (error.num() == EINTR) continue;
       throw ConnectionError(endpoint_ + ": can't send: " + error.what());
@@ -144,12 +172,14 @@ void ZeroMq::send(std::size_t size, const std::function<void(char*)>& write) {
 }
 
 bool ZeroMq::receive(milliseconds timeout) {
-  if (timeout != socket_timeout_) {
-    socket_.set(zmq::sockopt::rcvtimeo, static_cast<int>(timeout.count()));
-    socket_timeout_ = timeout;
-  }
   try {
-    return receive_from(socket_, frame_, zmq::recv_flags::none);
+    if (receive_from(socket_, frame_, zmq::recv_flags::dontwait)) return true;
+    if (take_events()) return false;
+    // These descriptors tell what comes after both sockets were found empty; zmq_poll() asks them
+    // twice.
+    pollfd waiting[] = {{socket_fd_, POLLIN, 0}, {monitor_fd_, POLLIN, 0}};
+    ::poll(waiting, 2, static_cast<int>(timeout.count()));
+    return receive_from(socket_, frame_, zmq::recv_flags::dontwait);
   } catch (const zmq::error_t& error) {
     throw ConnectionError(endpoint_ + ": can't receive: " + error.what());
   }
@@ -166,7 +196,9 @@ bool ZeroMq::is_accepted() {
   return is_accepted_;
 }
 
-void ZeroMq::take_events() {
+/// @return  whether there were any
+bool ZeroMq::take_events() {
+  bool were_any = false;
   constexpr std::size_t value_at = sizeof(std::uint16_t);
   zmq::message_t event;
   while (receive_from(monitor_, event, zmq::recv_flags::dontwait)) {
@@ -178,7 +210,9 @@ void ZeroMq::take_events() {
     }
     while (event.more()) receive_from(monitor_, event, zmq::recv_flags::none);  // the address
     take_event(number, value);
+    were_any = true;
   }
+  return were_any;
 }
 
 void ZeroMq::take_event(std::uint16_t event, std::uint32_t value) {
@@ -205,7 +239,6 @@ void ZeroMq::take_event(std::uint16_t event, std::uint32_t value) {
 
 std::unique_ptr<Transport> make_transport(const SessionOptions& options) {
   check_endpoint(options.endpoint);
-  if (auto endpoint = PlainEndpoint::of(options)) return std::make_unique<PlainStream>(*std::move(endpoint));
   return std::make_unique<ZeroMq>(options);
 }
 

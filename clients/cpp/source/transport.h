@@ -1,5 +1,5 @@
 #pragma once
-// How a client's messages go to the server and back. Both ways speak ZeroMQ's wire protocol.
+// Transport of a client's messages to the server and back.
 
 #include <chrono>
 #include <cstddef>
@@ -12,9 +12,6 @@
 
 namespace ziggurat {
 
-/// What waits to be sent when a connection ends is tried for so long at most.
-constexpr std::chrono::milliseconds longest_linger{1000};
-
 class Transport {
  public:
   virtual ~Transport() = default;
@@ -25,15 +22,16 @@ class Transport {
   virtual void send(std::size_t size, const std::function<void(char*)>& write) = 0;
 
   /// Waits for a message.
-  /// @return  whether there is one; false after the time-out, after a signal and when closed
+  /// @return  whether there is one; false after the time-out, after a signal, and when the
+  /// connection has changed
   /// @throws ConnectionError
   virtual bool receive(std::chrono::milliseconds timeout) = 0;
   /// The last message, valid until the next is received, and whether it has more frames.
   virtual std::string_view content() = 0;
   virtual bool has_more() const = 0;
 
-  /// Whether the connection was closed after it had been open. It is not opened again, and messages may be
-  /// lost. Until it is open, connecting is retried.
+  /// Whether the connection was closed after it had been open. It is not opened again, and messages
+  /// may be lost. Until it is open, connecting is retried.
   /// @throws ConnectionError if the server does not accept this client's keys, or that it has none
   virtual bool was_closed() = 0;
   /// Whether the server has accepted the connection: if nothing arrives then, the server is slow.
@@ -42,14 +40,9 @@ class Transport {
   virtual void linger() = 0;
 };
 
-/// Of a server: an Observation of 1 GiB (docs/protocol.md, D5) and what is around it. A longer one closes the
-/// connection when its size is known [bytes].
+/// Longest message of a server: an Observation of 1 GiB (docs/protocol.md, D5) with its envelope. A
+/// longer one closes the connection when its size is known [bytes].
 inline constexpr std::size_t longest_message = (std::size_t{1} << 30) + (std::size_t{1} << 20);
-
-/// What a client without keys is told at a protected endpoint.
-inline constexpr const char* keys_are_missing =
-    "refused key? The endpoint is protected, and this client has no keys; set the server's public key "
-    "and a secret key";
 
 /// @throws std::invalid_argument for an unusable endpoint or keys
 std::unique_ptr<Transport> make_transport(const SessionOptions& options);

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
-#include "plain_endpoint.h"
+#include "endpoint.h"
 #include "session_core.h"
 #include "ziggurat/v1/envelope.h"
-#include "ziggurat/v1/extent.h"
 
 namespace ziggurat {
 namespace {
@@ -25,8 +24,9 @@ void fill(const SessionOptions& options, v1::Hello& hello) {
   }
 }
 
-/// How long a connection is silent at most unless it is lost (docs/protocol.md, M3); 0 = any time.
-std::chrono::milliseconds longest_silence(const v1::Welcome& welcome, const SessionOptions& options) {
+/// Longest silence of a connection that is not lost (docs/protocol.md, M3); 0 = any time.
+std::chrono::milliseconds longest_silence(const v1::Welcome& welcome,
+                                          const SessionOptions& options) {
   // The end of a local connection is always told, so a server that is silent there is slow.
   if (welcome.wall_heartbeat_ms() == 0 || options.endpoint.starts_with("ipc://")) return {};
   return std::max(std::chrono::milliseconds(3000),
@@ -85,14 +85,10 @@ void SessionCore::read(const v1::Welcome& welcome) {
 }
 
 void check_welcome(const v1::Welcome& welcome, const std::string& endpoint) {
-  if (welcome.robots_size() > static_cast<int>(v1::most_robots)) {
-    throw ConnectionError(endpoint + ": the server sent " + std::to_string(welcome.robots_size()) +
-                          " robots; this client takes " + std::to_string(v1::most_robots) + " at most");
-  }
   const v1::Version& theirs = welcome.version();
   if (theirs.major() == version_major) return;
-  throw ConnectionError(endpoint + ": the server speaks version " + std::to_string(theirs.major()) + "." +
-                        std::to_string(theirs.minor()) + " of the protocol, this client " +
+  throw ConnectionError(endpoint + ": the server speaks version " + std::to_string(theirs.major()) +
+                        "." + std::to_string(theirs.minor()) + " of the protocol, this client " +
                         std::to_string(version_major) + "." + std::to_string(version_minor));
 }
 

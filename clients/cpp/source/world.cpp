@@ -21,7 +21,8 @@ void read_states(const google::protobuf::RepeatedField<double>& from, std::vecto
   if (!to.empty()) std::memcpy(static_cast<void*>(to.data()), from.data(), to.size() * sizeof(T));
 }
 
-void read_colors(const google::protobuf::RepeatedField<std::uint32_t>& from, std::vector<Color>& to) {
+void read_colors(const google::protobuf::RepeatedField<std::uint32_t>& from,
+                 std::vector<Color>& to) {
   to.resize(size(from.size()));
   std::ranges::transform(from, to.begin(), color_of);
 }
@@ -85,14 +86,17 @@ bool has_ids(std::span<const std::string> ids, const Descriptions& descriptions)
 
 }  // namespace
 
-/// After a reset or over another connection the same entities may be told again: their handles stay. What was
-/// spawned since may have the id of another one.
+/// After a reset or over another connection the same entities may be told again: their handles
+/// stay. What was spawned since may have the id of another one.
 bool World::is_as_before(const v1::WorldLayout& layout) const {
-  return std::equal(entities_.begin(), entities_.end(), layout.entities().begin(), layout.entities().end(),
+  return std::equal(entities_.begin(), entities_.end(), layout.entities().begin(),
+                    layout.entities().end(),
                     [](const Entity& ours, const v1::EntityDescription& theirs) {
                       return ours.id_ == theirs.id() && ours.kind_ == theirs.kind() &&
-                             ours.controller_ == theirs.controller() && has_ids(ours.links_.ids, theirs.links()) &&
-                             has_ids(ours.joints_.ids, theirs.joints()) && has_ids(ours.leds_.ids, theirs.leds()) &&
+                             ours.controller_ == theirs.controller() &&
+                             has_ids(ours.links_.ids, theirs.links()) &&
+                             has_ids(ours.joints_.ids, theirs.joints()) &&
+                             has_ids(ours.leds_.ids, theirs.leds()) &&
                              has_ids(ours.directional_leds_.ids, theirs.directional_leds()) &&
                              has_ids(ours.tags_.ids, theirs.tags()) &&
                              has_ids(ours.magnets_.ids, theirs.magnets()) &&

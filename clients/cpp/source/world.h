@@ -1,5 +1,6 @@
 #pragma once
-// The entities that a director is told of, and their states after a tick; knows messages, but no connection.
+// The entities that a director is told of, and their states after a tick; knows messages, but no
+// connection.
 
 #include <deque>
 #include <span>
@@ -37,9 +38,10 @@ class World {
     const Entity* entity = nullptr;
     std::size_t number = 0;
   };
-  /// How many of each kind all entities have together.
+  /// Number of parts of each kind that all entities have together.
   struct Counts {
-    std::size_t links = 0, joints = 0, leds = 0, directional_leds = 0, tags = 0, magnets = 0, radios = 0;
+    std::size_t links = 0, joints = 0, leds = 0, directional_leds = 0, tags = 0, magnets = 0,
+                radios = 0;
   };
 
   void begin_anew();
@@ -50,14 +52,15 @@ class World {
   void read_messages(const v1::WorldState& state);
 
   std::deque<Entity> entities_;  // by place; these do not move
-  std::deque<Entity> former_;    // of the world before: a handle that is kept for too long is of one that is gone
+  std::deque<Entity>
+      former_;  // of the world before: a handle that is kept for too long is of one that is gone
   std::vector<Entity*> present_;
   std::unordered_map<std::string_view, Entity*> by_id_;
   std::vector<Place> link_places_, radio_places_;
   Counts counts_;
   bool has_new_layout_ = false, has_changed_ = false;
 
-  // Of the present tick, empty if the director did not ask for them.
+  // State at the current tick, empty if the director did not ask for it.
   std::vector<Pose> poses_;
   std::vector<LinkState> links_;
   std::vector<JointState> joints_;

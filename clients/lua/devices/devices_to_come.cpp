@@ -20,7 +20,7 @@ constexpr std::pair<std::string_view, const char*> names[] = {
 
 int do_nothing(lua_State*) { return 0; }
 
-/// What scripts switch on before they read it.
+/// Whether scripts switch the device on before they read it.
 bool is_switched(std::string_view name) {
   return name.starts_with("colored_blob_") || name == "distance_scanner";
 }
@@ -29,7 +29,8 @@ bool is_switched(std::string_view name) {
 
 void set_devices_to_come(lua_State* state, const Robot& robot) {
   for (const std::string& element : robot.devices_to_come()) {
-    const auto* const found = std::ranges::find(names, element, [](const auto& each) { return each.first; });
+    const auto* const found =
+        std::ranges::find(names, element, [](const auto& each) { return each.first; });
     const char* const name = found == std::end(names) ? element.c_str() : found->second;
     lua_createtable(state, 0, 2);
     if (is_switched(name)) {

@@ -1,6 +1,6 @@
 #pragma once
-// Devices that the scene gives a robot and that do not work yet: empty tables, so that scripts that only look at
-// their readings run.
+// Devices that the scene gives a robot and that do not work yet: empty tables, so that scripts that
+// only look at their readings run.
 
 #include <lua.hpp>
 

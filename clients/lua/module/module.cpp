@@ -8,9 +8,9 @@
 #include "module/options.h"
 #include "script/arguments.h"
 #include "script/environment.h"
-#include "script/robot_table.h"
 #include "script/guarded.h"
 #include "script/log_functions.h"
+#include "script/robot_table.h"
 #include "script/tables.h"
 #include "ziggurat/session.h"
 

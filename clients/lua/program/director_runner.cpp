@@ -45,7 +45,8 @@ class DirectorRunner {
     Failure failure;
     while (!failure && !are_scripts_interrupted() && hears_of_next(failure)) {
       for (const std::string& warning : director_.take_warnings()) {
-        director_.log_error((script_ ? script_->before_error_of(warning) : std::string()) + warning);
+        director_.log_error((script_ ? script_->before_error_of(warning) : std::string()) +
+                            warning);
       }
       failure = script_ ? answer() : start();
       if (script_) hand_over_log();
@@ -67,16 +68,21 @@ class DirectorRunner {
   }
 
   Failure start() {
-    const FoundScript script = options_.script
-                                   ? FoundScript{*options_.script, {}, {}}
-                                   : find_script(director_.script(), director_.params(), {folders_, options_.names_any_ending});
+    const FoundScript script = options_.script ? FoundScript{*options_.script, {}, {}}
+                                               : find_script(director_.script(), director_.params(),
+                                                             {folders_, options_.names_any_ending});
     where_ = script.where;
     if (script.path.empty()) return script.fault;
     try {
       script_ = std::make_unique<DirectorScript>(
-          director_, ScriptOptions{script.path, director_.seed(), director_.tick(), options_.max_memory,
-                                   options_.max_instructions, options_.max_computing,
-                                   options_.trusts_scripts ? nullptr : &folders_, {}});
+          director_, ScriptOptions{script.path,
+                                   director_.seed(),
+                                   director_.tick(),
+                                   options_.max_memory,
+                                   options_.max_instructions,
+                                   options_.max_computing,
+                                   options_.trusts_scripts ? nullptr : &folders_,
+                                   {}});
     } catch (const std::bad_alloc&) {
       return "no memory for a Lua state";
     }
@@ -98,7 +104,7 @@ class DirectorRunner {
   Director& director_;
   const ProgramOptions& options_;
   const Folders folders_;
-  std::string where_;  // a script was looked for in vain, for people here
+  std::string where_;                       // a script was looked for in vain, for people here
   std::unique_ptr<DirectorScript> script_;  // from the first tick on
 };
 

@@ -13,13 +13,14 @@ namespace ziggurat::lua {
 struct FoundScript {
   std::filesystem::path path;  ///< empty if there is none
   std::string fault;           ///< then: why, and what the server named; a server may learn it
-  std::string where;           ///< then: the folders that were searched, for people at this machine only
+  std::string where;  ///< then: the folders that were searched, for people at this machine only
 };
 
 /// Which files a server may name as scripts.
 struct Nameable {
-  const Folders& folders;    ///< that have them
-  bool any_ending = false;   ///< otherwise only those that end with .lua: errors quote parts of a file
+  const Folders& folders;  ///< that have them
+  bool any_ending =
+      false;  ///< otherwise only those that end with .lua: errors quote parts of a file
 };
 
 /// The server's path if it can be read here, otherwise the scene's, relative to the working

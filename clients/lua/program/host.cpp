@@ -47,7 +47,8 @@ class Host {
       });
     } catch (const std::system_error&) {
       guests_.pop_back();
-      throw std::runtime_error("robot '" + id + "' gets no thread: this process has " + std::to_string(guests_.size()) +
+      throw std::runtime_error("robot '" + id + "' gets no thread: this process has " +
+                               std::to_string(guests_.size()) +
                                " of them, and the system allows no more");
     }
   }

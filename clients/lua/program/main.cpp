@@ -46,7 +46,8 @@ Wanted where(const lua::ProgramOptions& from) {
   return options;
 }
 
-int exit_code(const std::optional<Ending>& ending, bool has_failed, const lua::ProgramOptions& options) {
+int exit_code(const std::optional<Ending>& ending, bool has_failed,
+              const lua::ProgramOptions& options) {
   if (const int number = lua::arrived_signal()) return exit_signal + number;
   if (ending && ending->reason == Ending::Reason::failed && !options.quiet) {
     std::fprintf(stderr, "ziggurat-lua: the server ended the run: %s\n",
@@ -56,10 +57,12 @@ int exit_code(const std::optional<Ending>& ending, bool has_failed, const lua::P
 }
 
 /// A robot that arrives may have been removed meanwhile, or another client may have been faster.
-bool is_late(const std::string& code) { return code == "NOT_YOURS" || code == "UNKNOWN_ROBOT" || code == "ROBOT_TAKEN"; }
+bool is_late(const std::string& code) {
+  return code == "NOT_YOURS" || code == "UNKNOWN_ROBOT" || code == "ROBOT_TAKEN";
+}
 
-/// Robots of a list that have left the run since it was written are left out. None: all have, or the one that arrives
-/// is another's.
+/// Robots of a list that have left the run since it was written are left out. None: all have, or
+/// the one that arrives is another's.
 std::unique_ptr<Session> begin(Options wanted, bool has_list, bool arrives) {
   for (;;) {
     try {
@@ -67,7 +70,9 @@ std::unique_ptr<Session> begin(Options wanted, bool has_list, bool arrives) {
     } catch (const ProtocolError& error) {
       if (arrives && is_late(error.details().code)) return nullptr;
       const bool has_left = error.details().code == "NOT_YOURS";
-      const auto is_it = [&](const std::string& id) { return text::printable_part(id) == error.details().robot; };
+      const auto is_it = [&](const std::string& id) {
+        return text::printable_part(id) == error.details().robot;
+      };
       if (!has_list || !has_left || std::erase_if(wanted.robots, is_it) == 0) throw;
       if (wanted.robots.empty()) return nullptr;
     }
@@ -101,7 +106,8 @@ int direct(const lua::ProgramOptions& options) {
   Director director(wanted);
   if (!options.quiet) {
     std::fprintf(stderr, "ziggurat-lua: directs as '%s' at %s, seed %llu\n",
-                 text::printable_part(director.id()).c_str(), options.endpoint.c_str(), static_cast<unsigned long long>(director.seed()));
+                 text::printable_part(director.id()).c_str(), options.endpoint.c_str(),
+                 static_cast<unsigned long long>(director.seed()));
   }
   const bool is_well = lua::run_director(director, options);
   return exit_code(director.ending(), !is_well, options);
@@ -112,7 +118,8 @@ int run(const lua::ProgramOptions& options) {
 }
 
 void report(const std::exception& error) {
-  std::fprintf(stderr, "ziggurat-lua: %s\n", text::indented(text::printable_part(error.what())).c_str());
+  std::fprintf(stderr, "ziggurat-lua: %s\n",
+               text::indented(text::printable_part(error.what())).c_str());
 }
 
 /// The same for one of several robots.
@@ -134,7 +141,8 @@ int main(int count, char** arguments) {
   try {
     const auto request = lua::read_arguments(count, arguments, ::isatty(STDOUT_FILENO) != 0);
     if (!request.text.empty()) {
-      if (std::fputs(request.text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return exit_finished;
+      if (std::fputs(request.text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0)
+        return exit_finished;
       throw std::runtime_error(std::string("stdout cannot be written: ") + std::strerror(errno));
     }
     lua::take_terminal(!request.options.trusts_scripts);

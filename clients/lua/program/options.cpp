@@ -48,9 +48,9 @@ po::options_description description() {
       ("robots-file", text("FILE"), "robots to run: one id or pattern per line")  //
       ("robots-from", text("PIPE"),
        "run each robot whose id arrives on this named pipe, one a line, in a session of its own")  //
-      ("controller", text("ID"), "robots that have this controller in the scene")              //
+      ("controller", text("ID"), "robots that have this controller in the scene")  //
       ("director", text("ID"),
-       "run the script of the scene's director ID, no robots; with --script another")  //
+       "run the script of the scene's director ID, no robots; with --script another")          //
       ("server-key", text("KEY"), "public key of a server with an encrypted endpoint")         //
       ("curve-secret", text("FILE"), "secret key of this program for it ('ziggurat keygen')")  //
       ("script", text("FILE"), "run this script instead of those of the scene")                //
@@ -58,7 +58,8 @@ po::options_description description() {
       ("script-folder", po::value<std::vector<std::string>>()->composing()->value_name("DIR"),
        "the server may name only scripts below DIR, and scripts may use only files below it; may "
        "be "
-       "repeated; default: the working directory, and the folder of --script, where the server may name only "
+       "repeated; default: the working directory, and the folder of --script, where the server may "
+       "name only "
        "files that end with .lua")  //
       ("read-only-file", po::value<std::vector<std::string>>()->composing()->value_name("FILE"),
        "scripts may not change FILE; may be repeated")  //
@@ -91,9 +92,11 @@ std::string help() {
 
 void append_robots(const std::string& path, std::vector<std::string>& robots) {
   std::error_code error;
-  const bool is_file = std::filesystem::is_regular_file(path, error);  // a pipe may never have a writer
+  const bool is_file =
+      std::filesystem::is_regular_file(path, error);  // a pipe may never have a writer
   std::ifstream file(is_file ? path : "");
-  if (!file) throw std::runtime_error("--robots-file " + path + ": can't be read, or is not a regular file");
+  if (!file)
+    throw std::runtime_error("--robots-file " + path + ": can't be read, or is not a regular file");
   const auto before = robots.size();
   for (std::string line; std::getline(file, line);) {
     if (const auto id = trimmed(line); !id.empty()) robots.emplace_back(id);
@@ -132,7 +135,8 @@ po::variables_map parse(int count, const char* const* arguments) {
     const std::string word = arguments[i];
     const bool is_value = i > 1 && arguments[i - 1][0] == '-';
     if (is_value || word.starts_with('-') || !word.ends_with(".lua")) continue;
-    throw std::runtime_error("'" + word + "' is no option; to run this script, write --script " + word);
+    throw std::runtime_error("'" + word + "' is no option; to run this script, write --script " +
+                             word);
   }
   try {
     // No positional arguments: boost's message names the first one.
@@ -203,8 +207,10 @@ Request read_arguments(int count, const char* const* arguments, bool is_terminal
     throw std::runtime_error("--robots-from and --robot or --robots-file exclude each other");
   }
   if (found.count("director")) options.director = value("director");
-  if (options.director && (!options.robots.empty() || !options.robots_from.empty() || found.count("controller"))) {
-    throw std::runtime_error("--director runs no robots: remove --robot, --robots-file, --robots-from and --controller");
+  if (options.director &&
+      (!options.robots.empty() || !options.robots_from.empty() || found.count("controller"))) {
+    throw std::runtime_error(
+        "--director runs no robots: remove --robot, --robots-file, --robots-from and --controller");
   }
   options.controller = value("controller");
   if (options.controller.empty() && options.robots.empty() && options.robots_from.empty() &&

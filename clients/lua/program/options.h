@@ -18,7 +18,7 @@ struct ProgramOptions {
   bool has_list = false;            ///< of --robots-file: some may have left since it was written
   std::string robots_from;          ///< pipe with ids of robots that come later; empty: none
   std::string controller;           ///< id in the scene; empty for all
-  std::optional<std::string> director;  ///< runs this director of the scene, and no robots
+  std::optional<std::string> director;          ///< runs this director of the scene, and no robots
   std::optional<std::filesystem::path> script;  ///< instead of the scene's
   std::string server_key, curve_secret;         ///< as in ziggurat::Options
   std::string session_token;                    ///< the same; empty with robots_from
@@ -27,17 +27,17 @@ struct ProgramOptions {
   /// never empty.
   std::vector<std::filesystem::path> folders{"."};
   bool names_any_ending = false;  ///< the server may name scripts there that do not end with .lua
-  Exceptions exceptions;                            ///< files there that scripts may use less
-  bool trusts_scripts = false;                      ///< all of Lua, all files
+  Exceptions exceptions;          ///< files there that scripts may use less
+  bool trusts_scripts = false;    ///< all of Lua, all files
   std::size_t max_memory = std::size_t{256} << 20;  ///< per robot [bytes]
   std::uint64_t max_instructions = 1'000'000'000;   ///< per robot and call; 0 = any number
-  std::uint64_t max_computing = 20;                 ///< processor time per robot and call [s]; 0 = any
-  std::string place_file;                           ///< as of open_place_file(); empty: none
-  bool echo = false;                                ///< print log lines here too
+  std::uint64_t max_computing = 20;  ///< processor time per robot and call [s]; 0 = any
+  std::string place_file;            ///< as of open_place_file(); empty: none
+  bool echo = false;                 ///< print log lines here too
   bool quiet = false;
 };
 
-/// What the arguments request: a run, or only a text.
+/// Request of the arguments: a run, or only a text.
 struct Request {
   ProgramOptions options;
   std::string text;  ///< of --help or --version; empty otherwise

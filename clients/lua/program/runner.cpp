@@ -16,14 +16,17 @@ namespace {
 // A server names the robots, and how many there are.
 constexpr std::size_t most_told = 100;
 constexpr std::size_t longest_id = 1024;
-// [s] for each destroy() at the end, where a program waits 5 s for all: one that does not end leaves
-// the others time.
+// [s] for each destroy() at the end, where a program waits 5 s for all: one that does not end
+// leaves the others time.
 constexpr std::uint64_t longest_destroy = 3;
 
 }  // namespace
 
 Runner::Runner(ziggurat::Session& session, const ProgramOptions& options)
-    : session_(session), options_(options), folders_(options.folders, options.exceptions), regions_(session.robots().size()) {
+    : session_(session),
+      options_(options),
+      folders_(options.folders, options.exceptions),
+      regions_(session.robots().size()) {
   for (ziggurat::Robot& robot : session_.robots()) seats_.push_back({&robot, nullptr});
 }
 
@@ -47,17 +50,18 @@ void Runner::run() {
 }
 
 void Runner::start(Seat& seat) {
-  const FoundScript script =
-      options_.script ? FoundScript{*options_.script, {}, {}}
-                      : find_script(seat.robot->script(), seat.robot->params(), {folders_, options_.names_any_ending});
+  const FoundScript script = options_.script
+                                 ? FoundScript{*options_.script, {}, {}}
+                                 : find_script(seat.robot->script(), seat.robot->params(),
+                                               {folders_, options_.names_any_ending});
   if (script.path.empty()) return fail(seat, script.fault, script.where);
   try {
     seat.controller = std::make_unique<Controller>(
-        *seat.robot, ScriptOptions{script.path, session_.seed(), session_.tick(),
-                                       options_.max_memory, options_.max_instructions, options_.max_computing,
-                                       options_.trusts_scripts ? nullptr : &folders_,
-                                       share_of_files(seats_.size()),
-                                       regions_[static_cast<std::size_t>(&seat - seats_.data())]});
+        *seat.robot,
+        ScriptOptions{script.path, session_.seed(), session_.tick(), options_.max_memory,
+                      options_.max_instructions, options_.max_computing,
+                      options_.trusts_scripts ? nullptr : &folders_, share_of_files(seats_.size()),
+                      regions_[static_cast<std::size_t>(&seat - seats_.data())]});
   } catch (const std::bad_alloc&) {
     return fail(seat, "no memory for a Lua state");
   }
@@ -84,7 +88,7 @@ void Runner::finish() {
   }
 }
 
-// What the script holds is given back: its memory, its open files.
+// Frees the memory and the open files of the script.
 void Runner::end(Seat& seat) {
   destroy(seat);
   seat.controller.reset();
@@ -114,7 +118,8 @@ void Runner::fail(Seat& seat, const std::string& message, const std::string& onl
     std::fprintf(stderr, "ziggurat-lua: more robots fail; their messages are not printed here\n");
     return;
   }
-  std::fprintf(stderr, "robot '%s': %s\n", text::printable_part(seat.robot->id(), longest_id).c_str(),
+  std::fprintf(stderr, "robot '%s': %s\n",
+               text::printable_part(seat.robot->id(), longest_id).c_str(),
                text::printable_part(message + only_here).c_str());
 }
 

@@ -11,22 +11,22 @@
 #include <utility>
 
 #include "program/signals.h"
-#include "text/outlet.h"
+#include "text/buffered_stream.h"
 #include "text/printable.h"
 
 namespace ziggurat::lua {
 namespace {
 
-/// A stream of C over an outlet.
+/// A stream of C with a buffer.
 struct Stream {
-  explicit Stream(int descriptor) : outlet(descriptor) {}
+  explicit Stream(int descriptor) : buffer(descriptor) {}
 
-  text::Outlet outlet;
+  text::BufferedStream buffer;
   bool is_printable = true;
   std::string rest;  // bytes of a character of which more is to come
 };
 
-/// How many bytes at the end are the beginning of a character in UTF-8.
+/// Number of bytes at the end that begin an unfinished character of UTF-8.
 std::size_t unfinished_bytes(std::string_view text) {
   for (std::size_t back = 1; back <= std::min<std::size_t>(3, text.size()); ++back) {
     const auto byte = static_cast<unsigned char>(text[text.size() - back]);
@@ -43,11 +43,11 @@ ssize_t write(void* cookie, const char* bytes, std::size_t size) {
     std::string text = stream.rest + std::string(bytes, size);
     const std::size_t whole = text.size() - unfinished_bytes(text);
     stream.rest = text.substr(whole);
-    stream.outlet.add(text::printable(std::string_view(text).substr(0, whole)));
+    stream.buffer.add(text::printable(std::string_view(text).substr(0, whole)));
   } else {
-    stream.outlet.add({bytes, size});
+    stream.buffer.add({bytes, size});
   }
-  stream.outlet.write();  // a reader that is gone is no error of a script
+  stream.buffer.write();  // a reader that is gone is no error of a script
   return static_cast<ssize_t>(size);
 }
 
@@ -67,9 +67,9 @@ std::FILE* open(Stream& stream, int buffering) {
 }
 
 /// Until all is written or a signal asks the program to end.
-void finish(text::Outlet& outlet) {
+void finish(text::BufferedStream& buffer) {
   constexpr std::chrono::milliseconds slice{100};
-  while (arrived_signal() == 0 && !outlet.is_empty() && outlet.finish(slice) == 0) {
+  while (arrived_signal() == 0 && !buffer.is_empty() && buffer.finish(slice) == 0) {
   }
 }
 
@@ -84,7 +84,7 @@ void take_terminal(bool is_printable) {
 void offer_to_terminal() {
   for (const auto& [file, stream] : {std::pair{stdout, &out()}, {stderr, &error()}}) {
     ::flockfile(file);  // other threads may print meanwhile
-    stream->outlet.write();
+    stream->buffer.write();
     ::funlockfile(file);
   }
 }
@@ -92,13 +92,13 @@ void offer_to_terminal() {
 void finish_terminal() {
   std::fflush(stdout);
   std::fflush(stderr);
-  finish(out().outlet);
-  if (const auto lost = out().outlet.take_dropped(); lost > 0) {
+  finish(out().buffer);
+  if (const auto lost = out().buffer.take_dropped(); lost > 0) {
     std::fprintf(stderr, "ziggurat-lua: %llu texts are missing in stdout, which was not read\n",
                  static_cast<unsigned long long>(lost));
     std::fflush(stderr);
   }
-  finish(error().outlet);
+  finish(error().buffer);
 }
 
 }  // namespace ziggurat::lua

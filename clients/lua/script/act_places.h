@@ -1,5 +1,5 @@
 #pragma once
-// Where a director's script asked for what the server may refuse later.
+// Places in a director's script of acts that the server may refuse later.
 
 #include <lua.hpp>
 #include <string>

@@ -24,9 +24,10 @@ bool is_called_with_colon(lua_State* state) {
   return is_field;
 }
 
-/// What to write instead.
+/// Advice for the call.
 const char* hint(lua_State* state) {
-  return is_called_with_colon(state) ? "; write a dot, not a colon, before the function's name" : "";
+  return is_called_with_colon(state) ? "; write a dot, not a colon, before the function's name"
+                                     : "";
 }
 
 void check_type(lua_State* state, int index, int type) {
@@ -41,8 +42,7 @@ void check_type(lua_State* state, int index, int type) {
 void check_count(lua_State* state, int min, int max, const char* usage) {
   const int count = lua_gettop(state);
   if (count >= min && count <= max) return;
-  luaL_error(state, "wrong number of arguments: %s expected, got %d%s", usage, count,
-             hint(state));
+  luaL_error(state, "wrong number of arguments: %s expected, got %d%s", usage, count, hint(state));
 }
 
 double check_number(lua_State* state, int index) {

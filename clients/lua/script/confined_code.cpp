@@ -64,7 +64,8 @@ int dofile(lua_State* state) {
 
 constexpr std::size_t most_templates = 100;
 
-/// Ends as soon as the text is longer than a path may be: a script's memory is bounded, this text is not part of it.
+/// Ends as soon as the text is longer than a path may be: a script's memory is bounded, this text
+/// is not part of it.
 std::string replaced(std::string text, std::string_view from, std::string_view to) {
   if (from.empty()) return text;
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
@@ -74,7 +75,7 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
   return text;
 }
 
-/// Where a module may be: the templates of `path` with its name in place of each '?'.
+/// Search for a module: the templates of `path` with its name in place of each '?'.
 struct Search {
   std::string found;  ///< the first file that exists; empty if none does
   std::string tried;  ///< a line for each that does not
@@ -88,7 +89,8 @@ Search search(const Folders& folders, std::string_view name, std::string_view pa
       return result;
     }
     const auto end = std::min(path.find(';'), path.size());
-    const std::string file = replaced(std::string(path.substr(0, std::min(end, longest_path + 1))), "?", name);
+    const std::string file =
+        replaced(std::string(path.substr(0, std::min(end, longest_path + 1))), "?", name);
     path.remove_prefix(std::min(end + 1, path.size()));
     std::error_code error;
     if (file.size() > longest_path) {
@@ -109,7 +111,8 @@ Search search(const Folders& folders, std::string_view name, std::string_view pa
 int push_search(lua_State* state, const char* name, const char* path, const char* from,
                 const char* to) {
   for (const char* part : {name, from, to}) {
-    if (std::strlen(part) > longest_path) return luaL_error(state, "the name of a module is too long");
+    if (std::strlen(part) > longest_path)
+      return luaL_error(state, "the name of a module is too long");
   }
   const Search result = search(usable(state), replaced(name, from, to), path);
   if (result.found.empty()) lua_pushnil(state);

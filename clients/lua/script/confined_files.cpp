@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 // Upvalues of every function here: the folders, and Lua's own function.
 const Folders& folders_of(lua_State* state) { return upvalue<const Folders>(state); }
 
-/// Whether a script may create this file, or change it: data alone, as programs, scripts, scenes and what
-/// other programs read as instructions have more rights than the script.
+/// Whether a script may create this file, or change it: data alone, as programs, scripts, scenes
+/// and what other programs read as instructions have more rights than the script.
 bool may_write(const Folders& folders, const char* file) {
   if (!may_read(folders, file) || folders.is_read_only(file) || !is_data_file(file)) return false;
   std::error_code error;
@@ -39,10 +39,12 @@ int call_original(lua_State* state) {
 /// Why a file may not be written.
 void push_refusal_to_write(lua_State* state, const char* file) {
   if (std::strlen(file) > longest_path || is_data_file(file)) return push_refusal(state, file);
-  lua_pushfstring(state,
-                  "'%s' is not a file that scripts may write: they may write data, whose names end with %s and are not "
-                  "those of files that other programs take for instructions; --trust-scripts allows all",
-                  file, data_endings);
+  lua_pushfstring(
+      state,
+      "'%s' is not a file that scripts may write: they may write data, whose names end with %s and "
+      "are not "
+      "those of files that other programs take for instructions; --trust-scripts allows all",
+      file, data_endings);
 }
 
 /// nil, a message and a number, as Lua returns them for a file that cannot be opened.
@@ -67,7 +69,8 @@ int open_or_refuse(lua_State* state) {
   const char* const mode = luaL_optstring(state, 2, "r");
   const bool reads_only = std::strpbrk(mode, "wa+") == nullptr;
   if (reads_only && !may_read(folders_of(state), file)) return refuse<push_refusal>(state, file);
-  if (!reads_only && !may_write(folders_of(state), file)) return refuse<push_refusal_to_write>(state, file);
+  if (!reads_only && !may_write(folders_of(state), file))
+    return refuse<push_refusal_to_write>(state, file);
   if (!may_open_file(state)) return refuse<push_too_many_files, EMFILE>(state, file);
   const int results = call_original(state);
   count_open_file(state, -results);
@@ -78,7 +81,8 @@ int open_or_refuse(lua_State* state) {
 int open(lua_State* state) {
   const int results = open_or_refuse(state);
   const int first = lua_gettop(state) - results + 1;
-  const bool is_refused = results > 1 && lua_isnil(state, first) && lua_type(state, first + 1) == LUA_TSTRING;
+  const bool is_refused =
+      results > 1 && lua_isnil(state, first) && lua_type(state, first + 1) == LUA_TSTRING;
   note_opening(state, is_refused ? first + 1 : 0);
   return results;
 }

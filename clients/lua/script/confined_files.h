@@ -8,7 +8,8 @@
 
 namespace ziggurat::lua {
 
-/// Limits them to the files below the folders, which outlive the state, and to so many at once. May raise a Lua error.
+/// Limits them to the files below the folders, which outlive the state, and to so many at once. May
+/// raise a Lua error.
 void confine_files(lua_State* state, const Folders& folders, std::size_t most_files);
 
 constexpr std::size_t longest_path = 4096;  // of the system [bytes]

@@ -13,8 +13,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // Such texts are instructions for builds and package managers.
-constexpr const char* instructions[] = {"cmake*.txt",        "meson*.txt",       "conan*.txt",       "requirements*.txt",
-                                        "*requirements.txt", "constraints*.txt", "entry_points.txt", "top_level.txt"};
+constexpr const char* instructions[] = {
+    "cmake*.txt",        "meson*.txt",       "conan*.txt",       "requirements*.txt",
+    "*requirements.txt", "constraints*.txt", "entry_points.txt", "top_level.txt"};
 
 bool is_of_data(const fs::path& name) {
   std::string ending = name.extension().string();

@@ -29,10 +29,13 @@ Failure DirectorScript::start() {
   if (auto failure = run_chunk()) return failure;
   constexpr std::array usual = {"init", "pre_step", "post_step", "is_finished"};
   if (std::ranges::none_of(usual, [this](const char* name) { return has(name); })) {
-    return path() + ": the script has none of the functions init(), pre_step(tick), post_step(tick) and is_finished()";
+    return path() +
+           ": the script has none of the functions init(), pre_step(tick), post_step(tick) and "
+           "is_finished()";
   }
   doubt_names();
-  if (auto failure = call("init", false, "init, tick " + std::to_string(first_tick()))) return failure;
+  if (auto failure = call("init", false, "init, tick " + std::to_string(first_tick())))
+    return failure;
   return prepare_next();
 }
 
@@ -40,9 +43,11 @@ Failure DirectorScript::step() {
   places_.clear();
   const Running running(calling());
   const std::uint64_t tick = director_.tick();
-  if (auto failure = call({"post_step", false, tick}, "post_step " + std::to_string(tick))) return failure;
+  if (auto failure = call({"post_step", false, tick}, "post_step " + std::to_string(tick)))
+    return failure;
   bool is_finished = false;
-  if (auto failure = call({"is_finished", false, {}}, "is_finished, tick " + std::to_string(tick), &is_finished)) {
+  if (auto failure = call({"is_finished", false, {}}, "is_finished, tick " + std::to_string(tick),
+                          &is_finished)) {
     return failure;
   }
   if (!is_finished) return prepare_next();
@@ -54,7 +59,9 @@ void DirectorScript::doubt_names() {
   for (const Slip& slip : slips) {
     if (has(slip.meant)) continue;
     for (const char* name : slip.written) {
-      if (has(name)) log().add(true, std::string("nothing calls ") + name + "(); did you mean " + slip.meant + "()?");
+      if (has(name))
+        log().add(true,
+                  std::string("nothing calls ") + name + "(); did you mean " + slip.meant + "()?");
     }
   }
 }

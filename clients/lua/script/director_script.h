@@ -17,7 +17,8 @@ class DirectorScript final : public Script {
   /// @throws std::bad_alloc if max_memory does not hold an empty state
   DirectorScript(Director& director, const ScriptOptions& options);
 
-  // Each of the script's functions may be missing, but not all of those that are called in every run.
+  // Each of the script's functions may be missing, but not all of those that are called in every
+  // run.
 
   /// At the first tick: runs the chunk, then init() and pre_step(tick + 1).
   Failure start();
@@ -28,10 +29,12 @@ class DirectorScript final : public Script {
   /// After the last tick: destroy().
   Failure destroy();
 
-  /// Where the script asked for the act that an error is about: `FILE:LINE: `; empty if that is not known. Of what was
-  /// asked for since the last call of step() or reset() began.
+  /// Place in the script of the act that an error is about: `FILE:LINE: `; empty if that is not
+  /// known. Only acts since the begin of the last call of step() or reset() are known.
   /// @param field  of the error
-  std::string before_error_of(std::string_view field) const { return places_.before_error_of(field); }
+  std::string before_error_of(std::string_view field) const {
+    return places_.before_error_of(field);
+  }
 
  private:
   void set_up(lua_State* state) override;

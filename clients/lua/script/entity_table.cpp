@@ -43,7 +43,8 @@ void push_payload(lua_State* state, std::string_view payload) {
 
 /// Pushes a table of states by position, from 1, and by id where there is one.
 template <typename State, typename Push>
-void push_states(lua_State* state, std::span<const State> all, std::span<const std::string> ids, Push push) {
+void push_states(lua_State* state, std::span<const State> all, std::span<const std::string> ids,
+                 Push push) {
   lua_createtable(state, static_cast<int>(all.size()), 0);
   for (std::size_t i = 0; i < all.size(); ++i) {
     push(state, all[i]);
@@ -55,7 +56,8 @@ void push_states(lua_State* state, std::span<const State> all, std::span<const s
   }
 }
 
-void push_first_link(lua_State* state, const Entity& entity, std::array<double, 3> LinkState::*vector) {
+void push_first_link(lua_State* state, const Entity& entity,
+                     std::array<double, 3> LinkState::*vector) {
   if (entity.links().empty()) return lua_pushnil(state);
   push_vector(state, entity.links()[0].*vector);
 }
@@ -66,11 +68,16 @@ struct Property {
 };
 
 constexpr std::array properties = {
-    Property{"position", [](lua_State* state, const Entity& entity) { push_vector(state, entity.pose().position); }},
+    Property{"position", [](lua_State* state,
+                            const Entity& entity) { push_vector(state, entity.pose().position); }},
     Property{"orientation",
-             [](lua_State* state, const Entity& entity) { push_orientation(state, entity.pose().orientation); }},
+             [](lua_State* state, const Entity& entity) {
+               push_orientation(state, entity.pose().orientation);
+             }},
     Property{"velocity",
-             [](lua_State* state, const Entity& entity) { push_first_link(state, entity, &LinkState::velocity); }},
+             [](lua_State* state, const Entity& entity) {
+               push_first_link(state, entity, &LinkState::velocity);
+             }},
     Property{"angular_velocity",
              [](lua_State* state, const Entity& entity) {
                push_first_link(state, entity, &LinkState::angular_velocity);
@@ -84,17 +91,23 @@ constexpr std::array properties = {
                push_states(state, entity.joints(), entity.joint_ids(), push_joint);
              }},
     Property{"leds",
-             [](lua_State* state, const Entity& entity) { push_states(state, entity.leds(), {}, push_color); }},
+             [](lua_State* state, const Entity& entity) {
+               push_states(state, entity.leds(), {}, push_color);
+             }},
     Property{"directional_leds",
              [](lua_State* state, const Entity& entity) {
                push_states(state, entity.directional_leds(), {}, push_color);
              }},
     Property{"tags",
-             [](lua_State* state, const Entity& entity) { push_states(state, entity.tags(), {}, push_payload); }},
+             [](lua_State* state, const Entity& entity) {
+               push_states(state, entity.tags(), {}, push_payload);
+             }},
     Property{"magnets",
              [](lua_State* state, const Entity& entity) {
                push_states(state, entity.magnets(), {},
-                           [](lua_State* to, const std::array<double, 3>& field) { push_vector(to, field); });
+                           [](lua_State* to, const std::array<double, 3>& field) {
+                             push_vector(to, field);
+                           });
              }},
 };
 
@@ -110,12 +123,13 @@ const Property* property_at(lua_State* state, int index) {
   return property_named(check_text(state, index));
 }
 
-/// Of the entity at index 1; null if it is not in the world.
+/// Entity of the table at index 1; null if it is not in the world.
 const Entity* entity_of(lua_State* state) {
   lua_pushliteral(state, "id");
   lua_rawget(state, 1);
-  const Entity* const entity =
-      lua_type(state, -1) == LUA_TSTRING ? upvalue<Director>(state).find(check_text(state, -1)) : nullptr;
+  const Entity* const entity = lua_type(state, -1) == LUA_TSTRING
+                                   ? upvalue<Director>(state).find(check_text(state, -1))
+                                   : nullptr;
   lua_pop(state, 1);
   return entity;
 }
@@ -135,8 +149,8 @@ int read_property(lua_State* state) {
   }
   if (entity == nullptr) {
     lua_getfield(state, 1, "id");
-    return luaL_error(state, "entity '%s' is not in the world any more: it has no %s", lua_tostring(state, -1),
-                      lua_tostring(state, 2));
+    return luaL_error(state, "entity '%s' is not in the world any more: it has no %s",
+                      lua_tostring(state, -1), lua_tostring(state, 2));
   }
   property->push(state, *entity);
   return 1;
@@ -145,9 +159,11 @@ int read_property(lua_State* state) {
 int write_field(lua_State* state) {
   check_table(state, 1);
   if (property_at(state, 2) != nullptr) {
-    return luaL_error(state, "%s of an entity can't be set; world.move, world.push, world.set_leds and world.set_tags "
-                             "change entities",
-                      lua_tostring(state, 2));
+    return luaL_error(
+        state,
+        "%s of an entity can't be set; world.move, world.push, world.set_leds and world.set_tags "
+        "change entities",
+        lua_tostring(state, 2));
   }
   lua_settop(state, 3);
   lua_rawset(state, 1);
@@ -167,8 +183,9 @@ void prepare_entities(lua_State* state, Director& director) {
 
 void push_entity(lua_State* state, const Entity& entity) {
   lua_createtable(state, 0, 3);
-  for (const auto& [name, text] :
-       {std::pair{"id", &entity.id()}, {"kind", &entity.kind()}, {"controller", &entity.controller()}}) {
+  for (const auto& [name, text] : {std::pair{"id", &entity.id()},
+                                   {"kind", &entity.kind()},
+                                   {"controller", &entity.controller()}}) {
     lua_pushlstring(state, text->data(), text->size());
     lua_setfield(state, -2, name);
   }

@@ -7,8 +7,8 @@
 
 namespace ziggurat::lua {
 
-/// Creates the metatable of entities, which push_entity() needs. The director outlives the state. May raise a
-/// Lua error.
+/// Creates the metatable of entities, which push_entity() needs. The director outlives the state.
+/// May raise a Lua error.
 void prepare_entities(lua_State* state, Director& director);
 
 /// Pushes a new table. May raise a Lua error.

@@ -22,7 +22,7 @@ struct RandomStreams {
   RandomStream math_random;
 };
 
-/// What the libraries refer to. All of it outlives the state and does not move.
+/// Environment of the libraries. All of it outlives the state and does not move.
 struct Environment {
   LogLines& log;
   RandomStreams& random;

@@ -18,7 +18,7 @@ struct ErrorMessage {
   std::string traceback;  ///< "stack traceback:\n…"; empty if there was no memory for it
 };
 
-/// Of the error on top of the stack, from lua_pcall; pops it. Shortens long messages.
+/// Message of the error on top of the stack, from lua_pcall; pops it. Shortens long messages.
 ErrorMessage take_error_message(lua_State* state);
 
 }  // namespace ziggurat::lua

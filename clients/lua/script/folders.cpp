@@ -13,7 +13,8 @@ bool is_hidden(const fs::path& name) { return name.native().starts_with('.'); }
 
 bool is_one_of(const std::vector<fs::path>& files, const fs::path& file) {
   std::error_code error;
-  return std::ranges::any_of(files, [&](const fs::path& each) { return fs::equivalent(each, file, error); });
+  return std::ranges::any_of(
+      files, [&](const fs::path& each) { return fs::equivalent(each, file, error); });
 }
 
 }  // namespace
@@ -44,7 +45,9 @@ bool Folders::contain(const fs::path& file) const {
   });
 }
 
-bool Folders::is_read_only(const fs::path& file) const { return is_one_of(exceptions_.read_only, file); }
+bool Folders::is_read_only(const fs::path& file) const {
+  return is_one_of(exceptions_.read_only, file);
+}
 
 std::string Folders::names() const {
   std::string text;

@@ -20,7 +20,8 @@ class Folders {
   explicit Folders(const std::vector<std::filesystem::path>& folders, Exceptions exceptions = {});
 
   /// Whether a file is below a folder when all symbolic links are resolved, and neither it nor a
-  /// folder between is hidden (its name begins with a dot, or it is an exception). The file need not exist.
+  /// folder between is hidden (its name begins with a dot, or it is an exception). The file need
+  /// not exist.
   bool contain(const std::filesystem::path& file) const;
 
   bool is_read_only(const std::filesystem::path& file) const;

@@ -22,7 +22,7 @@ int guarded(lua_State* state) {
   return lua_error(state);
 }
 
-/// What a closure's n-th upvalue (from 1), a light userdata, points to.
+/// Object of a closure's n-th upvalue (from 1), a light userdata.
 template <typename T>
 T& upvalue(lua_State* state, int n = 1) {
   return *static_cast<T*>(lua_touserdata(state, lua_upvalueindex(n)));

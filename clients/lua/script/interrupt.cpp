@@ -19,8 +19,9 @@ namespace {
 constexpr int step = 1000;            // instructions between two looks of the hook
 constexpr long interval_us = 50'000;  // computing time between two looks of the signal
 constexpr int looks_per_s = 1'000'000 / interval_us;
-constexpr unsigned quiet_for_place = 10;  // such intervals without an instruction: a library function runs
-constexpr int switch_cost = 100;      // of a coroutine that is resumed [instructions]
+constexpr unsigned quiet_for_place =
+    10;                           // such intervals without an instruction: a library function runs
+constexpr int switch_cost = 100;  // of a coroutine that is resumed [instructions]
 constexpr int exit_failed_script = 3;
 
 std::atomic<bool> interrupted{false};
@@ -28,7 +29,7 @@ std::atomic<lua_State*> running{nullptr};  // the coroutine that runs now
 static_assert(std::atomic<bool>::is_always_lock_free &&
               std::atomic<lua_State*>::is_always_lock_free);
 
-// Of the running call. Written by the thread that runs scripts, and by its signal handler.
+// State of the running call. Written by the thread that runs scripts, and by its signal handler.
 struct Watch {
   const char* robot = "";
   const char* script = "";  // its file
@@ -36,13 +37,13 @@ struct Watch {
   std::uint64_t instructions = 0;  // counted so far
   bool was_seen = false;           // by the signal
   bool is_counting = false;
-  bool is_over = false;              // more than max_instructions, or late
-  std::uint64_t max_looks = 0;       // of the signal; 0 = any number
-  std::uint64_t looks = 0;           // so far
-  std::uint64_t max_quiet = 0;       // looks of the signal without an instruction between them
-  std::uint64_t max_seconds = 0;     // of wall time; 0 = any number
+  bool is_over = false;           // more than max_instructions, or late
+  std::uint64_t max_looks = 0;    // of the signal; 0 = any number
+  std::uint64_t looks = 0;        // so far
+  std::uint64_t max_quiet = 0;    // looks of the signal without an instruction between them
+  std::uint64_t max_seconds = 0;  // of wall time; 0 = any number
   std::chrono::steady_clock::time_point begin{};  // if there are max_seconds
-  bool is_late = false;              // more than max_looks or max_seconds
+  bool is_late = false;                           // more than max_looks or max_seconds
   bool place_is_old = false;         // the place file has that of an earlier look of the signal
   std::uint64_t quiet = 0;           // looks of the signal since an instruction was counted
   char place[LUA_IDSIZE + 16] = "";  // file and line, noted last
@@ -62,13 +63,15 @@ void note_place(lua_State* state) {
 }
 
 bool is_beyond_wall_time() {
-  return watch.max_seconds > 0 && std::chrono::steady_clock::now() - watch.begin > std::chrono::seconds(watch.max_seconds);
+  return watch.max_seconds > 0 &&
+         std::chrono::steady_clock::now() - watch.begin > std::chrono::seconds(watch.max_seconds);
 }
 
 // Whether a library function runs for too long.
 bool is_stuck() {
   if (watch.quiet > 1 && is_beyond_wall_time()) return true;
-  return watch.quiet > watch.max_quiet && (watch.max_instructions > 0 || watch.max_looks > 0 || watch.max_seconds > 0);
+  return watch.quiet > watch.max_quiet &&
+         (watch.max_instructions > 0 || watch.max_looks > 0 || watch.max_seconds > 0);
 }
 
 // The place is that which was noted, whatever called what runs now.
@@ -77,10 +80,11 @@ void raise(lua_State* state, lua_Debug*) {
     luaL_error(state, "interrupted");
   } else if (watch.is_late) {
     const auto limit = is_beyond_wall_time() ? watch.max_seconds : watch.max_looks / looks_per_s;
-    lua_pushfstring(state, "%s: computes for more than %d s in one call: an endless loop?", watch.place,
-                    static_cast<int>(limit));
+    lua_pushfstring(state, "%s: computes for more than %d s in one call: an endless loop?",
+                    watch.place, static_cast<int>(limit));
   } else {
-    lua_pushfstring(state, "%s: runs more than %d million instructions in one call: an endless loop?",
+    lua_pushfstring(state,
+                    "%s: runs more than %d million instructions in one call: an endless loop?",
                     watch.place, static_cast<int>(watch.max_instructions / 1'000'000));
   }
   lua_error(state);
@@ -172,7 +176,8 @@ bool must_scripts_end() noexcept { return interrupted || watch.is_over; }
 
 std::string where_left() {
   return std::string(watch.place) + ": " + left_function() + " computes for more than " +
-         std::to_string(is_beyond_wall_time() ? watch.max_seconds : watch.max_quiet / looks_per_s) + " s in one call";
+         std::to_string(is_beyond_wall_time() ? watch.max_seconds : watch.max_quiet / looks_per_s) +
+         " s in one call";
 }
 
 void allow_scripts() noexcept { interrupted = false; }
@@ -192,9 +197,11 @@ void watch_scripts() {
   const timespec interval{0, interval_us * 1000};
   const itimerspec precise{interval, interval};
   timer_t timer;
-  if (::timer_create(CLOCK_PROCESS_CPUTIME_ID, &signal, &timer) == 0 && ::timer_settime(timer, 0, &precise, nullptr) == 0) return;
-  // As where too many signals may be queued: this one counts the whole clock ticks at whose ends the process ran, so that on a
-  // busy machine five seconds may be four.
+  if (::timer_create(CLOCK_PROCESS_CPUTIME_ID, &signal, &timer) == 0 &&
+      ::timer_settime(timer, 0, &precise, nullptr) == 0)
+    return;
+  // As where too many signals may be queued: this one counts the whole clock ticks at whose ends
+  // the process ran, so that on a busy machine five seconds may be four.
   const itimerval coarse{{0, interval_us}, {0, interval_us}};
   ::setitimer(ITIMER_PROF, &coarse, nullptr);
 }

@@ -18,16 +18,17 @@ void append(std::string& text, Format... number_and_format) {
   text.append(digits, end);
 }
 
-constexpr int deepest_logged = 3;                // tables in tables
-constexpr std::size_t most_logged = 100;   // fields of a table
+constexpr int deepest_logged = 3;            // tables in tables
+constexpr std::size_t most_logged = 100;     // fields of a table
 constexpr std::size_t most_sorted = 10'000;  // entries of a table: of more the order is not known
-constexpr std::size_t longest = 1000;     // text in a table, and name of a field [bytes]
+constexpr std::size_t longest = 1000;        // text in a table, and name of a field [bytes]
 
 void append_value(lua_State* state, int index, std::string& text, int depth);
 
 /// The value on top, in a table: a string in quotes.
 void append_element(lua_State* state, std::string& text, int depth) {
-  if (lua_type(state, -1) != LUA_TSTRING) return append_value(state, lua_gettop(state), text, depth);
+  if (lua_type(state, -1) != LUA_TSTRING)
+    return append_value(state, lua_gettop(state), text, depth);
   std::size_t size = 0;
   const char* bytes = lua_tolstring(state, -1, &size);
   text += '"' + std::string(bytes, std::min(size, longest)) + (size > longest ? "…\"" : "\"");
@@ -90,7 +91,9 @@ void append_table(lua_State* state, int index, std::string& text, int depth) {
   };
   text += "{";
   std::size_t elements = 0;
-  for (; text.size() <= most && lua_rawgeti(state, index, static_cast<lua_Integer>(elements) + 1) != LUA_TNIL; ++elements) {
+  for (; text.size() <= most &&
+         lua_rawgeti(state, index, static_cast<lua_Integer>(elements) + 1) != LUA_TNIL;
+       ++elements) {
     begin();
     append_element(state, text, depth + 1);
     lua_pop(state, 1);

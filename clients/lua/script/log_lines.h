@@ -29,8 +29,8 @@ struct LogLines {
   void clear();  ///< keeps its memory for the next tick
 };
 
-/// Moves the lines to the log of a robot or director. False if the session takes no more of them at this tick;
-/// the rest is dropped.
+/// Moves the lines to the log of a robot or director. False if the session takes no more of them at
+/// this tick; the rest is dropped.
 bool move_log(LogLines& from, Robot& to);
 bool move_log(LogLines& from, Director& to);
 

@@ -12,8 +12,8 @@
 namespace ziggurat::lua {
 namespace {
 
-// A script that must end may have it, too: each error that it raises without memory would cost a full
-// collection of its garbage [bytes].
+// A script that must end may have it, too: each error that it raises without memory would cost a
+// full collection of its garbage [bytes].
 constexpr std::size_t reserve_for_errors = std::size_t{1} << 20;
 
 }  // namespace
@@ -27,16 +27,19 @@ BoundedState::BoundedState(std::size_t max_bytes, std::span<std::byte> region)
 // Needs no memory of Lua.
 void BoundedState::note_place(Budget& budget) {
   lua_Debug function;
-  for (int level = 0; budget.state != nullptr && lua_getstack(budget.state, level, &function) != 0; ++level) {
+  for (int level = 0; budget.state != nullptr && lua_getstack(budget.state, level, &function) != 0;
+       ++level) {
     lua_getinfo(budget.state, "Sl", &function);
     if (function.currentline < 0) continue;  // of C
-    std::snprintf(budget.refused_at, sizeof budget.refused_at, "%s:%d", function.short_src, function.currentline);
+    std::snprintf(budget.refused_at, sizeof budget.refused_at, "%s:%d", function.short_src,
+                  function.currentline);
     return;
   }
 }
 
-// What has left the pool stays outside, and so does what begins when it is full.
-void* BoundedState::resize(BlockPool& pool, void* block, std::size_t old_size, std::size_t new_size) {
+// Blocks that have left the pool stay outside, and so do blocks that are made when it is full.
+void* BoundedState::resize(BlockPool& pool, void* block, std::size_t old_size,
+                           std::size_t new_size) {
   const bool pooled = pool.owns(block);
   if (block != nullptr && !pooled) return std::realloc(block, new_size);
   if (pooled && BlockPool::same_room(old_size, new_size)) return block;
@@ -49,14 +52,16 @@ void* BoundedState::resize(BlockPool& pool, void* block, std::size_t old_size, s
   return moved;
 }
 
-void* BoundedState::allocate(void* budget, void* block, std::size_t old_size, std::size_t new_size) {
+void* BoundedState::allocate(void* budget, void* block, std::size_t old_size,
+                             std::size_t new_size) {
   begin_allocation();
   void* const moved = allocate_within(*static_cast<Budget*>(budget), block, old_size, new_size);
   end_allocation();
   return moved;
 }
 
-void* BoundedState::allocate_within(Budget& budget, void* block, std::size_t old_size, std::size_t new_size) {
+void* BoundedState::allocate_within(Budget& budget, void* block, std::size_t old_size,
+                                    std::size_t new_size) {
   if (block == nullptr) old_size = 0;  // old_size is the type of the new object
   if (new_size == 0) {
     if (block == nullptr) return nullptr;

@@ -21,7 +21,8 @@ class BoundedState {
   BoundedState& operator=(const BoundedState&) = delete;
 
   lua_State* get() const { return state_.get(); }
-  /// The state is in the middle of something without end (stuck_call.h): it is not used, and its memory not freed.
+  /// The state is in the middle of something without end (stuck_call.h): it is not used, and its
+  /// memory not freed.
   void abandon() { (void)state_.release(); }
   std::size_t used_bytes() const { return budget_.used; }
   /// `FILE:LINE` where memory was last refused; empty: it was not, or outside of any Lua function.
@@ -41,7 +42,8 @@ class BoundedState {
   static void note_place(Budget& budget);
   static void* resize(BlockPool& pool, void* block, std::size_t old_size, std::size_t new_size);
   static void* allocate(void* budget, void* block, std::size_t old_size, std::size_t new_size);
-  static void* allocate_within(Budget& budget, void* block, std::size_t old_size, std::size_t new_size);
+  static void* allocate_within(Budget& budget, void* block, std::size_t old_size,
+                               std::size_t new_size);
 
   Budget budget_;
   std::unique_ptr<lua_State, Close> state_;

@@ -8,10 +8,10 @@ namespace ziggurat::lua {
 namespace {
 
 // Their addresses are keys of the registry.
-constexpr char watched_key = 0, name_key = 0, owner_key = 0, root_key = 0, table_key = 0, field_key = 0,
-               opening_key = 0;
+constexpr char watched_key = 0, name_key = 0, owner_key = 0, root_key = 0, table_key = 0,
+               field_key = 0, opening_key = 0;
 
-constexpr int deepest = 3;             // robot.joints.<id>.<field>
+constexpr int deepest = 3;              // robot.joints.<id>.<field>
 constexpr std::size_t most_named = 24;  // fields of a message
 constexpr int most_read = 10'000;       // fields, as scripts can make any tables
 
@@ -38,7 +38,8 @@ void watch_table(lua_State* state, int depth) {
   luaL_checkstack(state, 4, nullptr);
   lua_pushnil(state);
   while (lua_next(state, -2) != 0) {
-    if (lua_type(state, -1) == LUA_TTABLE && lua_type(state, -2) == LUA_TSTRING) watch_table(state, depth + 1);
+    if (lua_type(state, -1) == LUA_TTABLE && lua_type(state, -2) == LUA_TSTRING)
+      watch_table(state, depth + 1);
     lua_pop(state, 1);
   }
 }
@@ -71,8 +72,10 @@ std::string fields_of(lua_State* state, int table) {
   }
   std::ranges::sort(names);
   std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), most_named); ++i) text += (i == 0 ? "" : ", ") + names[i];
-  if (names.size() > most_named) text += " and " + std::to_string(names.size() - most_named) + " more";
+  for (std::size_t i = 0; i < std::min(names.size(), most_named); ++i)
+    text += (i == 0 ? "" : ", ") + names[i];
+  if (names.size() > most_named)
+    text += " and " + std::to_string(names.size() - most_named) + " more";
   return text.empty() ? "nothing" : text;
 }
 
@@ -82,7 +85,8 @@ bool contains(std::string_view text, std::string_view part) { return text.find(p
 bool is_unnamed(std::string_view error) {
   if (!contains(error, "nil") && !contains(error, "'for' ")) return false;
   const auto is_named = [&](std::string_view kind) { return contains(error, kind); };
-  return std::ranges::none_of(std::array{"(global '", "(local '", "(field '", "(upvalue '", "(method '"}, is_named);
+  return std::ranges::none_of(
+      std::array{"(global '", "(local '", "(field '", "(upvalue '", "(method '"}, is_named);
 }
 
 /// Whether the error is about a nil value in a field or variable of that name.
@@ -90,7 +94,7 @@ bool is_about(std::string_view error, const std::string& field) {
   return contains(error, "nil value") && contains(error, " '" + field + "')");
 }
 
-/// What io.open said, for an error about a nil value.
+/// Message of io.open, for an error about a nil value.
 std::string of_opening(lua_State* state, std::string_view error) {
   if (!contains(error, "nil value") && !contains(error, "got nil")) return {};
   std::string text;
@@ -154,8 +158,8 @@ std::string of_field(lua_State* state, std::string_view error) {
     if (is_global && is_unnamed(error)) {
       text = "the last global that was read, '" + field + "', is nil";
     } else if (!name.empty() && (is_about(error, field) || is_unnamed(error))) {
-      text = std::string(lua_tostring(state, top + 3)) + " has no " + name + "." + field + "; " + name +
-             " has: " + fields_of(state, table);
+      text = std::string(lua_tostring(state, top + 3)) + " has no " + name + "." + field + "; " +
+             name + " has: " + fields_of(state, table);
     }
   }
   lua_settop(state, top);

@@ -68,7 +68,8 @@ void count_open_file(lua_State* state, int index) {
 
 void push_too_many_files(lua_State* state, const char* file) {
   lua_pushfstring(state,
-                  "'%s' is not opened: this script has %d files open, and may not have more; close those that it does "
+                  "'%s' is not opened: this script has %d files open, and may not have more; close "
+                  "those that it does "
                   "not need (file:close()); --trust-scripts allows more",
                   file, static_cast<int>(most_files(state)));
 }

@@ -1,12 +1,13 @@
 #pragma once
-// The files that a script has open: their number is bounded, as all scripts of a process share what it may open.
+// The files that a script has open: their number is bounded, as all scripts of a process share what
+// it may open.
 
 #include <cstddef>
 #include <lua.hpp>
 
 namespace ziggurat::lua {
 
-/// What a script may have open if the process may open enough.
+/// Number of files that a script may have open if the process may open enough.
 inline constexpr std::size_t most_open_files = 32;
 
 /// May raise a Lua error, as all functions here.

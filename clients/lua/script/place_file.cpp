@@ -27,7 +27,8 @@ void open_place_file(const std::string& path) {
   const int error = errno;
   if (file >= 0) ::close(file);
   if (memory == MAP_FAILED) {
-    throw std::runtime_error("--place-file " + path + ": can't be written: " + std::strerror(error));
+    throw std::runtime_error("--place-file " + path +
+                             ": can't be written: " + std::strerror(error));
   }
   mapped = static_cast<char*>(memory);
 }

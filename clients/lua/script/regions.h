@@ -10,8 +10,9 @@ namespace ziggurat::lua {
 
 class Regions {
  public:
-  /// An empty state and a small script with its tables take 40 kB; the collector lets it grow by as much again.
-  /// An odd number of lines of the cache, so that the same part of all states is not in the same few sets of it.
+  /// An empty state and a small script with its tables take 40 kB; the collector lets it grow by as
+  /// much again. An odd number of lines of the cache, so that the same part of all states is not in
+  /// the same few sets of it.
   static constexpr std::size_t size = (std::size_t{96} << 10) + 64;  ///< of a region [bytes]
 
   /// If there is no memory for them, they are empty.

@@ -7,8 +7,8 @@
 
 namespace ziggurat::lua {
 
-/// Pushes it. The robot outlives the state and does not move; a state may have several robots. May raise a Lua
-/// error.
+/// Pushes it. The robot outlives the state and does not move; a state may have several robots. May
+/// raise a Lua error.
 void push_robot(lua_State* state, Robot& robot);
 
 /// Writes the readings of the robot into its tables. May raise a Lua error.

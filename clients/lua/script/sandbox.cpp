@@ -34,9 +34,9 @@ int hide_variable(lua_State* state) {
   return 1;
 }
 
-// As in Lua, without functions: while one of these here calls Lua's own, that is on the stack, and a script's
-// reader or message handler could take it from there.
-// Upvalue: Lua's debug.getinfo. Not by lua_call: levels count this function as they count Lua's.
+// As in Lua, without functions: while one of these here calls Lua's own, that is on the stack, and
+// a script's reader or message handler could take it from there. Upvalue: Lua's debug.getinfo. Not
+// by lua_call: levels count this function as they count Lua's.
 int get_info(lua_State* state) {
   // Lua 5.3 would pop a value from the stack, also of a coroutine, and again until there is none.
   const int option = lua_isthread(state, 1) ? 3 : 2;

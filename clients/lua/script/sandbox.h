@@ -1,5 +1,5 @@
 #pragma once
-// What a script that is not trusted can do: it starts no program, loads no byte code and no C
+// Sandbox of a script that is not trusted. It starts no program, loads no byte code and no C
 // library, and uses only files below some folders (docs/lua-api.md has the whole list).
 
 #include <cstddef>

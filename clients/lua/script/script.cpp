@@ -101,8 +101,8 @@ Failure Script::call(const Wanted& wanted, const std::string& moment, bool* answ
     return script_ + ": the script has no function " + wanted.name + "() (in " + moment + ")";
   }
   if (!may_be_called(state)) {
-    return script_ + ": " + wanted.name + " is a " + luaL_typename(state, -1) + ", not a function; write: function " +
-           wanted.name + "() … end (in " + moment + ")";
+    return script_ + ": " + wanted.name + " is a " + luaL_typename(state, -1) +
+           ", not a function; write: function " + wanted.name + "() … end (in " + moment + ")";
   }
   if (wanted.tick) lua_pushinteger(state, static_cast<lua_Integer>(*wanted.tick));
   if (auto failure = call_prepared(moment, wanted.tick ? 1 : 0, answer != nullptr ? 1 : 0)) {
@@ -157,9 +157,10 @@ int Script::prepare(lua_State* state) {
 
 std::string Script::describe_error(const std::string& moment) {
   auto [text, traceback] = take_error_message(state_.get());
-  const bool lacked_memory =
-      text.ends_with("not enough memory") || text.ends_with("not enough memory for buffer allocation");
-  if (text == "not enough memory" && *state_.refused_at() != '\0') text = std::string(state_.refused_at()) + ": " + text;
+  const bool lacked_memory = text.ends_with("not enough memory") ||
+                             text.ends_with("not enough memory for buffer allocation");
+  if (text == "not enough memory" && *state_.refused_at() != '\0')
+    text = std::string(state_.refused_at()) + ": " + text;
   // Most messages of Lua begin with file and line (long paths are shortened), some have neither.
   const auto end = script_.size() < LUA_IDSIZE ? script_ : script_.substr(script_.size() - 40);
   if (text.substr(0, LUA_IDSIZE + 1).find(end + ":") == std::string::npos) {

@@ -27,9 +27,12 @@ struct ScriptOptions {
   /// The files that the script may use; they outlive it. Null: the script is trusted, and may use
   /// all of Lua.
   const Folders* folders = nullptr;
-  std::size_t most_files = most_open_files;  ///< that a script that is not trusted may have open at once
-  std::span<std::byte> region{};  ///< for the script's Lua state; outlives it. Empty: it has none of its own
-  std::uint64_t max_in_library = 5;  ///< processor time of a function of Lua's library in a call [s]
+  std::size_t most_files =
+      most_open_files;  ///< that a script that is not trusted may have open at once
+  std::span<std::byte>
+      region{};  ///< for the script's Lua state; outlives it. Empty: it has none of its own
+  std::uint64_t max_in_library =
+      5;  ///< processor time of a function of Lua's library in a call [s]
 };
 
 /// The error of a script: `scenes/x.lua:12: attempt to … (in step 37)`, a line feed, and Lua's
@@ -43,22 +46,24 @@ class Script {
   Script(const Script&) = delete;
   Script& operator=(const Script&) = delete;
 
-  /// What the script logged, also in a call that failed. The caller clears it.
+  /// Log lines of the script, also of a call that failed. The caller clears them.
   LogLines& log() { return log_; }
   std::size_t used_memory() const { return state_.used_bytes(); }  ///< [bytes]
 
  protected:
-  /// @param name  of its robot or director, unique in the run: for its random streams and for messages
+  /// @param name  of its robot or director, unique in the run: for its random streams and for
+  /// messages
   /// @throws std::bad_alloc if max_memory does not hold an empty state
   Script(std::string name, const ScriptOptions& options);
 
   struct Wanted {
-    const char* name = nullptr;         // of a function of the script
+    const char* name = nullptr;  // of a function of the script
     bool is_required = false;
     std::optional<std::uint64_t> tick;  // its argument
   };
 
-  /// Sets the globals of this kind of script, and refreshes them before each call. May raise a Lua error.
+  /// Sets the globals of this kind of script, and refreshes them before each call. May raise a Lua
+  /// error.
   virtual void set_up(lua_State* state) = 0;
   virtual void refresh(lua_State* state) = 0;
 
@@ -74,7 +79,8 @@ class Script {
   const std::string& path() const { return script_; }  ///< for messages
   std::uint64_t first_tick() const { return first_tick_; }
   Calling calling() const {
-    return {name_.c_str(), script_.c_str(), state_.get(), max_instructions_, max_computing_, max_in_library_};
+    return {name_.c_str(),     script_.c_str(), state_.get(),
+            max_instructions_, max_computing_,  max_in_library_};
   }
 
  private:

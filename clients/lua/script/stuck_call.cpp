@@ -15,17 +15,19 @@ struct Leavable {
   lua_CFunction function = nullptr;  // of Lua; the same in each state
 };
 
-// Those that compute for long, and those that they may call again and again.
+// Library functions that may compute for long, or that these call again and again.
 Leavable leavable[] = {
-    {"string", "byte"},   {"string", "char"},   {"string", "find"},      {"string", "format"}, {"string", "gmatch"},
-    {"string", "gsub"},   {"string", "len"},    {"string", "lower"},     {"string", "match"},  {"string", "pack"},
-    {"string", "rep"},    {"string", "reverse"}, {"string", "sub"},      {"string", "unpack"}, {"string", "upper"},
-    {"table", "concat"},  {"table", "insert"},  {"table", "move"},       {"table", "pack"},    {"table", "remove"},
-    {"table", "sort"},    {"table", "unpack"},  {"utf8", "char"},        {"utf8", "codepoint"}, {"utf8", "len"},
-    {"utf8", "offset"},   {"_G", "rawequal"},   {"_G", "rawget"},        {"_G", "rawlen"},     {"_G", "rawset"},
-    {"_G", "select"},     {"_G", "tostring"},   {"_G", "type"}};
+    {"string", "byte"},   {"string", "char"},   {"string", "find"},  {"string", "format"},
+    {"string", "gmatch"}, {"string", "gsub"},   {"string", "len"},   {"string", "lower"},
+    {"string", "match"},  {"string", "pack"},   {"string", "rep"},   {"string", "reverse"},
+    {"string", "sub"},    {"string", "unpack"}, {"string", "upper"}, {"table", "concat"},
+    {"table", "insert"},  {"table", "move"},    {"table", "pack"},   {"table", "remove"},
+    {"table", "sort"},    {"table", "unpack"},  {"utf8", "char"},    {"utf8", "codepoint"},
+    {"utf8", "len"},      {"utf8", "offset"},   {"_G", "rawequal"},  {"_G", "rawget"},
+    {"_G", "rawlen"},     {"_G", "rawset"},     {"_G", "select"},    {"_G", "tostring"},
+    {"_G", "type"}};
 
-// What string.gmatch returns.
+// Iterator that string.gmatch returns.
 constexpr Leavable search{"string", "gmatch"};
 
 // Read and written by the thread that runs scripts, and by its signal handler.
@@ -44,7 +46,8 @@ int call_marked(lua_State* state) {
 // Reads only: what runs is in the middle of something.
 const Leavable* find_marked(lua_State* state) {
   lua_Debug function{};
-  if (lua_getstack(state, 0, &function) == 0 || lua_getinfo(state, "S", &function) == 0) return nullptr;
+  if (lua_getstack(state, 0, &function) == 0 || lua_getinfo(state, "S", &function) == 0)
+    return nullptr;
   if (std::string_view(function.what) != "C") return nullptr;
   const void* const mark = lua_touserdata(state, lua_upvalueindex(1));
   for (const Leavable& each : leavable) {

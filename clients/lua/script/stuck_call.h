@@ -1,8 +1,9 @@
 #pragma once
-// A way out of a function of Lua's library that does not end, such as string.find with a pattern that
-// tries too much: Lua calls no hook in it. A signal handler jumps out of it, to where the script was
-// called. What it leaves behind, the script's Lua state, is in the middle of something and is never used
-// or freed again; other scripts of the process go on. It belongs to the process, as signals do.
+// A way out of a function of Lua's library that does not end, such as string.find with a pattern
+// that tries too much: Lua calls no hook in it. A signal handler jumps out of it, to where the
+// script was called. What it leaves behind, the script's Lua state, is in the middle of something
+// and is never used or freed again; other scripts of the process go on. It belongs to the process,
+// as signals do.
 
 #include <lua.hpp>
 #include <optional>
@@ -11,15 +12,17 @@
 namespace ziggurat::lua {
 
 /// As lua_pcall, on the one thread that runs scripts. Do not nest.
-/// @returns its status; none: leave_stuck_call() has ended the call, and `state` must not be used again
+/// @returns its status; none: leave_stuck_call() has ended the call, and `state` must not be used
+/// again
 std::optional<int> call_leavably(lua_State* state, int arguments, int results, int handler);
 
-/// Marks functions of Lua's library that may compute for long, or are called by those that do, and may be left at any instruction:
-/// they have no lock, and no memory but Lua's. May raise a Lua error.
+/// Marks functions of Lua's library that may compute for long, or are called by those that do, and
+/// may be left at any instruction: they have no lock, and no memory but Lua's. May raise a Lua
+/// error.
 void mark_leavable_functions(lua_State* state);
 
-/// For a signal handler, while a script computes: jumps out of its call if a marked function runs now
-/// (if Lua allocates memory in it, as soon as it has it). Returns otherwise, with no effect.
+/// For a signal handler, while a script computes: jumps out of its call if a marked function runs
+/// now (if Lua allocates memory in it, as soon as it has it). Returns otherwise, with no effect.
 /// @param state  the coroutine that runs
 void leave_stuck_call(lua_State* state) noexcept;
 

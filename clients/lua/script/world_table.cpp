@@ -39,7 +39,8 @@ std::string_view check_entity(lua_State* state, int index) {
     lua_rawget(state, index);
     lua_replace(state, index);
   }
-  if (lua_type(state, index) != LUA_TSTRING) luaL_argerror(state, index, "an entity or its id expected");
+  if (lua_type(state, index) != LUA_TSTRING)
+    luaL_argerror(state, index, "an entity or its id expected");
   return check_text(state, index);
 }
 
@@ -51,7 +52,8 @@ std::array<double, 3> check_vector(lua_State* state, int index) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     lua_getfield(state, index, names[i]);
     const double number = lua_type(state, -1) == LUA_TNUMBER ? lua_tonumber(state, -1) : NAN;
-    if (!std::isfinite(number)) luaL_argerror(state, index, "finite numbers {x =, y =, z =} expected");
+    if (!std::isfinite(number))
+      luaL_argerror(state, index, "finite numbers {x =, y =, z =} expected");
     vector[i] = number;
     lua_pop(state, 1);
   }
@@ -86,7 +88,8 @@ Onto check_onto(lua_State* state, int index) {
   if (lua_isnoneornil(state, index)) return Onto::free_place;
   check_table(state, index);
   lua_getfield(state, index, "may_overlap");
-  if (lua_type(state, -1) != LUA_TBOOLEAN) luaL_argerror(state, index, "{may_overlap = true} expected");
+  if (lua_type(state, -1) != LUA_TBOOLEAN)
+    luaL_argerror(state, index, "{may_overlap = true} expected");
   return lua_toboolean(state, -1) ? Onto::others : Onto::free_place;
 }
 
@@ -105,7 +108,8 @@ int set_joint(lua_State* state) {
   const std::string_view entity = check_entity(state, 1);
   const std::string_view joint = check_text(state, 2);
   const double position = check_number(state, 3);
-  director_of(state).set_joint(entity, joint, position, lua_isnoneornil(state, 4) ? 0 : check_number(state, 4));
+  director_of(state).set_joint(entity, joint, position,
+                               lua_isnoneornil(state, 4) ? 0 : check_number(state, 4));
   note_act(state);
   return 0;
 }
@@ -154,13 +158,16 @@ int push(lua_State* state) {
 
 const Entity& present(lua_State* state, std::string_view id) {
   const Entity* const entity = director_of(state).find(id);
-  if (entity == nullptr) luaL_error(state, "no entity '%s' is in the world", lua_tostring(state, 1));
+  if (entity == nullptr)
+    luaL_error(state, "no entity '%s' is in the world", lua_tostring(state, 1));
   return *entity;
 }
 
 Color check_color(lua_State* state, int index) {
   const auto color = parse_color(check_text(state, index));
-  if (!color) luaL_error(state, "'%s' is no color; write a name as red, or 'r,g,b,a'", lua_tostring(state, index));
+  if (!color)
+    luaL_error(state, "'%s' is no color; write a name as red, or 'r,g,b,a'",
+               lua_tostring(state, index));
   return *color;
 }
 
@@ -173,12 +180,12 @@ void push_element(lua_State* state, std::size_t i) {
   }
 }
 
-/// That the entity has devices of that kind, and a list a value for each.
+/// Checks that the entity has devices of that kind, and a list a value for each.
 void check_devices(lua_State* state, std::size_t count, const char* devices) {
   if (count == 0) luaL_error(state, "'%s' has no %s", lua_tostring(state, 1), devices);
   if (lua_type(state, 2) != LUA_TTABLE || lua_rawlen(state, 2) == count) return;
-  luaL_error(state, "'%s' has %d %s, and the list has %d values", lua_tostring(state, 1), static_cast<int>(count),
-             devices, static_cast<int>(lua_rawlen(state, 2)));
+  luaL_error(state, "'%s' has %d %s, and the list has %d values", lua_tostring(state, 1),
+             static_cast<int>(count), devices, static_cast<int>(lua_rawlen(state, 2)));
 }
 
 // Nothing with a destructor lives while Lua may raise an error: the values are checked first.
@@ -186,8 +193,9 @@ template <void (Director::*set)(std::string_view, std::span<const Color>),
           std::span<const Color> (Entity::*get)() const noexcept>
 int set_colors(lua_State* state) {
   constexpr bool are_directional = get != &Entity::leds;
-  check_count(state, 2, 2, are_directional ? "world.set_directional_leds(entity, color or list of colors)"
-                                           : "world.set_leds(entity, color or list of colors)");
+  check_count(state, 2, 2,
+              are_directional ? "world.set_directional_leds(entity, color or list of colors)"
+                              : "world.set_leds(entity, color or list of colors)");
   const std::string_view id = check_entity(state, 1);
   const std::size_t count = (present(state, id).*get)().size();
   check_devices(state, count, are_directional ? "directional LEDs" : "LEDs");
@@ -258,8 +266,9 @@ int contacts(lua_State* state) {
     }
     lua_pushboolean(to, contact.is_with_floor);
     lua_setfield(to, -2, "with_floor");
-    for (const auto& [name, vector] :
-         {std::pair{"point", &contact.point}, {"normal", &contact.normal}, {"force", &contact.force}}) {
+    for (const auto& [name, vector] : {std::pair{"point", &contact.point},
+                                       {"normal", &contact.normal},
+                                       {"force", &contact.force}}) {
       push_vector(to, *vector);
       lua_setfield(to, -2, name);
     }
@@ -270,23 +279,26 @@ int contacts(lua_State* state) {
 int messages(lua_State* state) {
   check_count(state, 0, 0, "world.messages()");
   lua_newtable(state);
-  set_elements(state, director_of(state).radio_messages(), [](lua_State* to, const RadioMessage& message) {
-    lua_createtable(to, 0, 4);
-    set_text(to, "receiver", message.receiver->id());
-    set_integer(to, "radio", static_cast<lua_Integer>(message.receiving_radio) + 1);
-    if (message.sender != nullptr) set_text(to, "sender", message.sender->id());
-    push_bytes(to, message.payload);
-    lua_setfield(to, -2, "data");
-  });
+  set_elements(state, director_of(state).radio_messages(),
+               [](lua_State* to, const RadioMessage& message) {
+                 lua_createtable(to, 0, 4);
+                 set_text(to, "receiver", message.receiver->id());
+                 set_integer(to, "radio", static_cast<lua_Integer>(message.receiving_radio) + 1);
+                 if (message.sender != nullptr) set_text(to, "sender", message.sender->id());
+                 push_bytes(to, message.payload);
+                 lua_setfield(to, -2, "data");
+               });
   return 1;
 }
 
-/// The table on top has each entity that is there under its id, and no other. Tables of those that stay, stay.
+/// The table on top has each entity that is there under its id, and no other. Tables of those that
+/// stay, stay.
 void refresh_entities(lua_State* state, Director& director) {
   lua_pushnil(state);
   while (lua_next(state, -2) != 0) {
     lua_pop(state, 1);
-    const bool is_there = lua_type(state, -1) == LUA_TSTRING && director.find(check_text(state, -1)) != nullptr;
+    const bool is_there =
+        lua_type(state, -1) == LUA_TSTRING && director.find(check_text(state, -1)) != nullptr;
     if (is_there) continue;
     lua_pushvalue(state, -1);
     lua_pushnil(state);

@@ -1,5 +1,6 @@
 #pragma once
-// The table `world` of a director's script: the entities as they are, and functions that change the world.
+// The table `world` of a director's script: the entities as they are, and functions that change the
+// world.
 
 #include <cstdint>
 #include <lua.hpp>
@@ -11,7 +12,7 @@
 
 namespace ziggurat::lua {
 
-/// What the table refers to. All of it outlives the state and does not move.
+/// Parts of the world that the table refers to. All of it outlives the state and does not move.
 struct WorldParts {
   Director& director;
   LogLines& log;

@@ -8,12 +8,10 @@ from typing import Callable, Optional
 from google.protobuf.message import DecodeError
 
 from . import protocol_pb2 as v1
-from .cost import excess, excess_of_robots
 from .curve import Curve
 from .errors import ConnectionLost, Malformed, ProtocolError, Refused, Timeout, printable
 from .find_server import find_server
-from .plain_stream import has_unknown_host
-from .transport import LINGER, SLICE, make_transport
+from .transport import LINGER, SLICE, Transport, has_unknown_host
 
 VERSION = v1.Version(major=1, minor=4)
 
@@ -46,7 +44,7 @@ class Connection:
         self.endpoint = endpoint or find_server()
         self._has_ended = has_ended
         self.longest_silence: Optional[float] = None  # [s] of wall time; longer, and the connection is lost
-        self.transport = make_transport(self.endpoint, curve)
+        self.transport = Transport(self.endpoint, curve)
 
     @property
     def is_accepted(self) -> bool:
@@ -96,16 +94,14 @@ class Connection:
                 raise Timeout(f"{self.endpoint}: {wait}")
 
     def _decoded(self, data: bytes) -> v1.ServerMessage:
-        fault = excess(data)
-        if not fault:
-            try:
-                if self.transport.has_more:
-                    raise DecodeError("a frame of several")
-                return v1.ServerMessage.FromString(data)
-            except DecodeError:
-                fault = "what is no message of the protocol; is it a Ziggurat server?"
-        raise Malformed(v1.Error(code=v1.Error.MALFORMED, severity=v1.Error.FATAL,
-                                 message=f"{self.endpoint} sent {fault}"))
+        try:
+            if self.transport.has_more:
+                raise DecodeError("a frame of several")
+            return v1.ServerMessage.FromString(data)
+        except DecodeError:
+            raise Malformed(v1.Error(
+                code=v1.Error.MALFORMED, severity=v1.Error.FATAL,
+                message=f"{self.endpoint} sent what is no message of the protocol; is it a Ziggurat server?")) from None
 
     def leave(self, failure: str) -> None:
         """As failed, with the cause, and closes the connection: where there is no session yet that has more to say."""
@@ -114,11 +110,7 @@ class Connection:
             self.close()
 
     def _check(self, welcome: v1.Welcome) -> None:
-        """H2: the major version is the same. And there can be handles for all robots."""
-        fault = excess_of_robots(welcome)
-        if fault:
-            raise Malformed(v1.Error(code=v1.Error.MALFORMED, severity=v1.Error.FATAL,
-                                     message=f"{self.endpoint} sent {fault}"))
+        """H2: the major version is the same."""
         theirs = welcome.version
         if theirs.major == VERSION.major:
             return

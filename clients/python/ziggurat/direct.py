@@ -13,10 +13,9 @@ from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Sequence, Tu
 
 from . import protocol_pb2 as v1
 from .curve import Curve
-from .cost import BYTES_PER_ENTITY, MOST_LAID_OUT, TOO_MUCH_LAID_OUT
 from .devices import Color, Quaternion, Vector
 from .devices.led import color_of
-from .errors import Malformed, ProtocolError
+from .errors import ProtocolError
 from .joining import Deadline, take_token
 from .metrics import Metrics
 from .session import Session
@@ -215,7 +214,6 @@ class World(Session):
         self._groups = set(hello.subscription.groups)
         self._direction = v1.Direction()
         self._figures = Metrics()
-        self._laid_out = 0  # [bytes] of all layouts since one that began anew
         super().__init__(endpoint, hello, *options)
 
     @property
@@ -295,10 +293,6 @@ class World(Session):
             raise ValueError(f"this director did not ask for {group!r}; add it to tell=… of direct()")
 
     def _lay_out(self, layout: v1.WorldLayout) -> None:
-        size = layout.ByteSize() + BYTES_PER_ENTITY * len(layout.entities)
-        self._laid_out = size + (self._laid_out if layout.first else 0)
-        if self._laid_out > MOST_LAID_OUT:
-            raise Malformed(v1.Error(code=v1.Error.MALFORMED, severity=v1.Error.FATAL, message=f"the server sent {TOO_MUCH_LAID_OUT}"))
         if layout.first == 0:
             self.order, self.entities = [], Entities()
             self._counts = dict.fromkeys(("entities", "links", "joints", "leds", "directional_leds", "tags",

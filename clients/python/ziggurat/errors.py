@@ -57,7 +57,7 @@ class ProtocolError(ZigguratError):
 
 
 class Malformed(ProtocolError):
-    """The server sent what is no message of the protocol, or one that would take too much memory."""
+    """The server sent what is no message of the protocol."""
 
 
 class Refused(ProtocolError):

@@ -1,15 +1,22 @@
-"""How a client's messages go to the server and back. Both ways speak ZeroMQ's wire protocol."""
+"""How a client's messages go to the server and back: a DEALER of ZeroMQ."""
 
 from __future__ import annotations
 
-from typing import Optional, Union
+import re
+import socket
+from typing import Optional
 
 import zmq
 import zmq.utils.monitor
 
 from .curve import Curve
-from .plain_stream import KEYS_ARE_MISSING, LINGER, LONGEST_MESSAGE, SLICE, PlainStream, address_of, check_endpoint
 
+# Wall times [s].
+SLICE = 0.5  # of a wait
+LINGER = 1.0  # time to send the last messages when a session is closed
+
+LONGEST_MESSAGE = (1 << 30) + (1 << 20)  # of a server: an Observation of 1 GiB and what is around it [bytes]
+KEYS_ARE_MISSING = "refused key? The endpoint is protected, and this client has no keys; pass curve=Curve(...)"
 MONITORED = (zmq.EVENT_CONNECTED | zmq.EVENT_DISCONNECTED | zmq.EVENT_HANDSHAKE_SUCCEEDED
              | zmq.EVENT_HANDSHAKE_FAILED_NO_DETAIL | zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL
              | zmq.EVENT_HANDSHAKE_FAILED_AUTH)
@@ -17,26 +24,43 @@ MONITORED = (zmq.EVENT_CONNECTED | zmq.EVENT_DISCONNECTED | zmq.EVENT_HANDSHAKE_
 MOST_FAILED_HANDSHAKES = 3
 
 
-def make_transport(endpoint: str, curve: Optional[Curve]) -> Union["ZeroMq", PlainStream]:
-    """Starts to connect. Raises ValueError for an unusable endpoint or keys."""
-    check_endpoint(endpoint)
-    address = address_of(endpoint) if curve is None else None
-    return ZeroMq(endpoint, curve) if address is None else PlainStream(address)
+def check_endpoint(endpoint: str) -> None:
+    """Raises ValueError for one that no server can listen at: it is not waited for."""
+    if endpoint.startswith("ipc://"):
+        return
+    parts = re.fullmatch(r"tcp://(.+):([^:]*)", endpoint, re.DOTALL)
+    if parts is None:
+        raise ValueError(f"endpoint {endpoint!r} is none; write ipc:///path or tcp://host:port")
+    if re.fullmatch(r"[0-9]+", parts[2]) is None or not 0 < int(parts[2][:20]) < 1 << 16:
+        raise ValueError(f"endpoint {endpoint!r}: the port is {parts[2]!r}; it must be a number from 1 to 65535")
 
 
-class ZeroMq:
-    """A DEALER of libzmq: encrypted, and for endpoints that only libzmq knows. The same functions as PlainStream."""
+def has_unknown_host(endpoint: str) -> bool:
+    """Whether the host has a name without address. Asks the system, which may take its time."""
+    if not endpoint.startswith("tcp://") or endpoint.startswith("tcp://["):
+        return False
+    try:
+        socket.getaddrinfo(endpoint[len("tcp://"):].rpartition(":")[0], None, socket.AF_INET)
+    except (OSError, UnicodeError):
+        return True
+    return False
+
+
+class Transport:
+    """Connects in the background; the server may start later. Raises ValueError for an unusable endpoint or keys."""
 
     def __init__(self, endpoint: str, curve: Optional[Curve]):
+        check_endpoint(endpoint)
         self._has_keys = curve is not None
-        self.is_accepted = False
+        self.is_accepted = False  # by the server: if nothing arrives then, it is slow
         self._is_open = False  # the handshake has succeeded
         self.why_closed: Optional[str] = None  # messages that came before may still be in the queue
         self._failed_handshakes = 0
-        self._socket = zmq.Context.instance().socket(zmq.DEALER)
+        self._context = zmq.Context()
+        self._socket = self._context.socket(zmq.DEALER)
         self._socket.setsockopt(zmq.IPV6, endpoint.startswith("tcp://["))
-        # Also of a program that ends without close(), as by Ctrl-C.
-        self._socket.setsockopt(zmq.LINGER, int(1000 * LINGER))
+        self._socket.setsockopt(zmq.TCP_KEEPALIVE, 1)
+        self._socket.setsockopt(zmq.LINGER, 0)  # without close()
         self._socket.setsockopt(zmq.SNDTIMEO, int(1000 * SLICE))
         self._socket.setsockopt(zmq.MAXMSGSIZE, LONGEST_MESSAGE)  # a longer one closes the connection
         # ZeroMQ reconnects by itself, but the server does not know the new connection:
@@ -56,11 +80,13 @@ class ZeroMq:
             raise ValueError(f"endpoint {endpoint!r}: {error}") from None
 
     def close(self, linger: float) -> None:
+        """linger  time to send the last messages [s]"""
         if self._socket.closed:
             return
         self._socket.disable_monitor()
         self._monitor.close(linger=0)
         self._socket.close(linger=int(1000 * linger))
+        self._context.term()  # waits for that
 
     @property
     def closed(self) -> bool:
@@ -68,9 +94,11 @@ class ZeroMq:
 
     @property
     def has_more(self) -> bool:
+        """The last message goes on in another frame."""
         return bool(self._socket.getsockopt(zmq.RCVMORE))
 
     def send(self, data: bytes) -> bool:
+        """Queues a message. False after a while if the queue is full, or the server has refused the connection."""
         try:
             self._socket.send(data)
             return True
@@ -79,6 +107,7 @@ class ZeroMq:
             return False
 
     def receive(self, seconds: float) -> Optional[bytes]:
+        """Waits for a message; None after this time, and when the connection has changed."""
         ready = dict(self._poller.poll(0 if self.why_closed else int(1000 * seconds)))
         if self._socket not in ready and self._monitor in ready:
             self.why_closed = self.why_closed or self._next_reason()

@@ -52,4 +52,12 @@ test("a message that was cut is an error, and so is an unknown type", () => {
   const bytes = encode("ziggurat.v1.Poses", { positions: [1, 2, 3] });
   assert.throws(() => makeDecoder(schema, "ziggurat.v1.Poses")(bytes.slice(0, 6)));
   assert.throws(() => makeDecoder(schema, "ziggurat.v1.Nothing"), /no type ziggurat.v1.Nothing/);
+  const link = encode("ziggurat.v1.World", { links: [{ id: "abcdef" }] });
+  const longer = Array.from(link);
+  longer[3] += 1; // its name is longer than it is
+  assert.throws(() => makeDecoder(schema, "ziggurat.v1.World")(new Uint8Array([...longer, ...link])), /is damaged/);
+});
+
+test("a message that is too long is not decoded", () => {
+  assert.throws(() => makeDecoder(schema, "ziggurat.v1.Poses")(new Uint8Array(2 ** 27 + 1)), /has 134217729 bytes; at most 134217728 are read/);
 });

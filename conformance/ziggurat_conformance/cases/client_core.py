@@ -3,13 +3,11 @@
 import time
 
 from ..case import Case
-from ..client_congestion import last_message_is_lost
 from ..client_messages import (BEGUN, HELLO, LEFT, answered, end, error, heartbeat, observation, refusal, ticks,
                                welcome)
 from ..client_robots import robot, rover, sights
 from ..client_steps import (CheckClient, Ends, HearCorrection, HearFrom, Quiet, Refuse, Remove, SinceMinor,
                             Tell, TellBytes, TellObservation, Wait)
-from ..keys import LOCAL
 from ..wire import Some
 
 
@@ -56,9 +54,6 @@ CASES = [
     Case("H9.named", "Its Hello has its name", (HearFrom("hello", {"client_name": Some()}, should=True),)),
     Case("T1.one-dealer", "It connects with one DEALER, and sends one frame each time",
          (*BEGUN, *ticks(1, 2), Quiet(0.3), CheckClient("connections", _one_connection, should=True))),
-    Case("T1.linger", "Its last message arrives over a connection that is congested for half a second",
-         (HearFrom("hello", should=True), welcome(mode="MODE_HARDWARE_IN_THE_LOOP", deadline_policy=_HOLD), *ticks(0, 0),
-          CheckClient("last message", last_message_is_lost, should=True)), variant=LOCAL),
     Case("T7.routing-id", "It lets ZeroMQ choose its routing id",
          (HELLO, CheckClient("routing id", _own_routing_id, should=True))),
     Case("T4.small-limit", "No message is longer than Welcome allows",

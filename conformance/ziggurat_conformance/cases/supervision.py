@@ -267,7 +267,7 @@ CASES = [
        *_spawned(2, arm("arm9")), *_resumed(), answer("p"), Silence("p"),
        join("q", "arm9"), *observe("q"), Silence("p"), answer("q"), *observe("p", "q"), answer("p"),
        answer("q"), *observe("p", "q"), fresh=True),
-    _v("V9.taken", "It may be taken at once, and gets the tick in hand", *_paused(),
+    _v("V9.taken", "It may be taken at once, and gets the current tick", *_paused(),
        *_spawned(2, arm("arm9")), join("q", "arm9"), Hear("q", "observation", {"tick": Tick(of="p")}),
        answer("q"), Hear("q", "paused"), ask("s", 3, resume={}), told("s", 3), *observe("p", "q"),
        fresh=True),

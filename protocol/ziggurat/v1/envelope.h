@@ -1,5 +1,5 @@
 #pragma once
-// What both ends of the wire need beside the generated messages.
+// Helpers that both ends of the wire need beside the generated messages.
 
 #include <optional>
 #include <string>

@@ -82,13 +82,15 @@ struct Field {
   std::string_view content;  ///< if it has a length
 
   bool is_message() const {
-    return known != nullptr && wire_type == 2 && known->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
+    return known != nullptr && wire_type == 2 &&
+           known->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
   }
 };
 
 /// The sum over all fields of what each weighs, without the fields of messages in it.
 template <class Weigh>
-std::size_t sum(std::string_view bytes, const Descriptor& type, std::size_t most, int levels, Weigh& weigh) {
+std::size_t sum(std::string_view bytes, const Descriptor& type, std::size_t most, int levels,
+                Weigh& weigh) {
   constexpr std::uint64_t largest_number = (1U << 29) - 1;
   std::size_t all = 0;
   while (!bytes.empty() && all <= most) {
@@ -97,7 +99,9 @@ std::size_t sum(std::string_view bytes, const Descriptor& type, std::size_t most
     const auto wire_type = static_cast<unsigned>(*tag & 7);
     const auto content = take_value(bytes, wire_type);
     if (!content) break;
-    const FieldDescriptor* known = Weigh::needs_field(wire_type) ? type.FindFieldByNumber(static_cast<int>(*tag >> 3)) : nullptr;
+    const FieldDescriptor* known = Weigh::needs_field(wire_type)
+                                       ? type.FindFieldByNumber(static_cast<int>(*tag >> 3))
+                                       : nullptr;
     const Field field{known, wire_type, *content};
     all += weigh(field);
     if (all <= most && levels > 0 && field.is_message()) {
@@ -112,8 +116,8 @@ struct Count {
 
   std::size_t operator()(const Field& field) const {
     if (field.known == nullptr) return 1;
-    // Each byte may be a number of a list, which takes four bytes of memory or more. Text is looked at
-    // character by character.
+    // Each byte may be a number of a list, which takes four bytes of memory or more. Text is looked
+    // at character by character.
     const bool has_numbers = field.known->is_packable() && !has_fixed_size(*field.known);
     const bool is_text = field.known->type() == FieldDescriptor::TYPE_STRING;
     return 1 + (has_numbers || is_text ? field.content.size() / bytes_per_field : 0);
@@ -126,8 +130,10 @@ class Memory {
   static bool needs_field(unsigned) { return true; }
 
   std::size_t operator()(const Field& field) {
-    constexpr unsigned is_group = 3, ends_group = 4;  // none of the types has any: what is in one stays unknown
-    if (field.wire_type == is_group || field.wire_type == ends_group) return std::numeric_limits<std::size_t>::max() / 2;
+    constexpr unsigned is_group = 3,
+                       ends_group = 4;  // none of the types has any: what is in one stays unknown
+    if (field.wire_type == is_group || field.wire_type == ends_group)
+      return std::numeric_limits<std::size_t>::max() / 2;
     const std::size_t text = sizeof(std::string) + field.content.size() + 2 * block;
     const std::size_t unknown = growth * 16 + block + text;
     if (field.known == nullptr) return unknown;
@@ -144,8 +150,10 @@ class Memory {
   }
 
  private:
-  static constexpr std::size_t block = 24;  // what the system needs for each piece of memory, and its rounding
-  static constexpr std::size_t growth = 3;  // a list that grows has up to three times its size, while it is copied
+  static constexpr std::size_t block =
+      24;  // what the system needs for each piece of memory, and its rounding
+  static constexpr std::size_t growth =
+      3;  // a list that grows has up to three times its size, while it is copied
   static constexpr std::size_t place = growth * 8;  // of a pointer in a list
 
   std::size_t message(const FieldDescriptor& field) {
@@ -154,11 +162,11 @@ class Memory {
 
   static std::size_t numbers(const Field& field) {
     if (has_fixed_size(*field.known)) return (field.content.size() + 7) / 8;
-    return static_cast<std::size_t>(
-        std::ranges::count_if(field.content, [](char byte) { return static_cast<unsigned char>(byte) < 0x80; }));
+    return static_cast<std::size_t>(std::ranges::count_if(
+        field.content, [](char byte) { return static_cast<unsigned char>(byte) < 0x80; }));
   }
 
-  /// Of an empty message [bytes].
+  /// Size of an empty message [bytes].
   std::size_t size_of(const Descriptor& type) {
     constexpr std::size_t unknown = 256;
     const auto [at, is_new] = sizes_.try_emplace(&type, unknown);

@@ -11,9 +11,9 @@
 #include "network/barrier/departure.h"
 #include "network/barrier/directing.h"
 #include "network/barrier/exchange.h"
-#include "network/barrier/granting.h"
-#include "network/barrier/talk.h"
-#include "network/barrier/timing.h"
+#include "network/barrier/hello_checks.h"
+#include "network/barrier/peer_messages.h"
+#include "network/barrier/timeouts.h"
 #include "wire/command_limits.h"
 #include "wire/direction.h"
 #include "wire/fault.h"
@@ -27,7 +27,7 @@ namespace {
 constexpr std::size_t max_label = 64;  // bytes of a client's name, and of its version
 constexpr std::size_t max_waiting_bytes = std::size_t{64} << 20;  // of all Hellos that wait
 
-/// What a client calls itself, fit for a line on a terminal.
+/// Name of the client for a line on a terminal.
 std::string label_of(const wire::Hello& hello) {
   std::string text = hello.client_name.substr(0, max_label);
   if (text.empty()) text = "unnamed client";
@@ -65,7 +65,7 @@ Granted begin_with_robots(Barrier& barrier, const wire::Hello& hello, const Acce
   session.roster = wire::make_roster(barrier.run->layout, robots);
   take_over(barrier, robots, label_of(hello));
   for (const std::size_t robot : robots) {
-    barrier.seats.take(robot, session.id, barrier.now);
+    barrier.ownership.take(robot, session.id, barrier.now);
     barrier.deadlines.clear_zero(robot);
   }
   return &session;
@@ -99,7 +99,7 @@ Granted resume_session(Barrier& barrier, const wire::Hello& hello, const Access&
     lose(barrier, *session, "it was taken up over another connection");
   }
   for (const std::size_t robot : robots) {
-    barrier.seats.take(robot, session->id, barrier.now);
+    barrier.ownership.take(robot, session->id, barrier.now);
     barrier.deadlines.clear_zero(robot);
   }
   return session;
@@ -117,8 +117,7 @@ Granted start_directing(Barrier& barrier, const wire::Hello& hello, const Access
 
 Granted begin(Barrier& barrier, const wire::Hello& hello, const Access& access) {
   if (auto refusal = check_hello(barrier, hello, access.roles)) return std::move(*refusal);
-  const bool has_ticks =
-      hello.role == wire::Role::controller || hello.role == wire::Role::director;
+  const bool has_ticks = hello.role == wire::Role::controller || hello.role == wire::Role::director;
   if (!has_ticks) return begin_without_robots(barrier, hello);
   if (!hello.session_token.empty()) return resume_session(barrier, hello, access);
   if (hello.role == wire::Role::director) return start_directing(barrier, hello, access);
@@ -129,19 +128,20 @@ Granted begin(Barrier& barrier, const wire::Hello& hello, const Access& access) 
 void bind(Barrier& barrier, Session& session, const std::string& connection) {
   session.connection = connection;
   if (session.role == wire::Role::controller && barrier.run) {
-    session.command_limits = wire::command_limits(
-        session.roster, barrier.run->layout, barrier.connections.find(connection)->encoding);
+    session.command_limits = wire::command_limits(session.roster, barrier.run->layout,
+                                                  barrier.connections.find(connection)->encoding);
   }
-  if (session.role == wire::Role::director) session.command_limits = {wire::longest_direction, wire::most_fields};
+  if (session.role == wire::Role::director)
+    session.command_limits = {wire::longest_direction, wire::most_fields};
   if (barrier.on_standing) {
     barrier.on_standing(connection, standing_of(&session), longest_message(barrier, &session));
   }
-  session.contact = {barrier.now, barrier.now, 0, 0};
+  session.liveness = {barrier.now, barrier.now, 0, 0};
   barrier.connections.bind(connection, session.id);
 }
 
-/// A wish holds until another session has the robot; without one, a new session has that of the
-/// robot's controller.
+/// Sets the deadline policies of the session's robots. A policy that a Hello asks for holds until
+/// another session has the robot; otherwise the controller's policy holds.
 void set_policies(Barrier& barrier, const Session& session, const wire::Hello& hello) {
   if (!hello.deadline && !hello.session_token.empty()) return;
   for (std::size_t i = 0; i < session.roster.robots.size(); ++i) {
@@ -150,13 +150,14 @@ void set_policies(Barrier& barrier, const Session& session, const wire::Hello& h
   }
 }
 
-/// How long the tick in hand has waited for those who had the session's robots, or its director, before.
+/// Longest time that the current tick has waited for earlier sessions of these robots or this
+/// director.
 std::chrono::nanoseconds waited_before(const Barrier& barrier, const Session& session) {
   std::chrono::nanoseconds longest{0};
-  if (session.director) longest = barrier.directors.seats[*session.director].waited;
+  if (session.director) longest = barrier.directors.ownership[*session.director].waited;
   for (std::size_t i = 0; i < session.roster.robots.size(); ++i) {
     if (session.roster.gone[i]) continue;
-    longest = std::max(longest, barrier.seats[session.roster.robots[i]].waited);
+    longest = std::max(longest, barrier.ownership[session.roster.robots[i]].waited);
   }
   return longest;
 }
@@ -191,8 +192,9 @@ void refuse(Barrier& barrier, const std::string& connection, const wire::Hello& 
   refusal.client_version = hello.version;
   barrier.outbox.refusal(refusal);
   send(barrier, connection);
-  note(barrier, nullptr, fmt::format("{} was refused with {}: {}", label_of(hello), to_string(refusal.fault.code),
-                                     refusal.fault.message));
+  note(barrier, nullptr,
+       fmt::format("{} was refused with {}: {}", label_of(hello), to_string(refusal.fault.code),
+                   refusal.fault.message));
 }
 
 void admit(Barrier& barrier, const std::string& connection, const Access& access,
@@ -212,14 +214,14 @@ void admit(Barrier& barrier, const std::string& connection, const Access& access
   bind(barrier, session, connection);
   if (session.director) take_director(barrier, session, hello);
   set_policies(barrier, session, hello);
-  update_patience(barrier, session);
-  session.turn.waited_before = waited_before(barrier, session);
+  update_deadline(barrier, session);
+  session.pending_answer.waited_before = waited_before(barrier, session);
   const bool is_welcomed = welcome(barrier, session, !hello.session_token.empty(), commands) &&
                            tell_taken(barrier, session, "Another client");
   const bool has_tick = barrier.gate.tick() && session.has_ticks();
   std::string_view why = is_welcomed ? "" : "its connection is gone";
   if (is_welcomed && has_tick) why = observe(barrier, session);
-  session.turn.is_repeated = true;
+  session.pending_answer.is_resent = true;
   if (!why.empty()) lose(barrier, session, why);
 }
 
@@ -228,7 +230,7 @@ Delivery tell_loading(Barrier& barrier, Session& session) {
   return send(barrier, session);
 }
 
-/// Keeps the Hello in hand until the world is loaded.
+/// Keeps the Hello until the world is loaded.
 void keep_waiting(Barrier& barrier, const std::string& connection, const Access& access,
                   std::string_view bytes) {
   const wire::Hello hello = barrier.inbox.hello();
@@ -245,7 +247,7 @@ void keep_waiting(Barrier& barrier, const std::string& connection, const Access&
   Session& session = barrier.sessions.add();
   session.role = role;
   session.state = SessionState::hello;
-  session.application = {std::string(bytes), access};
+  session.waiting_hello = {std::string(bytes), access};
   bind(barrier, session, connection);
   tell_loading(barrier, session);
 }
@@ -259,11 +261,11 @@ void handle_hello(Barrier& barrier, const std::string& connection, const Access&
 }
 
 void admit_waiting(Barrier& barrier) {
-  std::vector<std::pair<std::string, Application>> waiting;
+  std::vector<std::pair<std::string, WaitingHello>> waiting;
   barrier.sessions.for_each([&](Session& session) {
-    // Those whose connection is gone get no session, and no lease.
+    // A client whose connection is gone gets no session and no lease.
     if (tell_loading(barrier, session) != Delivery::unreachable) {
-      waiting.emplace_back(session.connection, std::move(session.application));
+      waiting.emplace_back(session.connection, std::move(session.waiting_hello));
     }
     erase(barrier, session);
   });

@@ -1,5 +1,5 @@
 #pragma once
-// How sessions begin (docs/protocol.md, section 2).
+// Begin of sessions (docs/protocol.md, section 2).
 
 #include <string>
 

@@ -10,19 +10,19 @@
 #include <string>
 #include <vector>
 
+#include "network/answer_times.h"
 #include "network/barrier/calls.h"
 #include "network/barrier/connections.h"
 #include "network/barrier/deadlines.h"
 #include "network/barrier/directors.h"
 #include "network/barrier/journal.h"
 #include "network/barrier/metrics.h"
-#include "network/barrier/seats.h"
+#include "network/barrier/ownership.h"
 #include "network/barrier/sessions.h"
 #include "network/barrier/tick_gate.h"
 #include "network/config.h"
 #include "network/limits.h"
 #include "network/link.h"
-#include "network/answer_times.h"
 #include "network/reactions.h"
 #include "network/report.h"
 #include "wire/inbox.h"
@@ -32,13 +32,13 @@
 
 namespace ziggurat::network {
 
-/// What robots sense at the tick in hand. Seen, not owned: stays as it is until the next tick.
-struct Senses {
+/// Readings of robots at the current tick. Not owned; they stay unchanged until the next tick.
+struct TickReadings {
   const world::Observations* observations = nullptr;
   const std::vector<std::string>* tag_payloads = nullptr;  ///< for each of Layout::tags
 };
 
-/// Where the world stands after a reset or a restore, until its first tick is published.
+/// State of the world after a reset or a restore, until its first tick is published.
 struct Begin {
   std::uint64_t tick = 0;
   std::optional<world::Commands> commands = {};  ///< that hold there; none: nothing was commanded
@@ -67,21 +67,21 @@ struct Barrier {
 
   Connections connections;
   Sessions sessions;
-  Seats seats;
+  Ownership ownership;
   Deadlines deadlines;
   Directors directors;
-  TickGate gate{seats, directors.seats};
+  TickGate gate{ownership, directors.ownership};
   Calls calls;
   Journal journal;
   Metrics metrics;
   Reactions reactions;
   std::vector<AnswerTimes> answer_times;  ///< per controller of the scene
 
-  Senses senses;
+  TickReadings readings;
   Begin begin;
   Timers timers;
   std::uint64_t heartbeats = 0;  // sent so far
-  std::uint64_t epoch = 0;       // of the tick in hand: resets and restores so far
+  std::uint64_t epoch = 0;       // of the current tick: resets and restores so far
   wire::Inbox inbox;             // the message that is being received
   wire::Outbox outbox;           // messages other than observations
 };

@@ -34,7 +34,7 @@ std::optional<wire::Fault> check_entities(const std::vector<std::string>& entiti
       fmt::format("The request names {} entities; {} are allowed.", entities.size(), most_ids));
 }
 
-/// What keeping it takes, about.
+/// Approximate memory that the request takes [bytes].
 std::size_t bytes_of(const wire::Request& request) {
   std::size_t bytes = sizeof request + request.text.size() +
                       sizeof(double) * (request.position.size() + request.orientation.size());
@@ -56,8 +56,9 @@ std::optional<wire::Fault> check_request(const wire::Request& request, wire::Rol
     return make_fault(ErrorCode::forbidden, {}, "This role may not make this request.");
   }
   if (request.held_up.size() > most_held_up) {
-    return make_fault(ErrorCode::too_many, "held_up",
-                      fmt::format("A request may name {} sessions that it holds up.", most_held_up));
+    return make_fault(
+        ErrorCode::too_many, "held_up",
+        fmt::format("A request may name {} sessions that it holds up.", most_held_up));
   }
   return check_entities(request.entities);
 }
@@ -66,8 +67,7 @@ std::optional<wire::Fault> Calls::add(SessionId session, const std::string& conn
                                       wire::Request request) {
   const std::size_t bytes = bytes_of(request);
   Unanswered& unanswered = unanswered_[session];
-  const bool is_much =
-      unanswered.requests > 0 && unanswered.bytes + bytes > most_unanswered_bytes;
+  const bool is_much = unanswered.requests > 0 && unanswered.bytes + bytes > most_unanswered_bytes;
   if (unanswered.requests >= most_unanswered || is_much) {
     return make_fault(ErrorCode::too_many, {},
                       fmt::format("{} requests of {} bytes are unanswered.", unanswered.requests,

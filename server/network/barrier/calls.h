@@ -20,12 +20,13 @@ std::optional<wire::Fault> check_request(const wire::Request& request, wire::Rol
 
 class Calls {
  public:
-  // Of a session; a single request may have more bytes.
+  // Limits for the requests of a session; a single request may have more bytes.
   static constexpr std::size_t most_unanswered = 64;
   static constexpr std::size_t most_unanswered_bytes = 8 * mebibyte;
 
   /// A session asks. If it has too many requests that are not answered, that is its fault.
-  std::optional<wire::Fault> add(SessionId session, const std::string& connection, wire::Request request);
+  std::optional<wire::Fault> add(SessionId session, const std::string& connection,
+                                 wire::Request request);
   void answered(const Call& call);
   /// The session is over: it waits for no answer any more.
   void forget(SessionId session);

@@ -14,9 +14,10 @@ namespace ziggurat::network {
 
 struct Connection {
   SessionId session = SessionId::none;
-  /// Of its messages, both ways: the session's, or of the last message without a session.
+  /// Encoding of its messages, both ways: the session's, or that of the last message without a
+  /// session.
   wire::Encoding encoding = wire::Encoding::binary;
-  TokenBucket allowance;  ///< of messages
+  TokenBucket allowance;   ///< of messages
   bool is_warned = false;  ///< it was told that it sends too much
 };
 

@@ -29,8 +29,8 @@ Consequence consequence_of(const scene::DeadlinePolicy& policy, std::uint32_t mi
 }  // namespace
 
 std::optional<scene::DeadlinePolicy> fixed_against(const Config::Deadline& deadline,
-                                                   const scene::DeadlinePolicy& wish) {
-  if (!deadline.is_fixed || deadline.policy == wish) return std::nullopt;
+                                                   const scene::DeadlinePolicy& requested) {
+  if (!deadline.is_fixed || deadline.policy == requested) return std::nullopt;
   return deadline.policy;
 }
 
@@ -56,8 +56,8 @@ void Deadlines::set_policy(std::size_t robot, const std::optional<scene::Deadlin
 }
 
 std::optional<scene::DeadlinePolicy> Deadlines::fixed_against(
-    std::size_t robot, const scene::DeadlinePolicy& wish) const {
-  return network::fixed_against(defaults_[robots_[robot].controller], wish);
+    std::size_t robot, const scene::DeadlinePolicy& requested) const {
+  return network::fixed_against(defaults_[robots_[robot].controller], requested);
 }
 
 Consequence Deadlines::miss(std::size_t robot, std::uint64_t tick) {

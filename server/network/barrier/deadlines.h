@@ -11,7 +11,7 @@
 
 namespace ziggurat::network {
 
-/// What a policy asks for after a miss.
+/// Action of a policy after a miss.
 enum class Consequence {
   none,  ///< what was commanded before stays
   zero,  ///< its commands become zero when the tick is complete
@@ -21,7 +21,7 @@ enum class Consequence {
 
 /// The policy, if it is fixed and another than this one.
 std::optional<scene::DeadlinePolicy> fixed_against(const Config::Deadline& deadline,
-                                                   const scene::DeadlinePolicy& wish);
+                                                   const scene::DeadlinePolicy& requested);
 
 class Deadlines {
  public:
@@ -39,7 +39,7 @@ class Deadlines {
 
   std::size_t controller(std::size_t robot) const { return robots_[robot].controller; }
   const scene::DeadlinePolicy& policy(std::size_t robot) const { return robots_[robot].policy; }
-  /// Of the robot's controller, whatever its session wishes.
+  /// Policy of the robot's controller, without its session's own policy.
   const scene::DeadlinePolicy& usual_policy(std::size_t robot) const {
     return defaults_[robots_[robot].controller].policy;
   }
@@ -47,7 +47,7 @@ class Deadlines {
   void set_policy(std::size_t robot, const std::optional<scene::DeadlinePolicy>& policy);
   /// The policy of the robot's controller, if it is fixed and another than this one.
   std::optional<scene::DeadlinePolicy> fixed_against(std::size_t robot,
-                                                     const scene::DeadlinePolicy& wish) const;
+                                                     const scene::DeadlinePolicy& requested) const;
 
   /// The robot was not answered for in time. Counts that.
   Consequence miss(std::size_t robot, std::uint64_t tick);

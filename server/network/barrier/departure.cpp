@@ -6,11 +6,11 @@
 #include <map>
 #include <vector>
 
+#include "network/barrier/answer_timing.h"
 #include "network/barrier/directing.h"
 #include "network/barrier/exchange.h"
-#include "network/barrier/measuring.h"
-#include "network/barrier/talk.h"
-#include "network/barrier/timing.h"
+#include "network/barrier/peer_messages.h"
+#include "network/barrier/timeouts.h"
 #include "wire/fault.h"
 
 namespace ziggurat::network {
@@ -20,14 +20,15 @@ namespace {
 /// Frees a robot that the session holds.
 /// @param may_resume  the session may have the robot back
 void release(Barrier& barrier, const Session& holder, std::size_t robot, bool may_resume) {
-  const bool is_skipped = barrier.gate.has_missed(holder.turn);  // waited for once, not twice
-  const Time since = is_skipped ? holder.turn.owes_since : barrier.now;
-  barrier.seats.release(robot, may_resume ? holder.id : SessionId::none, since, is_skipped,
-                        barrier.gate.waited(holder.turn, barrier.now));
+  const bool is_skipped =
+      barrier.gate.has_missed(holder.pending_answer);  // waited for once, not twice
+  const Time since = is_skipped ? holder.pending_answer.waiting_since : barrier.now;
+  barrier.ownership.release(robot, may_resume ? holder.id : SessionId::none, since, is_skipped,
+                            barrier.gate.waited(holder.pending_answer, barrier.now));
   if (!is_skipped) expect_answer(barrier, robot);
 }
 
-/// Of a robot of the session, in Welcome.
+/// Index of a robot in the Welcome of its session.
 std::size_t position_of(const Session& session, std::size_t robot) {
   const auto& robots = session.roster.robots;
   return static_cast<std::size_t>(std::ranges::lower_bound(robots, robot) - robots.begin());
@@ -36,11 +37,11 @@ std::size_t position_of(const Session& session, std::size_t robot) {
 void release_all(Barrier& barrier, Session& holder, bool may_resume) {
   release_director(barrier, holder, may_resume);
   for (const std::size_t robot : holder.roster.robots) {
-    if (barrier.seats[robot].holder == holder.id) release(barrier, holder, robot, may_resume);
+    if (barrier.ownership[robot].holder == holder.id) release(barrier, holder, robot, may_resume);
   }
 }
 
-/// The session's connection has no session any more.
+/// Unbinds the session's connection.
 void unbind(Barrier& barrier, const Session& session) {
   barrier.connections.unbind(session.connection);
   barrier.calls.forget(session.id);
@@ -48,7 +49,7 @@ void unbind(Barrier& barrier, const Session& session) {
   barrier.on_standing(session.connection, Standing::none, longest_message(barrier, nullptr));
 }
 
-/// The session has lost its last robots to another client.
+/// Ends a session whose last robots another client has taken over.
 void displace(Barrier& barrier, Session& session, const std::string& by) {
   if (session.state != SessionState::lost) {
     const std::string robots = robots_of(barrier, session);
@@ -77,14 +78,15 @@ bool tell_one_taken(Barrier& barrier, Session& session, std::size_t position,
 void take(Barrier& barrier, Session& session, std::span<const std::size_t> robots,
           const std::string& by) {
   for (const std::size_t robot : robots) {
-    const bool is_held = barrier.seats[robot].holder == session.id;
-    is_held ? release(barrier, session, robot, false) : barrier.seats.drop_claim(robot);
+    const bool is_held = barrier.ownership[robot].holder == session.id;
+    is_held ? release(barrier, session, robot, false) : barrier.ownership.drop_claim(robot);
     session.roster.hand_over(position_of(session, robot));
   }
-  note(barrier, &session, fmt::format("{} has taken over {} from {}, which keeps {}", by, names_of(barrier, robots),
-                                      session.client, robots_of(barrier, session)));
+  note(barrier, &session,
+       fmt::format("{} has taken over {} from {}, which keeps {}", by, names_of(barrier, robots),
+                   session.client, robots_of(barrier, session)));
   if (session.state == SessionState::lost) return;
-  update_patience(barrier, session);
+  update_deadline(barrier, session);
   for (const std::size_t robot : robots) {
     if (!tell_one_taken(barrier, session, position_of(session, robot), by)) return;
   }
@@ -104,7 +106,7 @@ void handle_leave(Barrier& barrier, Session& session) {
   if (fault) {
     return answer_fault(barrier, session.connection, &session, std::move(*fault));
   }
-  session.contact.faults = 0;
+  session.liveness.faults = 0;
   barrier.inbox.append_log(session.roster, barrier.journal.log());
   take_metrics(barrier, session);
   const wire::Leave leave = barrier.inbox.leave();
@@ -115,9 +117,9 @@ void handle_leave(Barrier& barrier, Session& session) {
     if (session.roster.gone[position]) continue;
     const std::size_t robot = session.roster.robots[position];
     if (leave.reason == wire::LeaveReason::failed) {
-      barrier.journal.fail(robot, leave.message, session.turn.tick);
+      barrier.journal.fail(robot, leave.message, session.pending_answer.tick);
     } else if (session.state != SessionState::draining) {
-      barrier.journal.depart(robot, session.turn.tick);
+      barrier.journal.depart(robot, session.pending_answer.tick);
     }
     remove_robot(barrier, robot);
   }
@@ -127,11 +129,12 @@ void handle_leave(Barrier& barrier, Session& session) {
 void lose(Barrier& barrier, Session& session, std::string_view why) {
   if (session.state == SessionState::lost) return;
   if (session.state != SessionState::draining && session.state != SessionState::hello) {
-    note(barrier, &session, fmt::format("{} ({}) is lost: {}", session.client, robots_of(barrier, session), why));
+    note(barrier, &session,
+         fmt::format("{} ({}) is lost: {}", session.client, robots_of(barrier, session), why));
   }
   const bool may_resume = session.state != SessionState::draining && session.has_ticks();
   if (!may_resume) return erase(barrier, session);
-  barrier.gate.settle(session.turn, barrier.now);
+  barrier.gate.settle(session.pending_answer, barrier.now);
   unbind(barrier, session);
   give_up_answers(barrier, session);
   session.state = SessionState::lost;
@@ -143,19 +146,20 @@ void disconnect(Barrier& barrier, const std::string& connection) {
   Session* session = barrier.sessions.find(barrier.connections.session_of(connection));
   if (session != nullptr) lose(barrier, *session, "its connection is gone");
   barrier.connections.erase(connection);
-  stand_if_paused(barrier);
+  halt_if_paused(barrier);
 }
 
 void take_over(Barrier& barrier, std::span<const std::size_t> robots, const std::string& by) {
   std::map<SessionId, std::vector<std::size_t>> taken;
   for (const std::size_t robot : robots) {
-    const Seats::Seat& seat = barrier.seats[robot];
-    taken[seat.owner()].push_back(robot);
+    const Ownership::Entry& entry = barrier.ownership[robot];
+    taken[entry.owner()].push_back(robot);
   }
   for (const auto& [id, theirs] : taken) {
     Session* session = barrier.sessions.find(id);
     if (session == nullptr) continue;  // none had these
-    const bool is_whole = theirs.size() + session->roster.gone_count == session->roster.robots.size();
+    const bool is_whole =
+        theirs.size() + session->roster.gone_count == session->roster.robots.size();
     is_whole ? displace(barrier, *session, by) : take(barrier, *session, theirs, by);
   }
 }
@@ -169,17 +173,17 @@ bool tell_taken(Barrier& barrier, Session& session, const std::string& by) {
 
 void erase(Barrier& barrier, Session& session) {
   give_up_answers(barrier, session);
-  barrier.gate.settle(session.turn, barrier.now);
+  barrier.gate.settle(session.pending_answer, barrier.now);
   if (session.state != SessionState::lost) unbind(barrier, session);
   release_all(barrier, session, false);
   for (const std::size_t robot : session.roster.robots) {
-    if (barrier.seats[robot].claimant == session.id) barrier.seats.drop_claim(robot);
+    if (barrier.ownership[robot].claimant == session.id) barrier.ownership.drop_claim(robot);
   }
   barrier.sessions.erase(session.id);
 }
 
 bool end(Barrier& barrier, Session& session, std::string why) {
-  barrier.gate.settle(session.turn, barrier.now);
+  barrier.gate.settle(session.pending_answer, barrier.now);
   session.state = SessionState::draining;
   barrier.outbox.end({wire::EndReason::finished, std::move(why), tick_of(barrier)});
   return send(barrier, session) == Delivery::sent;
@@ -191,10 +195,11 @@ void finish(Barrier& barrier, const wire::End& end) {
     if (session.state == SessionState::draining) return;  // it is told already
     give_up_answers(barrier, session);
     if (session.state == SessionState::lost) return erase(barrier, session);
-    barrier.gate.settle(session.turn, barrier.now);
+    barrier.gate.settle(session.pending_answer, barrier.now);
     barrier.outbox.end(end);
     const bool is_told = send(barrier, session) == Delivery::sent;
-    const bool may_answer = session.has_ticks() || session.role == wire::Role::controller;  // with its last log lines
+    const bool may_answer =
+        session.has_ticks() || session.role == wire::Role::controller;  // with its last log lines
     if (!is_told || !may_answer) return erase(barrier, session);
     session.state = SessionState::draining;
   });
@@ -208,7 +213,7 @@ void refuse_waiting(Barrier& barrier) {
   refusal.fault.severity = wire::Severity::fatal;
   barrier.sessions.for_each([&](Session& session) {
     if (session.state != SessionState::hello) return;
-    barrier.inbox.parse(session.application.hello);
+    barrier.inbox.parse(session.waiting_hello.hello);
     refusal.client_version = barrier.inbox.hello().version;
     barrier.outbox.refusal(refusal);
     send(barrier, session);
@@ -217,17 +222,17 @@ void refuse_waiting(Barrier& barrier) {
 }
 
 void remove_robot(Barrier& barrier, std::size_t robot) {
-  const Seats::Seat seat = barrier.seats[robot];
-  if (seat.has_left) return;
-  barrier.seats.leave(robot);
-  const bool is_held = seat.holder != SessionId::none;
-  Session* session = barrier.sessions.find(is_held ? seat.holder : seat.claimant);
+  const Ownership::Entry entry = barrier.ownership[robot];
+  if (entry.has_left) return;
+  barrier.ownership.leave(robot);
+  const bool is_held = entry.holder != SessionId::none;
+  Session* session = barrier.sessions.find(is_held ? entry.holder : entry.claimant);
   if (session == nullptr) return;
   give_up_answers(barrier, *session);
   session->roster.leave(position_of(*session, robot));
   const bool is_over = session->state == SessionState::lost && session->roster.empty();
   if (is_over) return erase(barrier, *session);
-  update_patience(barrier, *session);
+  update_deadline(barrier, *session);
 }
 
 }  // namespace ziggurat::network

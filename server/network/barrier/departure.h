@@ -1,5 +1,5 @@
 #pragma once
-// How sessions end and robots leave (docs/protocol.md, section 5).
+// End of sessions, and departure of robots (docs/protocol.md, section 5).
 
 #include <cstddef>
 #include <span>
@@ -18,8 +18,8 @@ void handle_leave(Barrier& barrier, Session& session);
 void lose(Barrier& barrier, Session& session, std::string_view why);
 /// The connection is gone, and its session is lost.
 void disconnect(Barrier& barrier, const std::string& connection);
-/// Another client takes over robots: the sessions that have them, or may resume with them, go on with
-/// the rest. Those without any robot left are over.
+/// Another client takes over robots: the sessions that have them, or may resume with them, go on
+/// with the rest. Those without any robot left are over.
 /// @param robots  into Layout::robots, ascending; free afterwards
 /// @param by  the other client
 void take_over(Barrier& barrier, std::span<const std::size_t> robots, const std::string& by);

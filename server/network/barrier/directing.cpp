@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "network/barrier/answer_timing.h"
 #include "network/barrier/departure.h"
 #include "network/barrier/exchange.h"
-#include "network/barrier/granting.h"
-#include "network/barrier/measuring.h"
-#include "network/barrier/talk.h"
-#include "network/barrier/timing.h"
+#include "network/barrier/hello_checks.h"
+#include "network/barrier/peer_messages.h"
+#include "network/barrier/timeouts.h"
 #include "network/glob.h"
 #include "wire/fault.h"
 #include "wire/welcome_size.h"
@@ -37,15 +37,16 @@ bool is_id(std::string_view text) {
   });
 }
 
-/// Of what was subscribed to, for a director that knows nothing of the world yet.
+/// View of a director that has not been sent anything of the world yet.
 wire::WorldView view_of(wire::Subscription subscription) {
   wire::WorldView view;
   view.subscription = std::move(subscription);
   return view;
 }
 
-/// What is wrong with what a director asks for, also for no director of the scene.
-std::optional<wire::Refusal> check_wishes(const Barrier& barrier, const wire::Hello& hello) {
+/// Checks the fields of a director's Hello, also for a director that the scene does not name.
+std::optional<wire::Refusal> check_director_hello(const Barrier& barrier,
+                                                  const wire::Hello& hello) {
   if (!hello.robots.empty() || !hello.controller.empty() || hello.lua_only) {
     return refuse(ErrorCode::bad_value, "robots", "A director asks for no robots.");
   }
@@ -56,15 +57,17 @@ std::optional<wire::Refusal> check_wishes(const Barrier& barrier, const wire::He
   return check_policy(barrier, hello, {});
 }
 
-/// The director of that id; one from outside, if these are allowed, is a new one, behind all others.
-std::variant<std::size_t, wire::Refusal> find_director(const Barrier& barrier, const std::string& id) {
+/// The director of that id; one from outside, if these are allowed, is a new one, behind all
+/// others.
+std::variant<std::size_t, wire::Refusal> find_director(const Barrier& barrier,
+                                                       const std::string& id) {
   const Directors& directors = barrier.directors;
   if (const auto found = directors.find(id)) return *found;
   const std::string shown = id.substr(0, longest_id);
   if (!directors.are_allowed) {
-    return refuse(ErrorCode::forbidden, "director",
-                  fmt::format("The scene has no director '{}', and --allow-director was not given.",
-                              shown));
+    return refuse(
+        ErrorCode::forbidden, "director",
+        fmt::format("The scene has no director '{}', and --allow-director was not given.", shown));
   }
   if (!is_id(id)) {
     return refuse(ErrorCode::bad_value, "director",
@@ -78,11 +81,13 @@ std::variant<std::size_t, wire::Refusal> find_director(const Barrier& barrier, c
                   fmt::format("An entity has the id '{}'; a director has one of its own.", shown));
   }
   std::size_t present = 0;
-  for (std::size_t i = 0; i < directors.all.size(); ++i) present += directors.seats[i].has_left ? 0 : 1;
+  for (std::size_t i = 0; i < directors.all.size(); ++i)
+    present += directors.ownership[i].has_left ? 0 : 1;
   if (present >= scene::Director::most || directors.all.size() >= most_in_a_run) {
-    auto refusal = refuse(ErrorCode::too_many, "director",
-                          fmt::format("The world has {} directors, and has had {}; it takes no more.",
-                                      present, directors.all.size()));
+    auto refusal =
+        refuse(ErrorCode::too_many, "director",
+               fmt::format("The world has {} directors, and has had {}; it takes no more.", present,
+                           directors.all.size()));
     refusal.fault.retryable = directors.all.size() < most_in_a_run;
     return refusal;
   }
@@ -100,28 +105,28 @@ void add_from_outside(Barrier& barrier, const std::string& id) {
   Directors& directors = barrier.directors;
   directors.all.emplace_back().id = id;
   directors.answers.emplace_back();
-  directors.seats.add(barrier.now, true);
+  directors.ownership.add(barrier.now, true);
   directors.deadlines.grow(directors.deadline_of_others);
   sort_last(directors);
 }
 
 std::optional<wire::Refusal> check_seat(Barrier& barrier, std::size_t director, bool is_takeover) {
   const std::string& id = barrier.directors.all[director].id;
-  const Seats::Seat& seat = barrier.directors.seats[director];
-  if (seat.has_left) {
+  const Ownership::Entry& entry = barrier.directors.ownership[director];
+  if (entry.has_left) {
     return refuse(ErrorCode::not_yours, "director",
                   fmt::format("The director '{}' has left the run for good.", id));
   }
   if (is_takeover) return std::nullopt;
-  Session* holder = barrier.sessions.find(seat.holder);
+  Session* holder = barrier.sessions.find(entry.holder);
   const bool is_held = holder != nullptr && is_reachable(barrier, *holder);
-  const Session* claimant = barrier.sessions.find(seat.claimant);
+  const Session* claimant = barrier.sessions.find(entry.claimant);
   const bool is_kept = claimant != nullptr && barrier.now < claimant->lease_end;
   if (!is_held && !is_kept) return std::nullopt;
   auto refusal = refuse(ErrorCode::robot_taken, "director",
                         is_held ? fmt::format("The director '{}' is {}.", id, holder->client)
-                                : fmt::format("The director '{}' is kept for {}, which is lost.", id,
-                                              claimant->client));
+                                : fmt::format("The director '{}' is kept for {}, which is lost.",
+                                              id, claimant->client));
   refusal.fault.retryable = true;
   refusal.holder = is_held ? holder->client : claimant->client;
   return refusal;
@@ -129,18 +134,18 @@ std::optional<wire::Refusal> check_seat(Barrier& barrier, std::size_t director, 
 
 /// The sessions that have the director, or may resume it, lose it to another client.
 void displace(Barrier& barrier, std::size_t director, const std::string& by) {
-  const Seats::Seat& seat = barrier.directors.seats[director];
-  Session* session = barrier.sessions.find(seat.owner());
+  const Ownership::Entry& entry = barrier.directors.ownership[director];
+  Session* session = barrier.sessions.find(entry.owner());
   if (session == nullptr) return;
   if (session->state != SessionState::lost) {
-    barrier.outbox.displaced(by, fmt::format("{} is director '{}' now.", by,
-                                             barrier.directors.all[director].id));
+    barrier.outbox.displaced(
+        by, fmt::format("{} is director '{}' now.", by, barrier.directors.all[director].id));
     send(barrier, *session);
   }
   erase(barrier, *session);
 }
 
-/// The world has grown: what fits the subscription is told.
+/// Extends the view of a director by new entities that its subscription matches.
 void update_view(wire::WorldView& view, const wire::Truth& truth) {
   if (view.considered == truth.layout.entities.size()) return;
   const auto& patterns = view.subscription.entities;
@@ -150,8 +155,9 @@ void update_view(wire::WorldView& view, const wire::Truth& truth) {
   }
   for (std::size_t i = view.considered; i < truth.layout.entities.size(); ++i) {
     const std::string& id = truth.layout.entities[i].id;
-    const bool is_wanted = patterns.empty() || std::ranges::find(patterns, id) != patterns.end() ||
-                           std::ranges::any_of(globs, [&](const Glob& glob) { return glob.matches(id); });
+    const bool is_wanted =
+        patterns.empty() || std::ranges::find(patterns, id) != patterns.end() ||
+        std::ranges::any_of(globs, [&](const Glob& glob) { return glob.matches(id); });
     consider(view, truth, i, is_wanted && !truth.state.is_absent(i));
   }
 }
@@ -163,7 +169,7 @@ void keep_words(Barrier& barrier, std::size_t director, std::vector<wire::LogLin
   }
 }
 
-/// Its number stands in place of a robot's.
+/// Metrics of a director, with its number in place of a robot's.
 std::vector<wire::Metric> numbered(std::vector<wire::Metric> metrics, std::size_t director) {
   for (wire::Metric& metric : metrics) metric.robot = director;
   return metrics;
@@ -175,15 +181,15 @@ std::optional<wire::Fault> check(const Barrier& barrier, const Session& session,
     return make_fault(ErrorCode::out_of_state, {},
                       "A Direction answers a WorldState; none was sent.");
   }
-  if (auto fault = check_epoch(session.turn, barrier.inbox.command_epoch())) return fault;
-  if (auto fault = check_tick(session.turn, barrier.inbox.command_tick())) return fault;
+  if (auto fault = check_epoch(session.pending_answer, barrier.inbox.command_epoch())) return fault;
+  if (auto fault = check_tick(session.pending_answer, barrier.inbox.command_tick())) return fault;
   if (!is_collecting) {
     return make_fault(ErrorCode::out_of_state, {}, "No tick is being collected.");
   }
   return barrier.inbox.check_direction();
 }
 
-/// What the world has to say.
+/// Checks a Direction against metrics and world.
 std::optional<wire::Fault> check(const Barrier& barrier, const Session& session,
                                  const wire::Direction& direction) {
   auto fault = barrier.directors.metrics.check(numbered(direction.metrics, *session.director));
@@ -192,15 +198,17 @@ std::optional<wire::Fault> check(const Barrier& barrier, const Session& session,
 }
 
 std::string_view tell_view_too_large(Barrier& barrier, const Session& session) {
-  tell_fatal(barrier, session.connection,
-             make_fault(ErrorCode::too_large, "subscription",
-                        "What this director subscribed to is more than a message can hold; name fewer entities "
-                        "or groups."));
+  tell_fatal(
+      barrier, session.connection,
+      make_fault(
+          ErrorCode::too_large, "subscription",
+          "What this director subscribed to is more than a message can hold; name fewer entities "
+          "or groups."));
   return "what it subscribed to is more than a message can hold";
 }
 
 void answer_bad_direction(Barrier& barrier, Session& session, wire::Fault fault) {
-  if (excuse_of(session.turn, fault.code) == Excuse::none) {
+  if (take_stale_reason(session.pending_answer, fault.code) == StaleReason::none) {
     return answer_fault(barrier, session.connection, &session, std::move(fault));
   }
   fault.tick = tick_of(barrier);
@@ -221,7 +229,7 @@ void add_directors(Barrier& barrier, const std::vector<Config::Deadline>& deadli
             : Config::Deadline{director.deadline.value_or(scene::DeadlinePolicy{}), false});
     directors.all.push_back(director);
     directors.answers.emplace_back();
-    directors.seats.add(barrier.now, false);
+    directors.ownership.add(barrier.now, false);
     sort_last(directors);
   }
 }
@@ -230,10 +238,11 @@ std::optional<wire::Refusal> check_subscription(const wire::Hello& hello) {
   if (!hello.subscription) return std::nullopt;
   const auto& patterns = hello.subscription->entities;
   const auto is_long = [](const std::string& text) { return text.size() > longest_pattern; };
-  if (patterns.size() <= most_patterns && std::ranges::none_of(patterns, is_long)) return std::nullopt;
+  if (patterns.size() <= most_patterns && std::ranges::none_of(patterns, is_long))
+    return std::nullopt;
   return refuse(ErrorCode::too_many, "subscription.entities",
-                fmt::format("A subscription may have {} patterns of {} bytes at most.", most_patterns,
-                            longest_pattern));
+                fmt::format("A subscription may have {} patterns of {} bytes at most.",
+                            most_patterns, longest_pattern));
 }
 
 std::optional<wire::Refusal> check_fixed(const Barrier& barrier, std::size_t director,
@@ -250,7 +259,7 @@ std::optional<wire::Refusal> check_fixed(const Barrier& barrier, std::size_t dir
 
 std::variant<Session*, wire::Refusal> begin_directing(Barrier& barrier, const wire::Hello& hello,
                                                       const std::string& client) {
-  if (auto refusal = check_wishes(barrier, hello)) return std::move(*refusal);
+  if (auto refusal = check_director_hello(barrier, hello)) return std::move(*refusal);
   auto found = find_director(barrier, hello.director);
   if (auto* refusal = std::get_if<wire::Refusal>(&found)) return std::move(*refusal);
   const std::size_t director = std::get<std::size_t>(found);
@@ -259,7 +268,9 @@ std::variant<Session*, wire::Refusal> begin_directing(Barrier& barrier, const wi
     add_from_outside(barrier, hello.director);
   } else {
     if (!wire::is_decoded(barrier.directors.all[director])) {
-      return refuse(ErrorCode::too_large, "director", "A Welcome with the <params> of this director would be longer than clients decode.");
+      return refuse(
+          ErrorCode::too_large, "director",
+          "A Welcome with the <params> of this director would be longer than clients decode.");
     }
     if (auto refusal = check_seat(barrier, director, hello.takeover)) return std::move(*refusal);
     displace(barrier, director, client);
@@ -274,7 +285,7 @@ void take_director(Barrier& barrier, Session& session, const wire::Hello& hello)
   const bool is_of_none = !hello.subscription && hello.session_token.empty();
   session.view = view_of(std::move(subscription));
   if (is_of_none) session.view.subscription.entities = {std::string()};  // no entity has that id
-  barrier.directors.seats.take(*session.director, session.id, barrier.now);
+  barrier.directors.ownership.take(*session.director, session.id, barrier.now);
   if (hello.deadline || hello.session_token.empty()) {
     barrier.directors.deadlines.set_policy(*session.director, hello.deadline);
   }
@@ -282,23 +293,23 @@ void take_director(Barrier& barrier, Session& session, const wire::Hello& hello)
 
 void release_director(Barrier& barrier, Session& session, bool may_resume) {
   if (!session.director) return;
-  Seats& seats = barrier.directors.seats;
-  if (seats[*session.director].holder != session.id) {
-    if (!may_resume && seats[*session.director].claimant == session.id) {
-      seats.drop_claim(*session.director);
+  Ownership& ownership = barrier.directors.ownership;
+  if (ownership[*session.director].holder != session.id) {
+    if (!may_resume && ownership[*session.director].claimant == session.id) {
+      ownership.drop_claim(*session.director);
     }
     return;
   }
-  const bool is_skipped = barrier.gate.has_missed(session.turn);
-  const Time since = is_skipped ? session.turn.owes_since : barrier.now;
-  seats.release(*session.director, may_resume ? session.id : SessionId::none, since, is_skipped,
-                barrier.gate.waited(session.turn, barrier.now));
+  const bool is_skipped = barrier.gate.has_missed(session.pending_answer);
+  const Time since = is_skipped ? session.pending_answer.waiting_since : barrier.now;
+  ownership.release(*session.director, may_resume ? session.id : SessionId::none, since, is_skipped,
+                    barrier.gate.waited(session.pending_answer, barrier.now));
   if (!is_skipped) check_soon(barrier);
 }
 
 void remove_director(Barrier& barrier, Session& session) {
   if (!session.director) return;
-  barrier.directors.seats.leave(*session.director);
+  barrier.directors.ownership.leave(*session.director);
   session.director.reset();
 }
 
@@ -307,9 +318,9 @@ std::string_view show_world(Barrier& barrier, Session& session) {
   const bool is_json = connection->encoding == wire::Encoding::json;
   const std::size_t limit =
       is_json ? wire::max_json_observation_bytes : wire::max_observation_bytes;
-  session.turn.epoch = barrier.epoch;
+  session.pending_answer.epoch = barrier.epoch;
   session.state = SessionState::stepping;
-  barrier.gate.await(session.turn, barrier.now);
+  barrier.gate.await(session.pending_answer, barrier.now);
   expect_answer(barrier, session);
   if (!barrier.directors.truth) return {};
   const wire::Truth& truth = *barrier.directors.truth;
@@ -327,7 +338,7 @@ std::string_view show_world(Barrier& barrier, Session& session) {
   if (!world_state(session.observation, truth, session.view, limit, barrier.epoch)) {
     return tell_view_too_large(barrier, session);
   }
-  session.contact.last_sent = barrier.now;
+  session.liveness.last_sent = barrier.now;
   session.observation.encode(connection->encoding);
   const Delivery delivery = barrier.send(session.connection, session.observation);
   return lost_by(delivery, session);
@@ -349,13 +360,13 @@ bool handle_direction(Barrier& barrier, Session& session, bool is_collecting) {
     answer_bad_direction(barrier, session, std::move(*fault));
     return false;
   }
-  session.contact.faults = 0;
-  session.turn.late_commands = session.turn.crossing = 0;
+  session.liveness.faults = 0;
+  session.pending_answer.late_commands = session.pending_answer.stale_commands = 0;
   barrier.directors.deadlines.forgive(*session.director);
   barrier.directors.metrics.set(numbered(direction.metrics, *session.director));
   keep_words(barrier, *session.director, std::move(direction.log));
   barrier.directors.answers[*session.director] = std::move(direction);
-  barrier.gate.settle(session.turn, barrier.now);
+  barrier.gate.settle(session.pending_answer, barrier.now);
   measure_answer(barrier, session);
   return true;
 }
@@ -374,7 +385,7 @@ void leave_directing(Barrier& barrier, Session& session) {
     const wire::Leave leave = barrier.inbox.leave();
     if (leave.reason == wire::LeaveReason::failed) {
       barrier.journal.fail(barrier.directors.all[*session.director].id, leave.message,
-                           session.turn.tick);
+                           session.pending_answer.tick);
     }
     remove_director(barrier, session);
   }
@@ -387,9 +398,8 @@ void forget_directions(Barrier& barrier) {
   directors.metrics.clear();
   directors.deadlines.reset();
   directors.truth.reset();
-  barrier.sessions.for_each([](Session& session) {
-    session.view = view_of(std::move(session.view.subscription));
-  });
+  barrier.sessions.for_each(
+      [](Session& session) { session.view = view_of(std::move(session.view.subscription)); });
 }
 
 const std::vector<Directed>& directions(Barrier& barrier) {
@@ -405,8 +415,8 @@ const std::vector<Directed>& directions(Barrier& barrier) {
 bool wants_contacts(const Barrier& barrier) {
   const Directors& directors = barrier.directors;
   for (std::size_t i = 0; i < directors.all.size(); ++i) {
-    const Seats::Seat& seat = directors.seats[i];
-    const Session* session = barrier.sessions.find(seat.owner());
+    const Ownership::Entry& entry = directors.ownership[i];
+    const Session* session = barrier.sessions.find(entry.owner());
     if (session != nullptr && session->view.subscription.contacts) return true;
   }
   return false;
@@ -415,36 +425,13 @@ bool wants_contacts(const Barrier& barrier) {
 void warn_director(Barrier& barrier, const std::string& director, wire::Fault fault) {
   const auto number = barrier.directors.find(director);
   if (!number) return;
-  Session* session = barrier.sessions.find(barrier.directors.seats[*number].holder);
+  Session* session = barrier.sessions.find(barrier.directors.ownership[*number].holder);
   if (session == nullptr) return;
   fault.severity = wire::Severity::warning;
   fault.tick = tick_of(barrier);
   barrier.outbox.error(fault);
   if (send(barrier, *session) != Delivery::unreachable) return;
   lose(barrier, *session, "its connection is gone");
-}
-
-std::vector<DirectorStatus> director_status(const Barrier& barrier) {
-  std::vector<DirectorStatus> result;
-  const Directors& directors = barrier.directors;
-  for (std::size_t i = 0; i < directors.all.size(); ++i) {
-    const Seats::Seat& seat = directors.seats[i];
-    const Session* session = barrier.sessions.find(seat.owner());
-    DirectorStatus status;
-    status.id = directors.all[i].id;
-    status.is_held = seat.holder != SessionId::none;
-    status.has_left = seat.has_left;
-    status.was_held = seat.was_held;
-    status.waits = directors.deadlines.policy(i).action == scene::DeadlineAction::wait;
-    if (session != nullptr) {
-      status.client = session->client;
-      status.can_restore = session->can_restore;
-    }
-    status.is_awaited = seat.holder == SessionId::none ? !seat.has_left && !seat.is_skipped
-                                                       : session->turn.owes;
-    result.push_back(std::move(status));
-  }
-  return result;
 }
 
 }  // namespace ziggurat::network

@@ -1,5 +1,6 @@
 #pragma once
-// The rules for directors (docs/protocol.md, section 9.1), where they differ from those for controllers.
+// The rules for directors (docs/protocol.md, section 9.1), where they differ from those for
+// controllers.
 
 #include <string_view>
 #include <variant>
@@ -16,9 +17,9 @@ void add_directors(Barrier& barrier, const std::vector<Config::Deadline>& deadli
 /// A new session of the director that the Hello asks for.
 std::variant<Session*, wire::Refusal> begin_directing(Barrier& barrier, const wire::Hello& hello,
                                                       const std::string& client);
-/// What is wrong with the subscription that a Hello has, if it has one.
+/// Refuses a Hello whose subscription is wrong.
 std::optional<wire::Refusal> check_subscription(const wire::Hello& hello);
-/// What is wrong with the policy that a Hello asks for, if the server fixes that of its director.
+/// Refuses a Hello that asks for a policy where the server fixes another for its director.
 std::optional<wire::Refusal> check_fixed(const Barrier& barrier, std::size_t director,
                                          const wire::Hello& hello);
 /// It has its director from now on.
@@ -29,7 +30,8 @@ void release_director(Barrier& barrier, Session& session, bool may_resume);
 /// The director leaves the barrier for good, and its session goes on without it.
 void remove_director(Barrier& barrier, Session& session);
 
-/// Sends what the director is told of the tick in hand. @returns why its session is lost; empty: it is not
+/// Sends what the director is told of the current tick. @returns why its session is lost; empty: it
+/// is not
 std::string_view show_world(Barrier& barrier, Session& session);
 /// Handles the Direction in `barrier.inbox`. True if it is the expected answer.
 bool handle_direction(Barrier& barrier, Session& session, bool is_collecting);
@@ -39,7 +41,8 @@ void leave_directing(Barrier& barrier, Session& session);
 /// The world begins anew or has gone back.
 void forget_directions(Barrier& barrier);
 
-/// What they want done before the next tick, in the order of their ids. Valid until the next message.
+/// Directions to apply before the next tick, in the order of their directors' ids. Valid until the
+/// next message.
 const std::vector<Directed>& directions(Barrier& barrier);
 bool wants_contacts(const Barrier& barrier);  ///< one subscribed to them
 /// Tells a director that is connected of an act that was not done.

@@ -10,7 +10,7 @@
 
 #include "network/barrier/deadlines.h"
 #include "network/barrier/metrics.h"
-#include "network/barrier/seats.h"
+#include "network/barrier/ownership.h"
 #include "network/config.h"
 #include "network/report.h"
 #include "scene/scene.h"
@@ -19,23 +19,24 @@
 
 namespace ziggurat::network {
 
-/// What is wrong with a Direction in the present world, if anything.
+/// Checks a Direction against the world in its current state. No fault: it can be applied.
 using CheckDirection = std::function<std::optional<wire::Fault>(const wire::Direction&)>;
 
-/// Each director has the same number in all lists. Those of the scene come first, then those from outside in
-/// the order in which they came.
+/// Each director has the same number in all lists. Those of the scene come first, then those from
+/// outside in the order in which they came.
 struct Directors {
   std::vector<scene::Director> all;
-  Seats seats;
+  Ownership ownership;
   Deadlines deadlines;  ///< each director is a controller of its own
   Metrics metrics;
-  std::vector<std::optional<wire::Direction>> answers;  ///< to the tick in hand; none yet, or missed
-  std::vector<std::size_t> by_id;  ///< their numbers, in the order of their ids
-  bool are_allowed = false;  ///< from outside, that the scene does not name
+  std::vector<std::optional<wire::Direction>>
+      answers;                          ///< to the current tick; none yet, or missed
+  std::vector<std::size_t> by_id;       ///< their numbers, in the order of their ids
+  bool are_allowed = false;             ///< from outside, that the scene does not name
   Config::Deadline deadline_of_others;  ///< of these
-  CheckDirection check;      ///< may be empty
-  std::optional<wire::Truth> truth;  ///< of the tick in hand; none: there is none to tell
-  std::vector<Directed> directed;  ///< what directions() returns
+  CheckDirection check;                 ///< may be empty
+  std::optional<wire::Truth> truth;     ///< of the current tick; none: there is none to tell
+  std::vector<Directed> directed;       ///< what directions() returns
 
   /// Its number, if there is or was one of that id.
   std::optional<std::size_t> find(const std::string& id) const {

@@ -8,7 +8,7 @@
 #include "network/barrier/departure.h"
 #include "network/barrier/directing.h"
 #include "network/barrier/exchange.h"
-#include "network/barrier/talk.h"
+#include "network/barrier/peer_messages.h"
 #include "wire/fault.h"
 
 namespace ziggurat::network {
@@ -39,8 +39,8 @@ bool handle_request(Barrier& barrier, Session& session) {
     answer_fault(barrier, session.connection, &session, std::move(*fault), id);
     return false;
   }
-  session.contact.faults = 0;
-  return session.role == wire::Role::director && session.turn.owes;
+  session.liveness.faults = 0;
+  return session.role == wire::Role::director && session.pending_answer.is_owed;
 }
 
 std::size_t size_of(const Received& received) { return received.bytes.size() + received.skipped; }
@@ -62,19 +62,23 @@ bool may_send(Barrier& barrier, const std::string& id, Connection& connection, S
   const auto verdict = barrier.connections.spend(connection, barrier.now);
   if (verdict == Connections::Verdict::accepted) return true;
   if (verdict == Connections::Verdict::refused_and_told) return false;
-  tell_fatal(barrier, id,
-             make_fault(ErrorCode::too_many, {},
-                        fmt::format("More than {} messages a second, besides those that answer an Observation.",
-                                    barrier.config.rate.per_second)));
+  tell_fatal(
+      barrier, id,
+      make_fault(
+          ErrorCode::too_many, {},
+          fmt::format("More than {} messages a second, besides those that answer an Observation.",
+                      barrier.config.rate.per_second)));
   if (session != nullptr) {
     lose(barrier, *session, "it was closed because it sends too many messages");
   } else {
-    note(barrier, nullptr, "A peer without a session sends too many messages and is not answered any more.");
+    note(barrier, nullptr,
+         "A peer without a session sends too many messages and is not answered any more.");
   }
   return false;
 }
 
-/// The message in `barrier.inbox`, of a session. True if it is the Command that was owed, or a question before it.
+/// The message in `barrier.inbox`, of a session. True if it is the Command that was owed, or a
+/// question before it.
 bool handle(Barrier& barrier, Session& session, InboxKind kind, world::Commands* commands) {
   const bool is_waiting = session.state == SessionState::hello;
   if (kind == InboxKind::leave) {
@@ -103,8 +107,8 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
   Connection& connection = barrier.connections.receive_from(id, barrier.now);
   Session* session = barrier.sessions.find(connection.session);
   if (session != nullptr) {
-    session->contact.last_received = barrier.now;
-    session->contact.heartbeats = 0;
+    session->liveness.last_received = barrier.now;
+    session->liveness.heartbeats = 0;
   }
   const auto encoding =
       received.is_single_frame ? wire::encoding_of(received.bytes) : received.several_frames;
@@ -132,8 +136,9 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
   if (kind == InboxKind::too_large) {
     return answer_fault(
         barrier, id, session,
-        make_fault(ErrorCode::too_large, {},
-                   fmt::format("The message has more fields than the {} that this session needs.", most)));
+        make_fault(
+            ErrorCode::too_large, {},
+            fmt::format("The message has more fields than the {} that this session needs.", most)));
   }
   if (session != nullptr) {
     if (handle(barrier, *session, kind, commands)) Connections::refund(connection, charge);
@@ -144,7 +149,7 @@ void receive(Barrier& barrier, const Received& received, world::Commands* comman
         barrier, id, nullptr,
         make_fault(ErrorCode::out_of_state, {}, "The first message of a session must be Hello."));
   }
-  stand_if_paused(barrier);
+  halt_if_paused(barrier);
 }
 
 bool can_hear(const Barrier& barrier, const Call& call) {

@@ -2,13 +2,13 @@
 
 #include <optional>
 
+#include "network/barrier/answer_timing.h"
 #include "network/barrier/departure.h"
 #include "network/barrier/directing.h"
-#include "network/barrier/measuring.h"
-#include "network/barrier/talk.h"
-#include "network/barrier/timing.h"
+#include "network/barrier/peer_messages.h"
+#include "network/barrier/timeouts.h"
 #include "wire/fault.h"
-#include "wire/zero.h"
+#include "wire/reset_commands.h"
 
 namespace ziggurat::network {
 
@@ -17,7 +17,7 @@ using wire::make_fault;
 
 namespace {
 
-/// What is wrong with the Command in `barrier.inbox`, if anything.
+/// Checks the Command in `barrier.inbox`.
 std::optional<wire::Fault> check_command(const Barrier& barrier, const Session& session,
                                          bool is_collecting) {
   if (session.state == SessionState::ready) {
@@ -26,8 +26,8 @@ std::optional<wire::Fault> check_command(const Barrier& barrier, const Session& 
   }
   const auto epoch =
       session.minor >= wire::minor_with_epochs ? barrier.inbox.command_epoch() : std::nullopt;
-  if (auto fault = check_epoch(session.turn, epoch)) return fault;
-  if (auto fault = check_tick(session.turn, barrier.inbox.command_tick())) return fault;
+  if (auto fault = check_epoch(session.pending_answer, epoch)) return fault;
+  if (auto fault = check_tick(session.pending_answer, barrier.inbox.command_tick())) return fault;
   if (!is_collecting) {
     return make_fault(ErrorCode::out_of_state, {}, "No tick is being collected.");
   }
@@ -35,7 +35,7 @@ std::optional<wire::Fault> check_command(const Barrier& barrier, const Session& 
   return barrier.inbox.check(session.roster, barrier.run->layout);
 }
 
-/// A Command that came after the End: its values have no effect, its log lines count.
+/// Handles a Command that came after the End: its values have no effect, its log lines count.
 void keep_log(Barrier& barrier, const Session& session) {
   if (barrier.inbox.check(session.roster, barrier.run->layout)) return;
   barrier.inbox.append_log(session.roster, barrier.journal.log());
@@ -43,9 +43,11 @@ void keep_log(Barrier& barrier, const Session& session) {
 
 /// Answers a Command that can't be taken.
 void answer_bad_command(Barrier& barrier, Session& session, wire::Fault fault) {
-  const Excuse excuse = excuse_of(session.turn, fault.code);
-  if (excuse == Excuse::none) return answer_fault(barrier, session.connection, &session, std::move(fault));
-  if (excuse == Excuse::missed) measure_late_answer(barrier, session, barrier.inbox.command_tick());
+  const StaleReason reason = take_stale_reason(session.pending_answer, fault.code);
+  if (reason == StaleReason::none)
+    return answer_fault(barrier, session.connection, &session, std::move(fault));
+  if (reason == StaleReason::missed_deadline)
+    measure_late_answer(barrier, session, barrier.inbox.command_tick());
   fault.tick = tick_of(barrier);
   barrier.outbox.error(fault);
   send(barrier, session);
@@ -55,30 +57,33 @@ void answer_bad_command(Barrier& barrier, Session& session, wire::Fault fault) {
 
 void publish(Barrier& barrier, const world::Observations& observations,
              const std::vector<std::string>& tag_payloads, const wire::Truth* truth) {
-  barrier.senses = {&observations, &tag_payloads};
+  barrier.readings = {&observations, &tag_payloads};
   barrier.begin = {};
-  truth != nullptr ? void(barrier.directors.truth.emplace(*truth)) : barrier.directors.truth.reset();
+  truth != nullptr ? void(barrier.directors.truth.emplace(*truth))
+                   : barrier.directors.truth.reset();
   for (auto& answer : barrier.directors.answers) answer.reset();
   barrier.directors.metrics.begin_tick();
-  barrier.directors.seats.begin_tick(barrier.now);
+  barrier.directors.ownership.begin_tick(barrier.now);
   barrier.metrics.begin_tick();
   barrier.gate.begin(observations.tick);
   barrier.timers.deadline = never;
-  barrier.seats.begin_tick(barrier.now);
-  if (!barrier.seats.all_taken() || !barrier.directors.seats.all_taken()) check_soon(barrier);
+  barrier.ownership.begin_tick(barrier.now);
+  if (!barrier.ownership.all_taken() || !barrier.directors.ownership.all_taken())
+    check_soon(barrier);
   barrier.sessions.for_each([&](Session& session) {
     if (session.state == SessionState::lost || !session.has_ticks()) return;
-    session.turn.is_repeated = false;
-    session.turn.waited_before = {};
-    if (const std::string_view why = observe(barrier, session); !why.empty()) lose(barrier, session, why);
+    session.pending_answer.is_resent = false;
+    session.pending_answer.waited_before = {};
+    if (const std::string_view why = observe(barrier, session); !why.empty())
+      lose(barrier, session, why);
   });
-  stand_if_paused(barrier);  // if no session owes an answer
+  halt_if_paused(barrier);  // if no session owes an answer
 }
 
 void await_from(Barrier& barrier, Time now) {
   barrier.now = now;
   barrier.sessions.for_each([&](Session& session) {
-    if (session.turn.owes) session.turn.owes_since = now;
+    if (session.pending_answer.is_owed) session.pending_answer.waiting_since = now;
   });
 }
 
@@ -88,21 +93,24 @@ std::string_view observe(Barrier& barrier, Session& session) {
   const bool is_json = connection->encoding == wire::Encoding::json;
   const std::size_t limit =
       is_json ? wire::max_json_observation_bytes : wire::max_observation_bytes;
-  const auto& [observations, tag_payloads] = barrier.senses;
-  session.turn.epoch = barrier.epoch;
+  const auto& [observations, tag_payloads] = barrier.readings;
+  session.pending_answer.epoch = barrier.epoch;
   if (!session.observation.observation(session.roster, *observations, *tag_payloads, limit,
                                        epoch_for(barrier, session))) {
     tell_fatal(barrier, session.connection,
                make_fault(ErrorCode::too_large, {},
-                          "The robots of this session heard and saw more at this tick than a message can hold; share them among more "
-                          "sessions (--lua-processes for scripts), or give their cameras and radios a smaller range."));
-    return "its robots heard and saw more at a tick than a message can hold; share them among more sessions "
+                          "The robots of this session heard and saw more at this tick than a "
+                          "message can hold; share them among more "
+                          "sessions (--lua-processes for scripts), or give their cameras and "
+                          "radios a smaller range."));
+    return "its robots heard and saw more at a tick than a message can hold; share them among more "
+           "sessions "
            "(--lua-processes for scripts), or give their cameras and radios a smaller range";
   }
   session.state = SessionState::stepping;
-  barrier.gate.await(session.turn, barrier.now);
+  barrier.gate.await(session.pending_answer, barrier.now);
   expect_answer(barrier, session);
-  session.contact.last_sent = barrier.now;
+  session.liveness.last_sent = barrier.now;
   session.observation.encode(connection->encoding);
   const Delivery delivery = barrier.send(session.connection, session.observation);
   return lost_by(delivery, session);
@@ -134,46 +142,47 @@ bool handle_command(Barrier& barrier, Session& session, world::Commands* command
     answer_bad_command(barrier, session, std::move(*fault));
     return false;
   }
-  session.contact.faults = 0;
-  session.turn.late_commands = session.turn.crossing = 0;
-  if (session.turn.patience) {
+  session.liveness.faults = 0;
+  session.pending_answer.late_commands = session.pending_answer.stale_commands = 0;
+  if (session.pending_answer.deadline) {
     for (std::size_t i = 0; i < session.roster.robots.size(); ++i) {
       if (!session.roster.taken[i]) barrier.deadlines.forgive(session.roster.robots[i]);
     }
   }
-  if (session.turn.is_repeated) {
+  if (session.pending_answer.is_resent) {
     wire::forget_radio_messages(session.roster, commands->radio_messages);
   }
   barrier.inbox.apply(session.roster, *commands);
   barrier.inbox.append_log(session.roster, barrier.journal.log());
   take_metrics(barrier, session);
-  barrier.gate.settle(session.turn, barrier.now);
+  barrier.gate.settle(session.pending_answer, barrier.now);
   measure_answer(barrier, session);
   return true;
 }
 
 void zero_missing(Barrier& barrier, world::Commands& commands) {
-  for (std::size_t robot = 0; robot < barrier.seats.size(); ++robot) {
-    if (!barrier.seats[robot].has_left && !barrier.deadlines.is_zeroed(robot)) continue;
-    wire::zero(barrier.run->layout, robot, commands);
+  for (std::size_t robot = 0; robot < barrier.ownership.size(); ++robot) {
+    if (!barrier.ownership[robot].has_left && !barrier.deadlines.is_zeroed(robot)) continue;
+    wire::reset_commands(barrier.run->layout, robot, commands);
     barrier.deadlines.clear_zero(robot);
   }
 }
 
 void pause(Barrier& barrier) {
   barrier.gate.hold(TickGate::Hold::paused);
-  stand_if_paused(barrier);
+  halt_if_paused(barrier);
 }
 
-void stand_if_paused(Barrier& barrier) {
+void halt_if_paused(Barrier& barrier) {
   TickGate& gate = barrier.gate;
   const bool is_paused = gate.is_held(TickGate::Hold::paused) && gate.tick() &&
                          !gate.is_held(TickGate::Hold::finished);
-  if (!is_paused || !(gate.is_standing() || gate.is_answered())) return;
-  if (!gate.is_standing()) barrier.calls.notify();
-  gate.set_standing(true);
+  if (!is_paused || !(gate.is_halted() || gate.is_answered())) return;
+  if (!gate.is_halted()) barrier.calls.notify();
+  gate.set_halted(true);
   barrier.sessions.for_each([&](Session& session) {
-    const bool has_answered = session.state == SessionState::stepping && !session.turn.owes;
+    const bool has_answered =
+        session.state == SessionState::stepping && !session.pending_answer.is_owed;
     if (!has_answered || !session.has_ticks()) return;
     session.state = SessionState::paused;
     barrier.outbox.paused(tick_of(barrier));
@@ -185,13 +194,13 @@ void stand_if_paused(Barrier& barrier) {
 
 void resume(Barrier& barrier) {
   barrier.gate.release(TickGate::Hold::paused);
-  if (!barrier.gate.is_standing()) return;
-  barrier.gate.set_standing(false);
-  barrier.seats.restart(barrier.now);
-  barrier.directors.seats.restart(barrier.now);
+  if (!barrier.gate.is_halted()) return;
+  barrier.gate.set_halted(false);
+  barrier.ownership.restart(barrier.now);
+  barrier.directors.ownership.restart(barrier.now);
   barrier.sessions.for_each([&](Session& session) {
-    session.turn.owes_since = barrier.now;
-    session.turn.waited = session.turn.waited_before = {};
+    session.pending_answer.waiting_since = barrier.now;
+    session.pending_answer.waited = session.pending_answer.waited_before = {};
   });
   check_soon(barrier);
 }

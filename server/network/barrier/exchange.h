@@ -19,9 +19,11 @@ namespace ziggurat::network {
 /// @param truth  that directors are told, likewise; null: none
 void publish(Barrier& barrier, const world::Observations& observations,
              const std::vector<std::string>& tag_payloads, const wire::Truth* truth = nullptr);
-/// What was published is on its way only now: the deadlines of the answers begin.
+/// Observations of the current tick leave the server only now: the deadlines of their answers
+/// begin.
 void await_from(Barrier& barrier, Time now);
-/// Sends a session what its robots sense at the tick in hand. @returns why it is lost; empty: it is not
+/// Sends a session what its robots sense at the current tick. @returns why it is lost; empty: it is
+/// not
 std::string_view observe(Barrier& barrier, Session& session);
 
 /// Handles the Command in `barrier.inbox`. True if it is the expected answer.
@@ -37,10 +39,10 @@ void take_metrics(Barrier& barrier, const Session& session);
 /// so.
 void zero_missing(Barrier& barrier, world::Commands& commands);
 
-/// No tick is complete from now on. Once the one in hand is answered, sessions are told.
+/// No tick is complete from now on. Once the current one is answered, sessions are told.
 void pause(Barrier& barrier);
 /// If the world is paused and its tick answered, those who have answered are told so.
-void stand_if_paused(Barrier& barrier);
+void halt_if_paused(Barrier& barrier);
 /// The world is not paused any more. Deadlines begin anew.
 void resume(Barrier& barrier);
 

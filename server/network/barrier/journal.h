@@ -1,5 +1,5 @@
 #pragma once
-// What the program that runs the server will be told of peers and robots.
+// Report to the program that runs the server: events of peers and robots.
 
 #include <cstddef>
 #include <cstdint>
@@ -28,7 +28,9 @@ class Journal {
   void fail(std::size_t robot, std::string_view message, std::uint64_t tick);
   /// A robot's controller took leave of it before the end.
   /// @param tick  of the last observation that it got
-  void depart(std::size_t robot, std::uint64_t tick) { report_.departures.push_back({robot, tick}); }
+  void depart(std::size_t robot, std::uint64_t tick) {
+    report_.departures.push_back({robot, tick});
+  }
   /// A director has failed.
   void fail(std::string director, std::string_view message, std::uint64_t tick);
   std::vector<DirectorLine>& log_of_directors() { return report_.log_of_directors; }
@@ -36,7 +38,7 @@ class Journal {
   void drop(std::string text) { report_.dropped.push_back(std::move(text)); }
   /// A deadline stops the run. The first sentence counts.
   void stop(std::string text);
-  /// Where lines that controllers log are appended.
+  /// Lines that controllers have logged; append new ones.
   std::vector<wire::LogLine>& log() { return report_.log; }
   /// Forgets what robots behind the first `count` logged, and how they failed or departed.
   void shrink(std::size_t count);

@@ -28,17 +28,17 @@ std::optional<wire::Fault> Metrics::check(const std::vector<wire::Metric>& metri
     const auto known = names_.find(metric.robot);
     const std::size_t before = known == names_.end() ? 0 : known->second;
     if (before + names.size() <= most_names) continue;
-    return wire::make_fault(wire::ErrorCode::too_many, "metrics",
-                            fmt::format("A robot or director may have {} metrics; '{}' would be one more.",
-                                        most_names, metric.name));
+    return wire::make_fault(
+        wire::ErrorCode::too_many, "metrics",
+        fmt::format("A robot or director may have {} metrics; '{}' would be one more.", most_names,
+                    metric.name));
   }
   return std::nullopt;
 }
 
 void Metrics::set(const std::vector<wire::Metric>& metrics) {
   for (const wire::Metric& metric : metrics) {
-    const auto [place, is_new] =
-        last_.insert_or_assign({metric.robot, metric.name}, metric.value);
+    const auto [place, is_new] = last_.insert_or_assign({metric.robot, metric.name}, metric.value);
     if (is_new) ++names_[metric.robot];
     of_tick_.insert_or_assign(place->first, metric.value);
   }

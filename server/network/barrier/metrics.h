@@ -1,5 +1,5 @@
 #pragma once
-// The metrics that sessions have set: at the tick in hand, and last.
+// The metrics that sessions have set: at the current tick, and last.
 
 #include <cstddef>
 #include <map>
@@ -25,7 +25,7 @@ class Metrics {
   /// The world begins anew.
   void clear();
 
-  // Of robots in scene order, each sorted by name.
+  // Metrics of robots in scene order, sorted by name for each robot.
   std::vector<wire::Metric> of_tick() const;
   std::vector<wire::Metric> last() const;
 

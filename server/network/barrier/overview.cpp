@@ -16,7 +16,7 @@ State state_of(const Session& session) {
     case SessionState::ready:
       return State::ready;
     case SessionState::stepping:
-      return session.turn.owes ? State::owing : State::answered;
+      return session.pending_answer.is_owed ? State::owing : State::answered;
     case SessionState::paused:
       return State::paused;
     case SessionState::draining:
@@ -32,7 +32,7 @@ wire::SessionStatus status_of(const Barrier& barrier, const Session& session, Ti
   status.client = session.client;
   status.role = session.role;
   status.state = state_of(session);
-  status.tick = session.turn.tick;
+  status.tick = session.pending_answer.tick;
   if (session.director) {
     status.director = barrier.directors.all[*session.director].id;
     status.deadline = barrier.directors.deadlines.policy(*session.director);
@@ -43,14 +43,16 @@ wire::SessionStatus status_of(const Barrier& barrier, const Session& session, Ti
     status.robots.push_back(barrier.run->layout.robots[robots[i]].id);
     status.deadline = barrier.deadlines.policy(robots[i]);
   }
-  if (session.turn.owes) status.wall_waiting_s = seconds(now - session.turn.owes_since);
+  if (session.pending_answer.is_owed)
+    status.wall_waiting_s = seconds(now - session.pending_answer.waiting_since);
   if (session.state == SessionState::lost && !robots.empty()) {
-    status.wall_waiting_s = seconds(now - barrier.seats[robots.front()].free_since);
+    status.wall_waiting_s = seconds(now - barrier.ownership[robots.front()].free_since);
   }
   if (session.state == SessionState::lost && session.director) {
-    status.wall_waiting_s = seconds(now - barrier.directors.seats[*session.director].free_since);
+    status.wall_waiting_s =
+        seconds(now - barrier.directors.ownership[*session.director].free_since);
   }
-  status.wall_last_message_s = seconds(now - session.contact.last_received);
+  status.wall_last_message_s = seconds(now - session.liveness.last_received);
   status.latency = session.latencies.recent();
   status.misses = session.misses;
   return status;
@@ -61,7 +63,9 @@ wire::SessionStatus status_of(const Barrier& barrier, const Session& session, Ti
 namespace {
 
 bool has_any(const Barrier& barrier, const Session& session, const std::vector<std::string>& ids) {
-  const auto is_meant = [&](const std::string& id) { return std::ranges::find(ids, id) != ids.end(); };
+  const auto is_meant = [&](const std::string& id) {
+    return std::ranges::find(ids, id) != ids.end();
+  };
   if (session.director) return is_meant(barrier.directors.all[*session.director].id);
   const auto& robots = session.roster.robots;
   for (std::size_t i = 0; i < robots.size(); ++i) {
@@ -76,39 +80,40 @@ Need need_of(const Barrier& barrier, const std::vector<std::string>& ids) {
   Need need = Need::nothing;
   if (ids.empty()) return need;
   barrier.sessions.for_each([&](const Session& session) {
-    const bool has_end = session.turn.patience.has_value() || session.state == SessionState::draining;
+    const bool has_end =
+        session.pending_answer.deadline.has_value() || session.state == SessionState::draining;
     if (has_end || !session.has_ticks() || !has_any(barrier, session, ids)) return;
-    need = std::max(need, session.turn.owes ? Need::answer : Need::answers);
+    need = std::max(need, session.pending_answer.is_owed ? Need::answer : Need::answers);
   });
   return need;
 }
 
 std::vector<RobotStatus> robot_status(const Barrier& barrier) {
-  std::vector<RobotStatus> result(barrier.seats.size());
+  std::vector<RobotStatus> result(barrier.ownership.size());
   for (std::size_t robot = 0; robot < result.size(); ++robot) {
-    const Seats::Seat& seat = barrier.seats[robot];
+    const Ownership::Entry& entry = barrier.ownership[robot];
     RobotStatus& status = result[robot];
     status.deadline = barrier.deadlines.policy(robot);
-    status.was_held = seat.was_held;
-    if (seat.has_left) {
+    status.was_held = entry.was_held;
+    if (entry.has_left) {
       status.membership = RobotStatus::Membership::gone;
-    } else if (const Session* holder = barrier.sessions.find(seat.holder)) {
+    } else if (const Session* holder = barrier.sessions.find(entry.holder)) {
       status.membership = RobotStatus::Membership::held;
       status.holder = holder->client;
       status.token = holder->token;
       status.can_restore = holder->can_restore;
-      status.awaited = holder->turn.owes;
-      status.awaited_since = holder->turn.owes_since;
-      status.last_message = holder->contact.last_received;
+      status.awaited = holder->pending_answer.is_owed;
+      status.awaited_since = holder->pending_answer.waiting_since;
+      status.last_message = holder->liveness.last_received;
     } else {
-      const Session* claimant = barrier.sessions.find(seat.claimant);
+      const Session* claimant = barrier.sessions.find(entry.claimant);
       if (claimant != nullptr) {
         status.holder = claimant->client;
         status.token = claimant->token;
         status.can_restore = claimant->can_restore;
       }
-      status.awaited = !seat.is_skipped;
-      status.awaited_since = seat.free_since;
+      status.awaited = !entry.is_skipped;
+      status.awaited_since = entry.free_since;
     }
   }
   return result;
@@ -116,7 +121,7 @@ std::vector<RobotStatus> robot_status(const Barrier& barrier) {
 
 namespace {
 
-/// Those of directors follow, in the order of their ids.
+/// Appends the metrics of directors, in the order of their ids.
 void append_named(const Directors& directors, const std::vector<wire::Metric>& metrics,
                   std::vector<world::Metric>& to) {
   for (const std::size_t director : directors.by_id) {
@@ -149,20 +154,44 @@ void fill(const Barrier& barrier, Time now, wire::Status& status) {
   append_named(barrier.directors, barrier.directors.metrics.last(), status.metrics);
   barrier.sessions.for_each(
       [&](const Session& session) { status.sessions.push_back(status_of(barrier, session, now)); });
-  for (std::size_t robot = 0; robot < barrier.seats.size(); ++robot) {
-    const Seats::Seat& seat = barrier.seats[robot];
+  for (std::size_t robot = 0; robot < barrier.ownership.size(); ++robot) {
+    const Ownership::Entry& entry = barrier.ownership[robot];
     const std::string& id = barrier.run->layout.robots[robot].id;
-    const bool is_free = seat.holder == SessionId::none && seat.claimant == SessionId::none;
-    if (seat.has_left) {
+    const bool is_free = entry.holder == SessionId::none && entry.claimant == SessionId::none;
+    if (entry.has_left) {
       status.gone_robots.push_back(id);
     } else if (is_free) {
       status.free_robots.push_back(id);
     }
   }
-  for (std::size_t director = 0; director < barrier.directors.seats.size(); ++director) {
-    const Seats::Seat& seat = barrier.directors.seats[director];
-    if (seat.owner() == SessionId::none && !seat.has_left) status.free_directors.push_back(barrier.directors.all[director].id);
+  for (std::size_t director = 0; director < barrier.directors.ownership.size(); ++director) {
+    const Ownership::Entry& entry = barrier.directors.ownership[director];
+    if (entry.owner() == SessionId::none && !entry.has_left)
+      status.free_directors.push_back(barrier.directors.all[director].id);
   }
+}
+
+std::vector<DirectorStatus> director_status(const Barrier& barrier) {
+  std::vector<DirectorStatus> result;
+  const Directors& directors = barrier.directors;
+  for (std::size_t i = 0; i < directors.all.size(); ++i) {
+    const Ownership::Entry& entry = directors.ownership[i];
+    const Session* session = barrier.sessions.find(entry.owner());
+    DirectorStatus status;
+    status.id = directors.all[i].id;
+    status.is_held = entry.holder != SessionId::none;
+    status.has_left = entry.has_left;
+    status.was_held = entry.was_held;
+    status.waits = directors.deadlines.policy(i).action == scene::DeadlineAction::wait;
+    if (session != nullptr) {
+      status.client = session->client;
+      status.can_restore = session->can_restore;
+    }
+    status.is_awaited = entry.holder == SessionId::none ? !entry.has_left && !entry.is_skipped
+                                                        : session->pending_answer.is_owed;
+    result.push_back(std::move(status));
+  }
+  return result;
 }
 
 }  // namespace ziggurat::network

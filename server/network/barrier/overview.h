@@ -1,5 +1,5 @@
 #pragma once
-// What the barrier knows of robots and sessions, for people and programs that ask.
+// Status of robots and sessions, for users and programs that ask for it.
 
 #include <vector>
 
@@ -15,13 +15,13 @@ std::vector<RobotStatus> robot_status(const Barrier& barrier);
 /// @param now  ages are measured up to then
 void fill(const Barrier& barrier, Time now, wire::Status& status);
 
-/// What the world needs most of the sessions that have these robots or directors.
-/// @param ids  of one robot or director of each session; others mean nothing
+/// Greatest need of the sessions that have these robots or directors.
+/// @param ids  one robot or director of each session; unknown ids are ignored
 Need need_of(const Barrier& barrier, const std::vector<std::string>& ids);
 
 /// With the ids of their robots.
 std::vector<world::Metric> named(const Barrier& barrier, const std::vector<wire::Metric>& metrics);
-/// That were set at the tick in hand: in scene order, then those of directors.
+/// Metrics that were set at the current tick: in scene order, then those of directors.
 std::vector<world::Metric> metrics_of_tick(const Barrier& barrier);
 
 }  // namespace ziggurat::network

@@ -4,11 +4,11 @@
 #include <utility>
 
 #include "network/barrier/admission.h"
+#include "network/barrier/answer_timing.h"
 #include "network/barrier/departure.h"
 #include "network/barrier/directing.h"
 #include "network/barrier/exchange.h"
-#include "network/barrier/measuring.h"
-#include "network/barrier/talk.h"
+#include "network/barrier/peer_messages.h"
 #include "wire/fault.h"
 
 namespace ziggurat::network {
@@ -32,7 +32,7 @@ void tell_removed(Barrier& barrier, Session& session, std::size_t robot, const s
   }
 }
 
-/// Tells the sessions that have robots of its controller, also robots that left, of one that has come.
+/// Tells sessions with robots of this controller, including robots that left, about a new robot.
 void tell_spawned(Barrier& barrier, std::size_t robot) {
   const auto& robots = barrier.run->layout.robots;
   const std::size_t controller = robots[robot].controller;
@@ -60,8 +60,8 @@ void end_without_robots(Barrier& barrier, Session& session) {
            "The world was reset, and has not all robots of this session any more."));
   if (!is_told) return erase(barrier, session);
   for (const std::size_t robot : session.roster.robots) {
-    if (barrier.seats[robot].holder != session.id) continue;
-    barrier.seats.release(robot, SessionId::none, barrier.now, false, {});
+    if (barrier.ownership[robot].holder != session.id) continue;
+    barrier.ownership.release(robot, SessionId::none, barrier.now, false, {});
   }
   session.roster = {};
 }
@@ -69,14 +69,14 @@ void end_without_robots(Barrier& barrier, Session& session) {
 /// Forgets robots that the layout has no more, or that are others now.
 /// @param count  the first ones, which stay
 void forget_robots(Barrier& barrier, std::size_t count) {
-  if (barrier.seats.size() <= count) return;
+  if (barrier.ownership.size() <= count) return;
   barrier.sessions.for_each([&](Session& session) {
     const auto& robots = session.roster.robots;  // ascending
     if (!robots.empty() && robots.back() >= count) end_without_robots(barrier, session);
   });
-  for (std::size_t robot = count; robot < barrier.seats.size(); ++robot)
+  for (std::size_t robot = count; robot < barrier.ownership.size(); ++robot)
     remove_robot(barrier, robot);
-  barrier.seats.shrink(count);
+  barrier.ownership.shrink(count);
   barrier.deadlines.shrink(count);
   barrier.journal.shrink(count);
   auto& scripts = barrier.run->scripts;
@@ -96,15 +96,16 @@ void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Dead
   add_directors(barrier, deadlines);
 }
 
-void add_robots(Barrier& barrier, std::span<const std::string> scripts, const Senses& senses) {
+void add_robots(Barrier& barrier, std::span<const std::string> scripts,
+                const TickReadings& readings) {
   // A session that takes them at this tick is told what they sense.
-  if (barrier.gate.tick()) barrier.senses = senses;
+  if (barrier.gate.tick()) barrier.readings = readings;
   const auto& robots = barrier.run->layout.robots;
   auto& known = barrier.run->scripts;
-  known.resize(barrier.seats.size());
+  known.resize(barrier.ownership.size());
   known.insert(known.end(), scripts.begin(), scripts.end());
-  for (std::size_t robot = barrier.seats.size(); robot < robots.size(); ++robot) {
-    barrier.seats.add(barrier.now, barrier.gate.tick().has_value());
+  for (std::size_t robot = barrier.ownership.size(); robot < robots.size(); ++robot) {
+    barrier.ownership.add(barrier.now, barrier.gate.tick().has_value());
     barrier.deadlines.add(robots[robot].controller);
     tell_spawned(barrier, robot);
   }
@@ -112,14 +113,14 @@ void add_robots(Barrier& barrier, std::span<const std::string> scripts, const Se
 
 void remove_robots(Barrier& barrier, std::span<const std::size_t> robots, const std::string& why) {
   for (const std::size_t robot : robots) {
-    const SessionId holder = barrier.seats[robot].holder;
+    const SessionId holder = barrier.ownership[robot].holder;
     remove_robot(barrier, robot);
     Session* session = barrier.sessions.find(holder);
     if (session == nullptr) continue;
-    if (session->roster.empty()) barrier.gate.settle(session->turn, barrier.now);
+    if (session->roster.empty()) barrier.gate.settle(session->pending_answer, barrier.now);
     if (!why.empty()) tell_removed(barrier, *session, robot, why);
   }
-  stand_if_paused(barrier);
+  halt_if_paused(barrier);
 }
 
 void restart(Barrier& barrier, wire::Restart restart) {
@@ -129,15 +130,15 @@ void restart(Barrier& barrier, wire::Restart restart) {
   ++barrier.reactions.world;
   barrier.metrics.clear();
   forget_directions(barrier);
-  forget_robots(barrier, restart.snapshot ? restart.snapshot->robots
-                                          : barrier.run->layout.robots.size());
+  forget_robots(barrier,
+                restart.snapshot ? restart.snapshot->robots : barrier.run->layout.robots.size());
   barrier.gate.clear();  // a session that begins now gets no tick of the former world
-  barrier.senses = {};
+  barrier.readings = {};
   barrier.begin = {};
   if (restart.snapshot) barrier.begin = {restart.snapshot->tick, *restart.snapshot->commands};
   barrier.deadlines.reset();
   barrier.sessions.for_each([&](Session& session) {
-    barrier.gate.give_up(session.turn, barrier.now);
+    barrier.gate.give_up(session.pending_answer, barrier.now);
     const bool has_ticks =
         session.state == SessionState::stepping || session.state == SessionState::paused;
     if (!has_ticks || !session.has_ticks()) return;

@@ -17,16 +17,17 @@ namespace ziggurat::network {
 /// @param of_others  as Config::deadline_of_others
 void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Deadline>& deadlines,
           const Config::Deadline& of_others = {});
-/// Robots have come: those of the layout that were not known. The tick in hand does not wait for
+/// Robots have come: those of the layout that were not known. The current tick does not wait for
 /// them.
 /// @param scripts  of them, as Run::scripts
-/// @param senses   of the tick in hand, theirs included
-void add_robots(Barrier& barrier, std::span<const std::string> scripts, const Senses& senses);
+/// @param readings   of the current tick, theirs included
+void add_robots(Barrier& barrier, std::span<const std::string> scripts,
+                const TickReadings& readings);
 /// These robots have left the world.
 /// @param why  a sentence for their sessions; empty: they are not told
 void remove_robots(Barrier& barrier, std::span<const std::size_t> robots, const std::string& why);
-/// The world has begun anew or gone back, without tick: what was commanded and is owed is void. Robots
-/// that the layout has no more, or that are others now, are forgotten; these others come by
+/// The world has begun anew or gone back, without tick: what was commanded and is owed is void.
+/// Robots that the layout has no more, or that are others now, are forgotten; these others come by
 /// add_robots().
 /// @param restart  its epoch is the barrier's to know
 void restart(Barrier& barrier, wire::Restart restart);

@@ -1,12 +1,12 @@
 #pragma once
-// What the server knows of one client.
+// Session of one client, as the server knows it.
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 
-#include "network/barrier/turn.h"
+#include "network/barrier/pending_answer.h"
 #include "network/latencies.h"
 #include "network/link.h"
 #include "wire/command_limits.h"
@@ -31,8 +31,8 @@ enum class SessionState {
   lost,      ///< its connection is gone; its robots are free
 };
 
-/// What is known of its connection.
-struct Contact {
+/// Liveness of the session's connection, and its bad messages.
+struct Liveness {
   Time last_received;       ///< when a message came from it
   Time last_sent;           ///< when one was sent to it
   unsigned heartbeats = 0;  ///< sent to it since it was last heard of
@@ -40,7 +40,7 @@ struct Contact {
 };
 
 /// A Hello that waits for the world.
-struct Application {
+struct WaitingHello {
   std::string hello;  ///< the whole message
   Access access;      ///< of its connection
 };
@@ -51,26 +51,26 @@ struct Session {
   std::string connection;          ///< the one that it was made over; lost: the last one
   std::optional<std::size_t> key;  ///< that it was made with, see Access
   wire::Role role = wire::Role::controller;
-  std::string client;       ///< name and version, for messages
-  std::string token;        ///< to resume with
-  std::uint32_t minor = 0;  ///< of the protocol, as agreed
-  bool can_restore = false;  ///< its controllers can go back to a snapshot
-  wire::Roster roster;      ///< of other roles: empty
+  std::string client;                   ///< name and version, for messages
+  std::string token;                    ///< to resume with
+  std::uint32_t minor = 0;              ///< of the protocol, as agreed
+  bool can_restore = false;             ///< its controllers can go back to a snapshot
+  wire::Roster roster;                  ///< of other roles: empty
   std::optional<std::size_t> director;  ///< of that role: its number; none: it has left
   wire::WorldView view;                 ///< of that role: what it is told
   wire::CommandLimits command_limits;   ///< of what its robots can need, in its form
-  Turn turn;
-  Contact contact;
+  PendingAnswer pending_answer;
+  Liveness liveness;
   Latencies latencies;       ///< from observation to command
   std::uint64_t misses = 0;  ///< deadlines
-  struct Untold {
+  struct UnreportedMisses {
     std::uint64_t misses = 0;
     std::uint64_t first_tick = 0;
     Time until;
-  } untold;  ///< misses that no notice has told yet
-  Time lease_end;            ///< lost: until then no other session gets its robots
-  wire::Outbox observation;  ///< long-lived, for the tick path
-  Application application;   ///< in HELLO
+  } unreported;                ///< misses that no notice has reported yet
+  Time lease_end;              ///< lost: until then no other session gets its robots
+  wire::Outbox observation;    ///< long-lived, for the tick path
+  WaitingHello waiting_hello;  ///< in HELLO
 
   /// It has a part in each tick.
   bool has_ticks() const { return !roster.empty() || director.has_value(); }

@@ -37,7 +37,7 @@ std::size_t Sessions::connected(wire::Role role) const {
 
 std::size_t Sessions::waiting_bytes() const {
   std::size_t bytes = 0;
-  for (const auto& [id, session] : sessions_) bytes += session.application.hello.size();
+  for (const auto& [id, session] : sessions_) bytes += session.waiting_hello.hello.size();
   return bytes;
 }
 

@@ -11,78 +11,80 @@ using wire::make_fault;
 
 void TickGate::begin(std::uint64_t tick) {
   tick_ = tick;
-  is_standing_ = false;
+  is_halted_ = false;
 }
 
-void TickGate::await(Turn& turn, Time now) {
-  if (!turn.owes) ++owing_;
-  turn.tick = *tick_;
-  turn.owes = true;
-  turn.has_missed = false;
-  turn.owes_since = now;
-  turn.waited = {};
+void TickGate::await(PendingAnswer& answer, Time now) {
+  if (!answer.is_owed) ++owing_;
+  answer.tick = *tick_;
+  answer.is_owed = true;
+  answer.has_missed = false;
+  answer.waiting_since = now;
+  answer.waited = {};
 }
 
-void TickGate::settle(Turn& turn, Time now) {
-  if (!turn.owes) return;
-  turn.owes = false;
-  turn.waited = now - turn.owes_since;
+void TickGate::settle(PendingAnswer& answer, Time now) {
+  if (!answer.is_owed) return;
+  answer.is_owed = false;
+  answer.waited = now - answer.waiting_since;
   --owing_;
 }
 
-void TickGate::miss(Turn& turn, Time now) {
-  settle(turn, now);
-  turn.has_missed = true;
-  ++turn.late_commands;
+void TickGate::miss(PendingAnswer& answer, Time now) {
+  settle(answer, now);
+  answer.has_missed = true;
+  ++answer.late_commands;
 }
 
-void TickGate::give_up(Turn& turn, Time now) {
-  turn.crossing += turn.late_commands + (turn.owes ? 1 : 0);
-  turn.late_commands = 0;
-  settle(turn, now);
+void TickGate::give_up(PendingAnswer& answer, Time now) {
+  answer.stale_commands += answer.late_commands + (answer.is_owed ? 1 : 0);
+  answer.late_commands = 0;
+  settle(answer, now);
 }
 
-Excuse excuse_of(Turn& turn, ErrorCode code) {
-  const bool is_of_tick = code == ErrorCode::stale_tick || code == ErrorCode::future_tick || code == ErrorCode::duplicate_tick;
-  if (is_of_tick && turn.crossing > 0) {
-    --turn.crossing;
-    return Excuse::crossed;
+StaleReason take_stale_reason(PendingAnswer& answer, ErrorCode code) {
+  const bool is_of_tick = code == ErrorCode::stale_tick || code == ErrorCode::future_tick ||
+                          code == ErrorCode::duplicate_tick;
+  if (is_of_tick && answer.stale_commands > 0) {
+    --answer.stale_commands;
+    return StaleReason::world_restarted;
   }
-  if (code == ErrorCode::stale_tick && turn.late_commands > 0) {
-    --turn.late_commands;
-    return Excuse::missed;
+  if (code == ErrorCode::stale_tick && answer.late_commands > 0) {
+    --answer.late_commands;
+    return StaleReason::missed_deadline;
   }
-  return Excuse::none;
+  return StaleReason::none;
 }
 
-std::chrono::nanoseconds TickGate::waited(const Turn& turn, Time now) const {
-  if (turn.tick != tick_) return {};
-  return turn.owes ? now - turn.owes_since : turn.waited;
+std::chrono::nanoseconds TickGate::waited(const PendingAnswer& answer, Time now) const {
+  if (answer.tick != tick_) return {};
+  return answer.is_owed ? now - answer.waiting_since : answer.waited;
 }
 
-std::optional<wire::Fault> check_epoch(const Turn& turn, std::optional<std::uint64_t> epoch) {
-  if (!epoch || *epoch == turn.epoch) return std::nullopt;
-  const bool is_past = *epoch < turn.epoch;
+std::optional<wire::Fault> check_epoch(const PendingAnswer& answer,
+                                       std::optional<std::uint64_t> epoch) {
+  if (!epoch || *epoch == answer.epoch) return std::nullopt;
+  const bool is_past = *epoch < answer.epoch;
   return make_fault(
       is_past ? ErrorCode::stale_tick : ErrorCode::future_tick, "epoch",
       fmt::format("The Command is for a tick of epoch {}; the last Observation is of epoch "
                   "{}. Each reset and restore of the world begins another.",
-                  *epoch, turn.epoch));
+                  *epoch, answer.epoch));
 }
 
-std::optional<wire::Fault> check_tick(const Turn& turn, std::uint64_t tick) {
-  if (tick > turn.tick) {
+std::optional<wire::Fault> check_tick(const PendingAnswer& answer, std::uint64_t tick) {
+  if (tick > answer.tick) {
     return make_fault(
         ErrorCode::future_tick, "tick",
-        fmt::format("The Command is for tick {}; the world is at {}.", tick, turn.tick));
+        fmt::format("The Command is for tick {}; the world is at {}.", tick, answer.tick));
   }
-  if (tick < turn.tick) {
+  if (tick < answer.tick) {
     return make_fault(
         ErrorCode::stale_tick, "tick",
-        fmt::format("The Command is for tick {}; the world is at {} already.", tick, turn.tick));
+        fmt::format("The Command is for tick {}; the world is at {} already.", tick, answer.tick));
   }
-  if (turn.owes) return std::nullopt;
-  if (turn.has_missed) {
+  if (answer.is_owed) return std::nullopt;
+  if (answer.has_missed) {
     return make_fault(ErrorCode::stale_tick, "tick",
                       fmt::format("Tick {} goes on without this Command.", tick));
   }

@@ -49,8 +49,8 @@ Key key_of(Bytes bytes) {
   return key;
 }
 
-/// What boxes between two keys are sealed and opened with: to find it out costs more than all else. None if the other
-/// key is one of few that no client makes.
+/// Shared key that seals and opens the boxes between two keys; computing it is the most expensive
+/// step. None if the other key is a weak one, which no client makes.
 std::optional<Key> shared_by(const Key& theirs, const Key& ours) {
   Key shared;
   const int result = ::crypto_box_beforenm(shared.data(), theirs.data(), ours.data());
@@ -58,11 +58,12 @@ std::optional<Key> shared_by(const Key& theirs, const Key& ours) {
 }
 
 /// The content of a box; none if it is not the work of both keys.
-std::optional<std::vector<std::uint8_t>> open_box(Bytes box, const Nonce& nonce, const std::optional<Key>& shared) {
+std::optional<std::vector<std::uint8_t>> open_box(Bytes box, const Nonce& nonce,
+                                                  const std::optional<Key>& shared) {
   if (box.size() < mac_size || !shared) return std::nullopt;
   std::vector<std::uint8_t> content(box.size() - mac_size);
-  const int result =
-      ::crypto_box_open_easy_afternm(content.data(), box.data(), box.size(), nonce.data(), shared->data());
+  const int result = ::crypto_box_open_easy_afternm(content.data(), box.data(), box.size(),
+                                                    nonce.data(), shared->data());
   return result == 0 ? std::optional(std::move(content)) : std::nullopt;
 }
 
@@ -105,7 +106,8 @@ bool CurvePeer::hello(Bytes body, std::string& reply) {
   client_transient_ = key_of(data->subspan(key_at));
   const Bytes number = data->subspan(number_at, number_size);
   const auto shared = shared_by(client_transient_, keys_.secret_key());
-  const auto zeros = open_box(data->subspan(box_at), make_nonce("CurveZMQHELLO---", number), shared);
+  const auto zeros =
+      open_box(data->subspan(box_at), make_nonce("CurveZMQHELLO---", number), shared);
   if (!zeros || !is_fresh(number_of(number))) return false;
   ::crypto_box_keypair(our_transient_public_.data(), our_transient_secret_.data());
   ::randombytes_buf(cookie_.data(), cookie_.size());
@@ -132,7 +134,8 @@ bool CurvePeer::initiate(Bytes body, std::string& reply) {
   if (::sodium_memcmp(data->data(), cookie_.data(), cookie_.size()) != 0) return false;
   const Bytes number = data->subspan(cookie_.size(), number_size);
   const auto shared = shared_by(client_transient_, our_transient_secret_);
-  const auto content = open_box(data->subspan(box_at), make_nonce("CurveZMQINITIATE", number), shared);
+  const auto content =
+      open_box(data->subspan(box_at), make_nonce("CurveZMQINITIATE", number), shared);
   if (!content || !is_fresh(number_of(number))) return false;
   const Key client_key = key_of(*content);
   const Bytes vouch_nonce = Bytes(*content).subspan(key_size, long_nonce_size);

@@ -56,7 +56,7 @@ class CurvePeer {
   /// After initiate(): whose key it is, as an index into Curve::clients.
   std::size_t client() const { return client_; }
 
-  /// How many bytes longer a message is in its box.
+  /// Bytes that a box adds to its message.
   static constexpr std::size_t overhead = 33;
   struct Opened {
     std::span<std::uint8_t> content;

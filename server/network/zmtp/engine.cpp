@@ -12,12 +12,13 @@ constexpr const char* not_a_frame = "a frame of its is none of ZMTP 3";
 
 std::string_view mechanism_for(const CurveKeys* keys) { return keys == nullptr ? "NULL" : "CURVE"; }
 
-/// What a client is told to be instead of what its metadata say.
+/// Reason to refuse a client because of its metadata; empty: it is accepted.
 std::string refusal_of(const Metadata& metadata) {
   constexpr std::size_t longest_type = 16;
   if (!metadata.is_valid) return "its metadata are none of ZMTP 3";
   const std::string type = metadata.socket_type.substr(0, longest_type);
-  return "it is a socket of type " + (type.empty() ? "none" : type) + ", and the server talks with a DEALER";
+  return "it is a socket of type " + (type.empty() ? "none" : type) +
+         ", and the server talks with a DEALER";
 }
 
 }  // namespace
@@ -45,20 +46,24 @@ Taken Engine::take_greeting(Bytes input, std::string& reply) {
   const Greeting found = check_greeting(input);
   if (found == Greeting::wrong) {
     const std::string version(older_version(input));
-    return fail(version.empty() ? "what it sends is not ZMTP 3, ZeroMQ's wire protocol"
-                                : "it speaks ZMTP " + version + ", and ZMTP 3 is needed (libzmq 4)");
+    return fail(version.empty()
+                    ? "what it sends is not ZMTP 3, ZeroMQ's wire protocol"
+                    : "it speaks ZMTP " + version + ", and ZMTP 3 is needed (libzmq 4)");
   }
   if (found == Greeting::incomplete) return {Step::incomplete, greeting_size, false, {}};
-  // The rest follows the client's whole greeting: a client that breaks off at our mechanism has told its own.
+  // The rest follows the client's whole greeting: a client that breaks off at our mechanism has
+  // told its own.
   reply += zmtp::greeting(mechanism_for(keys_), true).substr(first_of_greeting);
   const std::string mechanism(mechanism_of(input));
   if (mechanism == mechanism_for(keys_)) {
     stage_ = curve_ ? Stage::hello : Stage::ready;
     return {Step::passed, greeting_size, false, {}};
   }
-  if (mechanism == "NULL") return fail("it has no key, and the endpoint is protected (--curve-clients)");
+  if (mechanism == "NULL")
+    return fail("it has no key, and the endpoint is protected (--curve-clients)");
   if (mechanism == "CURVE") return fail("it has keys, and the endpoint is not protected");
-  return fail("its mechanism is " + mechanism + ", and the endpoint's is " + std::string(mechanism_for(keys_)));
+  return fail("its mechanism is " + mechanism + ", and the endpoint's is " +
+              std::string(mechanism_for(keys_)));
 }
 
 /// @return  why it has failed; empty if it has not
@@ -73,13 +78,16 @@ std::string Engine::take_handshake(Bytes body, std::string& reply) {
       stage_ = Stage::open;
       return {};
     }
-    if (const auto& key = curve_->unlisted_key(); !key.empty()) return "its key " + key + " is not in --curve-clients";
-    return curve_->refused_metadata() ? refusal_of(*curve_->refused_metadata()) : "its handshake is none of CURVE";
+    if (const auto& key = curve_->unlisted_key(); !key.empty())
+      return "its key " + key + " is not in --curve-clients";
+    return curve_->refused_metadata() ? refusal_of(*curve_->refused_metadata())
+                                      : "its handshake is none of CURVE";
   }
   const auto data = command_data(body, "READY");
   const Metadata metadata = data ? read_metadata(*data) : Metadata{};
   if (!is_of_client(metadata)) return refusal_of(metadata);
-  // Not earlier: a socket of another type closes the connection when it has ours, before it tells its own.
+  // Not earlier: a socket of another type closes the connection when it has ours, before it tells
+  // its own.
   append_command(reply, "READY", metadata_of("ROUTER"));
   stage_ = Stage::open;
   return {};

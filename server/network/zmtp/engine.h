@@ -16,7 +16,7 @@ namespace ziggurat::network::zmtp {
 
 using namespace ziggurat::zmtp;
 
-/// What the bytes at the front of the input are.
+/// Result of parsing the bytes at the front of the input.
 struct Taken {
   enum class Step {
     incomplete,  ///< too few bytes yet
@@ -26,8 +26,8 @@ struct Taken {
     failed,      ///< not ZMTP, or not allowed: the connection must be closed
   };
   Step step = Step::incomplete;
-  /// Of the bytes that are used up; of an incomplete frame, how many there must be; of one that is
-  /// too long, its whole length, of which not all has arrived.
+  /// Number of bytes that are consumed. Of an incomplete frame the number that it needs. Of a frame
+  /// that is too long its whole length, which has not all arrived.
   std::size_t size = 0;
   bool has_more = false;              ///< frame, too_long: the message goes on
   std::span<std::uint8_t> content{};  ///< frame: points into the input
@@ -49,10 +49,10 @@ class Engine {
   bool is_open() const { return stage_ == Stage::open; }
   /// Why the last step has failed, for people; empty if none has.
   const std::string& refusal() const { return refusal_; }
-  /// What the client may do. @pre is_open()
+  /// Rights of the client. @pre is_open()
   Access access() const;
 
-  /// Where the content of a frame begins, of which it has `content` bytes.
+  /// Offset of the content in a frame that has `content` bytes of it.
   std::size_t content_at(std::size_t content) const;
   /// Completes a frame. @param frame  with its content in place
   void seal(std::span<std::uint8_t> frame, std::size_t content);

@@ -1,4 +1,4 @@
-// What robots on wheels are made of.
+// Parts of robots on wheels.
 
 #include <cmath>
 
@@ -7,7 +7,8 @@
 namespace ziggurat::scene {
 namespace {
 
-/// Of two-dimensional robots in the dialect. What is under a robot does not rub: its wheels roll.
+/// Surface of two-dimensional robots in the dialect. Their underside has no friction: their wheels
+/// roll.
 constexpr Surface body_surface{0.7, 0.0};
 
 }  // namespace

@@ -24,7 +24,6 @@ MUTANTS = [
     Mutant("uses-req", "T1", "T1.one-dealer"),
     Mutant("other-connection", "T1", "T1.one-dealer"),
     _should("idle-connection", "T1", "T1.one-dealer"),
-    _should("does-not-linger", "T1", "T1.linger"),
     Mutant("two-frames", "T2", "T1.one-dealer"),
     Mutant("empty-frame", "T2", "S3.answers-each"),
     Mutant("garbage", "T2", "S3.answers-each"),

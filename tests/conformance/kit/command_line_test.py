@@ -63,15 +63,9 @@ class Mistakes(unittest.TestCase):
         self.expect(r"ended at once, with exit code 7; it said:\nno libfoo", "server", "--", "sh", "-c",
                     "echo no libfoo >&2; exit 7")
 
-    def test_reports_that_would_replace_other_files(self):
+    def test_names_of_reports_that_can_be_none(self):
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
-            for content, kind in ((b"\x89MCAP0\r\n", "a recording"), (b"SQLite format 3\0", "a database"),
-                                  (b"<?xml version='1.0'?>\n<!-- mine -->\n<argos-configuration>", "a scene")):
-                (folder / "r.json").write_bytes(content)
-                self.expect(f"--json is '.*r.json', {kind}, which it would replace", "server", "--json",
-                            str(folder / "r.json"), "--", *TINY)
-                self.assertEqual(content, (folder / "r.json").read_bytes())
             self.expect(r"--junit is '.*r.argos'; its name must end with \.xml", "client", "--junit",
                         str(folder / "r.argos"), "--", "true")
             self.expect("--html is '.*', a folder; name a file in it", "client", "--html", str(folder), "--", "true")

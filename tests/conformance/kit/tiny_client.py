@@ -300,7 +300,7 @@ class Client:
             return None
         leave = protocol.Leave(reason=protocol.Leave.DONE)
         bugs.LEAVES.get(self.bug, lambda *_: None)(leave)
-        self.socket.setsockopt(zmq.LINGER, 0 if self.bug == "does-not-linger" else -1)  # it ends once that is sent
+        self.socket.setsockopt(zmq.LINGER, -1)  # it ends once that is sent
         self.say(leave=leave)
         self.close()
         self.context.term()

@@ -268,7 +268,7 @@ def run_and_kill(command, folder, draw, robots, kills, lose=False, script=None):
         return Outcome(code, "".join(lines), errors.read(), victims)
 
 
-def run(number, options=(), change=perturb, solver=None, keep=None, kills=0, lose=False):
+def run(number, options=(), change=perturb, keep=None, kills=0, lose=False):
     """Runs and judges one perturbation: (verdict, description of the changes, log lines). kills: robots' processes
     that are killed and started again; lose: one robot is removed for good, and the others finish."""
     rules = getattr(change, "rules", None)
@@ -278,8 +278,6 @@ def run(number, options=(), change=perturb, solver=None, keep=None, kills=0, los
         scene_file = pathlib.Path(folder) / scene.relative_to(ROOT)
         tree = ElementTree.parse(scene_file)
         changes = change(tree, number)
-        if solver:
-            tree.find("physics_engines/dynamics3d").set("solver", solver)
         if rules:
             shutil.copy(pathlib.Path(__file__).parent / "parked.lua", scene_file.parent)
             tree.getroot().append(ElementTree.Element("director", id="end", script="parked.lua"))
@@ -344,7 +342,6 @@ def main():
                       help="the pyramid of four robots, scattered in the same way")
     kind.add_argument("--robots", dest="change", type=with_robots, metavar="N",
                       help="the pyramid with N robots instead of four")
-    parser.add_argument("--solver", help="written into the scene: newton or sweeps")
     parser.add_argument("--controller", action="append", default=[], metavar="ID=CMD",
                         help="passed on to ziggurat run")
     parser.add_argument("--kills", type=int, default=0,
@@ -359,8 +356,8 @@ def main():
     worst = judge.Verdict([], 0, 0, 0)
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         runs = pool.map(
-            lambda number: run(number, options, arguments.change, arguments.solver,
-                               arguments.keep, arguments.kills, arguments.lose), numbers)
+            lambda number: run(number, options, arguments.change, arguments.keep, arguments.kills,
+                               arguments.lose), numbers)
         for number, (verdict, changes, _) in zip(numbers, runs):
             print(table_line(number, verdict, changes), flush=True)
             good += verdict.good

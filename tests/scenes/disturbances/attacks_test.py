@@ -6,7 +6,6 @@ import random
 import socket
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 import unittest
@@ -122,33 +121,6 @@ class Attacks(SceneTest):
             self.assertEqual(supervisor.ask(restore=v1.RestoreRequest(name="good")), "")
         self.end(process)
 
-    def test_a_restore_that_repeats_a_run_is_not_silent(self):
-        """Rule M6: without solver="newton" all ticks are computed again."""
-        boxes = "".join(BOX.format(f"b{i}", f"{i},0,0") for i in range(10))
-        self.scene = self.write("slow.argos", f"""<argos>
-            <framework><experiment length="0" ticks_per_second="10" random_seed="1" /></framework><controllers />
-            <arena size="50,50,10" center="0,0,5">{boxes}</arena>
-            <physics_engines><dynamics3d id="d" solver="sweeps" iterations="3000"><floor /><gravity g="9.8" /></dynamics3d>
-            </physics_engines><media /></argos>""")
-        process = self.start("serve", self.scene, "--endpoint", "tcp://127.0.0.1:*", "--duration", 0, "--paused")
-        self.endpoint = process.stdout.readline().split()[1]
-        with Supervisor(self.endpoint) as supervisor, Supervisor(self.endpoint) as other:
-            begin = time.monotonic()
-            while time.monotonic() - begin < 8:  # repeating them takes less
-                self.assertEqual(supervisor.ask(step=v1.StepRequest(ticks=1)), "")
-            self.assertEqual(supervisor.ask(snapshot=v1.SnapshotRequest(name="late")), "")
-            other.number = 1
-            other.send_message(v1.ClientMessage(request=v1.Request(
-                id=1, restore=v1.RestoreRequest(name="late"))).SerializeToString())
-            silences, begin = [], time.monotonic()
-            while not silences or kind != "response":
-                before = time.monotonic()
-                kind = v1.ServerMessage.FromString(other._receive_frame()).WhichOneof("message")
-                silences.append(time.monotonic() - before)
-            self.assertGreater(time.monotonic() - begin, 2)
-            self.assertLess(max(silences), 1.8)
-        self.end(process)
-
     # --- HTTP -----------------------------------------------------------------------------------
 
     def ask_port(self, port, request):
@@ -240,41 +212,6 @@ class Attacks(SceneTest):
                 self.assertNotRegex(outcome.stderr, "(?m)^ziggurat: all is well")
         server.join()
         router.close(linger=0)
-
-    def test_a_message_without_end_of_frames_is_not_kept(self):
-        """By `ctl`, `top` and `ziggurat-lua`, at a server that they have no key of."""
-        listener = socket.create_server(("127.0.0.1", 0))
-        self.addCleanup(listener.close)
-        endpoint = f"tcp://127.0.0.1:{listener.getsockname()[1]}"
-        ready = b"\x05READY\x0bSocket-Type\0\0\0\x06ROUTER"
-        greeting = b"\xff" + bytes(8) + b"\x7f\x03\x01" + b"NULL".ljust(52, b"\0") + bytes([4, len(ready)]) + ready
-
-        def serve():
-            for _ in commands:
-                with listener.accept()[0] as connection:
-                    connection.sendall(greeting)
-                    frames = b"\x01\x07a frame" * 100_000
-                    try:
-                        for _ in range(500):
-                            connection.sendall(frames)
-                    except OSError:
-                        pass  # the client has left
-
-        commands = [(ZIGGURAT, "ctl", endpoint, "status"), (ZIGGURAT, "top", endpoint, "--once"),
-                    (LUA, "--connect", endpoint, "--script", "swing.lua")]
-        server = threading.Thread(target=serve)
-        server.start()
-        for words in commands:
-            with self.subTest(words), tempfile.TemporaryFile("w+") as messages:
-                program = subprocess.Popen([str(word) for word in words], cwd=self.folder, env=self.environment,
-                                           stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=messages)
-                _, status, used = os.wait4(program.pid, 0)
-                program.returncode = os.waitstatus_to_exitcode(status)
-                messages.seek(0)
-                self.assertEqual(program.returncode, FAULT)
-                self.assertIn("not a message of ziggurat.v1", messages.read())
-                self.assertLess(used.ru_maxrss, 100 << 10)  # [KiB]
-        server.join()
 
 
 if __name__ == "__main__":

@@ -102,11 +102,11 @@ def _misbehave(order, session, tick):
     draw = random.Random(tick)
     if order == GARBAGE:
         for frames in _garbage(draw, 20):
-            _send_frames(stream, frames)
+            stream._socket.send_multipart(frames)
         return all(_error(stream) in ("MALFORMED", "TOO_LARGE") for _ in range(20))
     if order == RUDE:
         for frames in _garbage(draw, 150):
-            _send_frames(stream, frames)
+            stream._socket.send_multipart(frames)
         while _error(stream) != "TOO_MANY":
             pass
         return False
@@ -128,14 +128,6 @@ def _garbage(draw, count):
     for i in range(count):
         yield ([b"\xff" + draw.randbytes(200)], [whole, whole], [whole[:len(whole) // 2]],
                [b"\xff" + draw.randbytes(100_000)], [b'{"command": {"tick": "1"}}'])[i % 5]
-
-
-def _send_frames(stream, frames):
-    """A message of frames, which the client itself has no function for."""
-    for i, frame in enumerate(frames):
-        flags = 2 | (i + 1 < len(frames))  # the size has eight bytes; more frames follow
-        stream._output.add(bytes((flags,)) + len(frame).to_bytes(8, "big") + frame)
-    stream._flush()
 
 
 def _error(stream):

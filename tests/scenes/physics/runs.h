@@ -23,13 +23,11 @@ inline scene::Scene read_scene(const std::filesystem::path& path,
 }
 
 inline scene::Scene drop_scene(scene::Clock clock = scene::Clock::nominal) {
-  return read_scene(checkout() / "scenes/dynamics3d_single_body_test.argos",
-                    clock);
+  return read_scene(checkout() / "scenes/dynamics3d_single_body_test.argos", clock);
 }
 
 inline scene::Scene vehicle_scene(scene::Clock clock = scene::Clock::nominal) {
-  return read_scene(checkout() / "scenes/dynamics3d_multi_body_test.argos",
-                    clock);
+  return read_scene(checkout() / "scenes/dynamics3d_multi_body_test.argos", clock);
 }
 
 /// Entities of the drop scene that fall: 1 cm boxes and cylinders, of 0.25 kg each.

@@ -1,11 +1,12 @@
 #pragma once
-// What a test's thread allocates, by an operator new that replaces that of the whole program.
+// Allocations of a test's thread, counted by an operator new that replaces that of the whole
+// program.
 
 #include <cstddef>
 
 namespace ziggurat::testing {
 
-/// How often this thread has called operator new so far.
+/// Number of calls of operator new by this thread so far.
 std::size_t allocations();
 
 /// While it lives, one call of operator new in this thread throws std::bad_alloc.

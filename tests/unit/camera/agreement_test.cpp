@@ -15,7 +15,7 @@
 #include "camera/detectors.h"
 #include "devices/camera.h"
 #include "devices/picture.h"
-#include "physics/ray.h"
+#include "physics/collision/ray.h"
 #include "simulation/layout.h"
 
 namespace ziggurat::camera {
@@ -89,7 +89,7 @@ class BothDetectors {
 
   bool clear(const Vector3& eye, const Vector3& target) const {
     std::size_t left = 1;
-    return devices::Sight{rays_, 0, nullptr, nullptr, {}, left}.clear(eye, target);
+    return devices::OcclusionTest{rays_, 0, nullptr, nullptr, {}, left}.clear(eye, target);
   }
 
   std::map<int, std::array<Vector2, 4>> simulated() {
@@ -98,8 +98,8 @@ class BothDetectors {
     std::vector<world::TagReading> readings;
     detect_tags(
         View(stage_.layout, stage_.state, index_, 0),
-        [this](const Vector3& eye, const Vector3& target) { return clear(eye, target); }, candidates,
-        readings);
+        [this](const Vector3& eye, const Vector3& target) { return clear(eye, target); },
+        candidates, readings);
     std::map<int, std::array<Vector2, 4>> found;
     for (const auto& reading : readings) {
       found[std::stoi(stage_.state.tag_payloads[reading.tag])] = reading.corners;

@@ -38,7 +38,8 @@ std::string box(const std::string& position, const std::string& size) {
          R"(" movable="false"><body position=")" + position + R"("/></box>)";
 }
 
-/// Devices without a controller on a box of 4 cm; its near face is at x = 0.48 m, its bottom at z = 0.03 m.
+/// Devices without a controller on a box of 4 cm; its near face is at x = 0.48 m, its bottom at z =
+/// 0.03 m.
 std::string carrier(const std::string& devices, const std::string& position = "0.5,0,0.03") {
   return R"(<prototype id="carrier" movable="false"><body position=")" + position +
          R"("/><links ref="b"><link id="b" geometry="box" size=".04,.04,.04" mass="1"/></links>)" +
@@ -61,7 +62,7 @@ std::string led(double x) {
 }
 
 std::unique_ptr<Simulation> after_one_tick(const std::string& arena,
-                                   const std::string& sensors = cameras(camera())) {
+                                           const std::string& sensors = cameras(camera())) {
   const SmallScene scene{"", sensors, robot("r", "0,0,0", "") + arena, ""};
   auto simulation = std::make_unique<Simulation>(scene.read(), simulation::Options{});
   EXPECT_TRUE(simulation->observations().tags.empty());
@@ -216,10 +217,10 @@ TEST(Cameras, ReadingsAreHashedAndFollowTheLeds) {
   EXPECT_EQ(with->observations().leds.at(0).color, 0x00FF00u);
 }
 
-TEST(Sight, TooManyLinesEndWithASentence) {
+TEST(OcclusionTest, TooManyLinesEndWithASentence) {
   const physics::Rays rays(scene::Physics{});
   std::size_t left = 2;
-  const devices::Sight sight{rays, 0, nullptr, nullptr, {}, left};
+  const devices::OcclusionTest sight{rays, 0, nullptr, nullptr, {}, left};
   for (int line = 0; line < 2; ++line) EXPECT_TRUE(sight.clear({0, 0, 1}, {1, 0, 1}));
   EXPECT_THROW(sight.clear({0, 0, 1}, {1, 0, 1}), std::runtime_error);
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Files of the checkout that tests read. No other source is compiled with an absolute path: so a compiler
-// cache knows the sources of every clone.
+// Files of the checkout that tests read. No other source is compiled with an absolute path: so a
+// compiler cache knows the sources of every clone.
 
 #include <filesystem>
 

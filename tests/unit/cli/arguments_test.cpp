@@ -38,8 +38,10 @@ TEST(Arguments, TwoDashesEndTheOptions) {
 }
 
 TEST(Arguments, NegativeNumbersAreValues) {
-  const auto parsed = parse({"move", "b", "-0.3,0.2,0", "--quiet", "-.5,0,0", "--ticks", "-5", "-90"}, known());
-  EXPECT_EQ(parsed.positional, (std::vector<std::string>{"move", "b", "-0.3,0.2,0", "-.5,0,0", "-90"}));
+  const auto parsed =
+      parse({"move", "b", "-0.3,0.2,0", "--quiet", "-.5,0,0", "--ticks", "-5", "-90"}, known());
+  EXPECT_EQ(parsed.positional,
+            (std::vector<std::string>{"move", "b", "-0.3,0.2,0", "-.5,0,0", "-90"}));
   EXPECT_EQ(parsed.values["ticks"].as<std::string>(), "-5");
   EXPECT_EQ(complaint({"-x"}), "unknown option '-x'; --help lists the options");
 }
@@ -70,13 +72,17 @@ TEST(Arguments, UnknownOptionsGetASuggestionIfOneIsNear) {
 }
 
 TEST(Arguments, ADashOfAWordProcessorIsTold) {
-  EXPECT_EQ(complaint({"scene.argos", "–ticks", "3"}), "'–ticks' begins with a dash that is no hyphen; write --ticks");
-  EXPECT_EQ(complaint({"——ticks=3"}), "'——ticks=3' begins with a dash that is no hyphen; write --ticks=3");
-  EXPECT_EQ(complaint({"–", "–file.argos", "− 3", "--", "–ticks"}), "") << "files and values may begin so";
+  EXPECT_EQ(complaint({"scene.argos", "–ticks", "3"}),
+            "'–ticks' begins with a dash that is no hyphen; write --ticks");
+  EXPECT_EQ(complaint({"——ticks=3"}),
+            "'——ticks=3' begins with a dash that is no hyphen; write --ticks=3");
+  EXPECT_EQ(complaint({"–", "–file.argos", "− 3", "--", "–ticks"}), "")
+      << "files and values may begin so";
 }
 
 TEST(Arguments, AnEmptyValueIsAFault) {
-  EXPECT_EQ(complaint({"--ticks", "", "a"}), "the value of --ticks is empty; write --ticks VALUE, or leave it out");
+  EXPECT_EQ(complaint({"--ticks", "", "a"}),
+            "the value of --ticks is empty; write --ticks VALUE, or leave it out");
   po::options_description several;
   several.add_options()("endpoint", po::value<std::vector<std::string>>());
   EXPECT_THROW(parse({"--endpoint", "a", "--endpoint", ""}, several), text::UsageError);

@@ -25,14 +25,16 @@ TEST(Commands, MisspeltNamesGetASuggestion) {
 }
 
 TEST(Commands, MisspeltOptionsWithoutCommandGetASuggestion) {
-  for (const auto& [written, advice] : {std::pair("--versio", "did you mean '--version'?"),
-                                        std::pair("--hepl", "did you mean '--help'?"),
-                                        std::pair("--seed", "write: ziggurat COMMAND [OPTION]...")}) {
+  for (const auto& [written, advice] :
+       {std::pair("--versio", "did you mean '--version'?"),
+        std::pair("--hepl", "did you mean '--help'?"),
+        std::pair("--seed", "write: ziggurat COMMAND [OPTION]...")}) {
     try {
       command_named(written);
       ADD_FAILURE() << written;
     } catch (const text::UsageError& error) {
-      EXPECT_NE(std::string_view(error.what()).find(advice), std::string_view::npos) << error.what();
+      EXPECT_NE(std::string_view(error.what()).find(advice), std::string_view::npos)
+          << error.what();
     }
   }
 }

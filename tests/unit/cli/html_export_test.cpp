@@ -62,7 +62,8 @@ TEST_F(HtmlExport, TheRecordingAndItsNameStandInThePage) {
 }
 
 TEST_F(HtmlExport, LinksAndDevicesStayWhatTheyAre) {
-  const auto player = write("player.html", "@NAME@ @RECORDING@"), recording = write("r.mcap", magic_);
+  const auto player = write("player.html", "@NAME@ @RECORDING@"),
+             recording = write("r.mcap", magic_);
   const auto target = write("target", "old");
   fs::create_symlink("target", path("link"));
   fs::create_symlink("/dev/null", path("nothing"));
@@ -74,7 +75,8 @@ TEST_F(HtmlExport, LinksAndDevicesStayWhatTheyAre) {
 }
 
 TEST_F(HtmlExport, ADashIsStdout) {
-  const auto player = write("player.html", "@NAME@ @RECORDING@"), recording = write("r.mcap", magic_);
+  const auto player = write("player.html", "@NAME@ @RECORDING@"),
+             recording = write("r.mcap", magic_);
   testing::internal::CaptureStdout();
   const std::size_t size = export_html(player, recording, "-");
   const std::string page = testing::internal::GetCapturedStdout();

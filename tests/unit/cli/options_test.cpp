@@ -65,7 +65,8 @@ TEST(Options, WrongValuesAreRefused) {
        {Arguments{"--ticks", "-1"}, Arguments{"--duration", "-1"}, Arguments{"--duration", "nan"},
         Arguments{"--duration", "1e10"}, Arguments{"--ticks", "9007199254740993"},
         Arguments{"--real-time=0"}, Arguments{"--clock", "fast"}, Arguments{"--controller", "x"},
-        Arguments{"--controller", "=x"}, Arguments{"--set", "arena"}, Arguments{"--param", "=1"}, Arguments{"--ticks", "1", "--duration", "1"}}) {
+        Arguments{"--controller", "=x"}, Arguments{"--set", "arena"}, Arguments{"--param", "=1"},
+        Arguments{"--ticks", "1", "--duration", "1"}}) {
     EXPECT_THROW(run(arguments), text::UsageError) << arguments.front();
   }
 }
@@ -84,8 +85,8 @@ TEST(Options, InsecureNeedsAnAddressThatOthersCanReach) {
        {Arguments{"s", "--insecure"}, Arguments{"s", "--insecure", "--endpoint", "ipc:///tmp/x"}}) {
     EXPECT_THROW(run(arguments), text::UsageError);
   }
-  for (const Arguments& more :
-       {Arguments{"--endpoint", "tcp://127.0.0.1:1"}, Arguments{"--view"}, Arguments{"--metrics", "127.0.0.1:0"}}) {
+  for (const Arguments& more : {Arguments{"--endpoint", "tcp://127.0.0.1:1"}, Arguments{"--view"},
+                                Arguments{"--metrics", "127.0.0.1:0"}}) {
     Arguments arguments{"s", "--insecure"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     EXPECT_TRUE(run(arguments).insecure) << more.front();
@@ -94,19 +95,24 @@ TEST(Options, InsecureNeedsAnAddressThatOthersCanReach) {
 
 TEST(Options, WhatIsGivenTwiceForTheSameIsRefused) {
   for (const auto& [option, first, second] :
-       {std::array{"--deadline", "hold:50", "wait"}, std::array{"--deadline", "a=hold:50", "a=wait"},
-        std::array{"--set", "arena/@size=1,1,1", "arena/@size=2,2,2"}, std::array{"--param", "gain=1", "gain=2"},
-        std::array{"--controller", "a=x", "a=y"}, std::array{"--restart", "1", "2"},
+       {std::array{"--deadline", "hold:50", "wait"},
+        std::array{"--deadline", "a=hold:50", "a=wait"},
+        std::array{"--set", "arena/@size=1,1,1", "arena/@size=2,2,2"},
+        std::array{"--param", "gain=1", "gain=2"}, std::array{"--controller", "a=x", "a=y"},
+        std::array{"--restart", "1", "2"},
         std::array{"--inject", "latency=1ms", "commands:loss=1%"}}) {
     try {
       run({"s", option, first, option, second});
       ADD_FAILURE() << option;
     } catch (const text::UsageError& error) {
-      EXPECT_NE(std::string(error.what()).find(std::string(option) + " is given twice for "), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find(std::string(option) + " is given twice for "),
+                std::string::npos)
+          << error.what();
     }
   }
-  EXPECT_EQ(run({"s", "--deadline", "hold:50", "--deadline", "a=wait", "--inject", "a=commands:loss=1%", "--inject",
-                 "a=observations:loss=2%", "--restart", "1", "--restart", "a=2", "--param", "a=1", "--param", "b=1"})
+  EXPECT_EQ(run({"s", "--deadline", "hold:50", "--deadline", "a=wait", "--inject",
+                 "a=commands:loss=1%", "--inject", "a=observations:loss=2%", "--restart", "1",
+                 "--restart", "a=2", "--param", "a=1", "--param", "b=1"})
                 .deadlines.size(),
             2u);
 }

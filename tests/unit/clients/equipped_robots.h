@@ -83,7 +83,7 @@ inline v1::ServerMessage welcome() {
   return message;
 }
 
-/// Of the robots of welcome(); their cameras see nothing.
+/// Observation for the robots of welcome(); their cameras see nothing.
 inline v1::ServerMessage observation(std::uint64_t tick) {
   v1::ServerMessage message;
   v1::Observation& observation = *message.mutable_observation();

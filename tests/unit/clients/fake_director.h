@@ -1,5 +1,5 @@
 #pragma once
-// What a server tells a director: a world with an arm and a box.
+// Messages of a server to a director: a world with an arm and a box.
 
 #include <chrono>
 #include <cstdint>

@@ -22,8 +22,7 @@ namespace ziggurat {
 /// Runs `script` in a thread beside the test.
 class FakeServer {
  public:
-  explicit FakeServer(std::function<void(FakeServer&)> script)
-      : context_(zmq_ctx_new()) {
+  explicit FakeServer(std::function<void(FakeServer&)> script) : context_(zmq_ctx_new()) {
     listen("tcp://127.0.0.1:*");
     std::array<char, 100> address{};
     std::size_t size = address.size();
@@ -120,7 +119,7 @@ class FakeServer {
  private:
   void listen(const std::string& address) {
     constexpr int patience_ms = 60'000;  // also on a busy machine
-    constexpr int linger_ms = 10'000;  // a busy machine may take seconds for what is large
+    constexpr int linger_ms = 10'000;    // a busy machine may take seconds for what is large
     router_ = zmq_socket(context_, ZMQ_ROUTER);
     zmq_setsockopt(router_, ZMQ_RCVTIMEO, &patience_ms, sizeof(patience_ms));
     zmq_setsockopt(router_, ZMQ_LINGER, &linger_ms, sizeof(linger_ms));
@@ -142,9 +141,10 @@ inline Options options_for(const FakeServer& server) {
   return options;
 }
 
-/// A client that is welcomed so does not take this message, and says these words. `look` sees its session after that.
-inline void expect_refused(const v1::ServerMessage& welcome, const v1::ServerMessage& message, const char* words,
-                           const std::function<void(Session&)>& look = {}) {
+/// A client that is welcomed so does not take this message, and says these words. `look` sees its
+/// session after that.
+inline void expect_refused(const v1::ServerMessage& welcome, const v1::ServerMessage& message,
+                           const char* words, const std::function<void(Session&)>& look = {}) {
   FakeServer server([&](FakeServer& self) {
     self.welcome(welcome);
     self.send(message);

@@ -38,7 +38,8 @@ TEST(HostileServer, TextsOfAServerArePrintableAndBounded) {
 
 TEST(HostileServer, IdsAndEndingsOfAServerArePrintableAndBounded) {
   v1::ServerMessage welcome = FakeServer::two_robots();
-  for (int i = 0; i < 1000; ++i) welcome.mutable_welcome()->mutable_robots(0)->add_joint_sensors()->set_id(hostile);
+  for (int i = 0; i < 1000; ++i)
+    welcome.mutable_welcome()->mutable_robots(0)->add_joint_sensors()->set_id(hostile);
   welcome.mutable_welcome()->mutable_robots(0)->set_id(hostile);
   FakeServer server([&](FakeServer& self) {
     self.welcome(welcome);
@@ -80,62 +81,6 @@ TEST(HostileServer, RefusesAWelcomeOfAnotherMajorVersion) {
   welcome.mutable_welcome()->mutable_version()->set_minor(4);
   expect_no_session(welcome.SerializeAsString(),
                     "the server speaks version 9.4 of the protocol, this client 1.");
-}
-
-/// A field of a ServerMessage.
-std::string with_length(char tag, const std::string& content) {
-  std::string bytes(1, tag);
-  for (std::size_t rest = content.size(); rest > 0; rest >>= 7) {
-    bytes += static_cast<char>((rest & 0x7f) | (rest >= 0x80 ? 0x80 : 0));
-  }
-  return bytes + content;
-}
-
-TEST(HostileServer, DecodesNoWelcomeThatCouldTakeAllMemory) {
-  std::string robots = FakeServer::two_robots().welcome().SerializeAsString();
-  const auto message = [](const std::string& welcome) { return with_length('\x0a', welcome); };
-  for (int i = 0; i < (1 << 18); ++i) robots.append("\x52\x00", 2);
-  expect_no_session(message(robots), "this client takes 262144 at most");
-  for (int i = 0; i < (1 << 21); ++i) robots.append("\x52\x00", 2);
-  expect_no_session(message(robots), "more than 2097152 fields");
-  expect_no_session(message(std::string(65 << 20, '\x52')), "bytes, more than 67108864");
-}
-
-/// A session that gets this as its first observation.
-/// @return  what next() throws; `left`: the message of its Leave
-std::string error_of(const std::string& observation, std::string* left = nullptr) {
-  FakeServer server([&](FakeServer& self) {
-    self.welcome();
-    self.send_bytes(observation);
-    const std::string message = self.receive().leave().message();
-    if (left != nullptr) *left = message;
-  });
-  try {
-    Session session(options_for(server));
-    session.next();
-  } catch (const ConnectionError& caught) {
-    return caught.what();
-  }
-  return {};
-}
-
-TEST(HostileServer, DecodesNoObservationThatCouldTakeAllMemory) {
-  std::string messages;
-  for (int i = 0; i < 40 << 20; ++i) messages.append("\x22\x00", 2);  // empty ones from radios
-  std::string left;
-  const std::string error = error_of(with_length('\x1a', messages), &left);
-  EXPECT_NE(error.find("takes more than 2684354560 bytes of memory"), std::string::npos) << error;
-  EXPECT_NE(error.find("run fewer robots in each session"), std::string::npos) << error;
-  EXPECT_EQ(left, error) << "the server is told why";
-}
-
-TEST(HostileServer, TakesObservationsOfMillionsOfTags) {
-  v1::ServerMessage message;
-  v1::Observation& seen = *message.mutable_observation();
-  for (int i = 0; i < 5 << 19; ++i) seen.add_tag_payloads("7");
-  seen.mutable_joint_readings()->Resize(4, 0.0);
-  const std::string error = error_of(message.SerializeAsString());
-  EXPECT_NE(error.find("sent 2621440 payloads of tags seen; it had announced 0"), std::string::npos) << "decoded: " << error;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What scripts find below `robot`, table by table. A script's fault fails its assert.
+// Tables below `robot` in scripts, one by one. A script's fault fails its assert.
 
 #include "lua_devices.h"
 
@@ -47,8 +47,9 @@ TEST_F(Devices, HaveTheFunctionsAndReadingsThatAreEnabled) {
 
 TEST_F(Devices, AJointHasASensorOfItsPositionAndOneOfItsVelocity) {
   using Description = v1::JointDescription;
-  for (const auto& [id, mode] : {std::pair{"arm", Description::VELOCITY}, std::pair{"arm", Description::POSITION},
-                                 std::pair{"leg", Description::POSITION}}) {
+  for (const auto& [id, mode] :
+       {std::pair{"arm", Description::VELOCITY}, std::pair{"arm", Description::POSITION},
+        std::pair{"leg", Description::POSITION}}) {
     v1::JointDescription& sensor = *robot_.add_joint_sensors();
     sensor.set_id(id);
     sensor.set_mode(mode);
@@ -226,7 +227,7 @@ TEST_F(Devices, PositioningIsPositionAngleAndAxis) {
   EXPECT_RUNS(step());
 }
 
-/// Of a robot that turns on the spot, as a quaternion that is integrated without end has it.
+/// Orientation of a robot that turns on the spot, as a quaternion that is integrated without end.
 TEST_F(Devices, PositioningHasOneFormOfEachRotation) {
   robot_.set_positioning(true);
   EXPECT_RUNS(start(R"lua(
@@ -248,7 +249,8 @@ TEST_F(Devices, PositioningHasOneFormOfEachRotation) {
 }
 
 TEST_F(Devices, ThatDoNotWorkYetAreEmptyTables) {
-  for (const char* device : {"light", "footbot_base_ground", "colored_blob_omnidirectional_camera"}) {
+  for (const char* device :
+       {"light", "footbot_base_ground", "colored_blob_omnidirectional_camera"}) {
     robot_.add_devices_to_come(device);
   }
   EXPECT_RUNS(start(R"lua(

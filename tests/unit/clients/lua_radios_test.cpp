@@ -8,7 +8,7 @@
 namespace ziggurat::lua {
 namespace {
 
-/// Of one radio, each as the values of its bytes.
+/// Messages of one radio, each as the values of its bytes.
 std::vector<std::vector<int>> messages_of(const v1::Command& command, std::uint32_t radio) {
   std::vector<std::vector<int>> messages;
   for (const v1::RadioMessage& message : command.radio_messages()) {

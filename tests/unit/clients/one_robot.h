@@ -33,7 +33,7 @@ class OneRobot {
   v1::Observation seen;  ///< initially zeros, without camera readings, messages and packets
   void sense() { fleet_.read(seen); }
 
-  /// What was set since the last call.
+  /// Values that were set since the last call.
   v1::Command command() {
     v1::Command command;
     fleet_.write(command);

@@ -15,7 +15,8 @@ namespace {
 using std::chrono::milliseconds;
 
 /// The client comes back with its token.
-void expect_resumed(FakeServer& server, const v1::ServerMessage& welcome = FakeServer::two_robots()) {
+void expect_resumed(FakeServer& server,
+                    const v1::ServerMessage& welcome = FakeServer::two_robots()) {
   EXPECT_EQ(server.receive().hello().session_token(), "token");
   server.send(welcome);
 }
@@ -326,7 +327,8 @@ TEST(Options, TheTokenInTheEnvironmentIsTakenOnce) {
       take_session_token();
       ADD_FAILURE() << wrong;
     } catch (const std::invalid_argument& error) {
-      EXPECT_EQ(std::string(error.what()).find(wrong), std::string::npos) << "a secret is not printed";
+      EXPECT_EQ(std::string(error.what()).find(wrong), std::string::npos)
+          << "a secret is not printed";
     }
   }
   ::unsetenv("ZIGGURAT_SESSION_TOKEN");

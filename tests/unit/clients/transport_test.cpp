@@ -1,4 +1,4 @@
-// The way over ZeroMQ's sockets. The one without them: plain_stream_test.cpp.
+// The connection to a server.
 
 #include "transport.h"
 
@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -36,14 +37,15 @@ TEST(Transport, AConnectionThatIsRefusedTellsTheSender) {
   SessionOptions without_keys;
   without_keys.endpoint = server.get(zmq::sockopt::last_endpoint);
   const auto transport = make_transport(without_keys);
-  // What is sent before the refusal is known goes into a queue that ZeroMQ then drops.
+  // Messages before the refusal is known go into a queue that ZeroMQ then drops.
   const auto send_for_long = [&] {
     comes_true([&] {
       transport->send(1, [](char* to) { *to = 0; });
       return false;
     });
   };
-  EXPECT_THROW(send_for_long(), ConnectionError) << "without a queue ZeroMQ alone would wait without end";
+  EXPECT_THROW(send_for_long(), ConnectionError)
+      << "without a queue ZeroMQ alone would wait without end";
 }
 
 /// RFC 6761: no name that ends with .invalid has an address.
@@ -116,11 +118,18 @@ class RawServer {
     std::string bytes = zmtp::greeting("NULL", false);
     zmtp::append_command(bytes, "READY", zmtp::metadata_of("ROUTER"));
     write(bytes);
-    EXPECT_FALSE(transport.receive(std::chrono::milliseconds(100)));
+    std::string heard;
+    std::array<char, 256> part;
+    while (heard.find("READY") == std::string::npos) {  // the client's, behind its greeting
+      const ssize_t count = ::recv(client_, part.data(), part.size(), 0);
+      ASSERT_GT(count, 0);
+      heard.append(part.data(), static_cast<std::size_t>(count));
+    }
     EXPECT_FALSE(transport.was_closed());
   }
   void write(const std::string& bytes) {
-    EXPECT_EQ(::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL), static_cast<ssize_t>(bytes.size()));
+    EXPECT_EQ(::send(client_, bytes.data(), bytes.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(bytes.size()));
   }
   static std::string header(std::size_t size) {
     std::string bytes(zmtp::header_length(size), '\0');
@@ -144,6 +153,30 @@ TEST(Transport, AMessageThatIsTooLongIsNotWaitedFor) {
     EXPECT_FALSE(transport->receive(std::chrono::milliseconds(10)));
   }
   EXPECT_TRUE(transport->was_closed());
+}
+
+/// Threads of libzmq are not there in a forked child: it must not wait for them.
+TEST(Transport, AForkedChildEndsAndLeavesTheConnectionToItsParent) {
+  RawServer server;
+  auto transport = make_transport(server.options);
+  server.shake_hands(*transport);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::alarm(10);
+    bool throws = false;
+    try {
+      transport->send(1, [](char* to) { *to = 0; });
+    } catch (const ConnectionError&) {
+      throws = true;
+    }
+    transport->linger();
+    transport.reset();
+    ::_exit(throws ? 0 : 1);
+  }
+  int status = -1;
+  EXPECT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+  EXPECT_FALSE(transport->was_closed());
 }
 
 }  // namespace

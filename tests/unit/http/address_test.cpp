@@ -23,11 +23,13 @@ TEST(Address, OnlyThisMachineReachesLoopback) {
 }
 
 TEST(Host, IsANumberLocalhostOrTheOwnName) {
-  for (const char* called : {"", "localhost:1", "LocalHost", "127.0.0.1", "[::1]:8765", "robots.lab:80"}) {
+  for (const char* called :
+       {"", "localhost:1", "LocalHost", "127.0.0.1", "[::1]:8765", "robots.lab:80"}) {
     EXPECT_TRUE(allows_host("Robots.lab", called)) << called;
   }
-  for (const char* called : {"evil.example:8765", "127.0.0.1.evil.example", "robots.lab.evil.example",
-                             "localhost:80.evil.example", "[::1]:80@evil.example"}) {
+  for (const char* called :
+       {"evil.example:8765", "127.0.0.1.evil.example", "robots.lab.evil.example",
+        "localhost:80.evil.example", "[::1]:80@evil.example"}) {
     EXPECT_FALSE(allows_host("Robots.lab", called)) << called;
   }
 }

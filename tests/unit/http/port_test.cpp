@@ -32,7 +32,8 @@ std::string answer(const std::string& request) {
 }
 
 TEST(Port, AnswersHeadWithoutTheText) {
-  const std::string whole = answer("GET / HTTP/1.1\r\n\r\n"), head = answer("HEAD / HTTP/1.1\r\n\r\n");
+  const std::string whole = answer("GET / HTTP/1.1\r\n\r\n"),
+                    head = answer("HEAD / HTTP/1.1\r\n\r\n");
   EXPECT_TRUE(whole.ends_with("\r\n\r\n0123456789")) << whole;
   EXPECT_TRUE(head.ends_with("\r\n\r\n")) << head;
   EXPECT_NE(head.find("Content-Length: 10\r\n"), std::string::npos) << head;
@@ -49,10 +50,13 @@ TEST(Port, TellsWhatIsWrongWithARequest) {
 }
 
 TEST(Port, RefusesWhatAProxyCouldReadOtherwise) {
-  for (const char* fields : {"Host: localhost\r\nHost: evil.example", "Host: localhost\r\nhost: localhost",
-                             "Transfer-Encoding: xchunked", "Transfer-Encoding: chunked, gzip",
-                             "Origin: http://a\r\nOrigin: http://b"}) {
-    EXPECT_TRUE(answer("GET / HTTP/1.1\r\n" + std::string(fields) + "\r\n\r\n").starts_with("HTTP/1.1 400")) << fields;
+  for (const char* fields :
+       {"Host: localhost\r\nHost: evil.example", "Host: localhost\r\nhost: localhost",
+        "Transfer-Encoding: xchunked", "Transfer-Encoding: chunked, gzip",
+        "Origin: http://a\r\nOrigin: http://b"}) {
+    EXPECT_TRUE(
+        answer("GET / HTTP/1.1\r\n" + std::string(fields) + "\r\n\r\n").starts_with("HTTP/1.1 400"))
+        << fields;
   }
 }
 
@@ -71,7 +75,8 @@ class Client {
   Client& operator=(const Client&) = delete;
 
   void send(const std::string& bytes) {
-    EXPECT_EQ(::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL), static_cast<ssize_t>(bytes.size()));
+    EXPECT_EQ(::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(bytes.size()));
   }
 
   /// All that comes until the port ends the connection.
@@ -86,7 +91,8 @@ class Client {
 
   bool is_open() {
     char byte;
-    return ::recv(socket_, &byte, 1, MSG_PEEK | MSG_DONTWAIT) < 0 && (errno == EAGAIN || errno == EWOULDBLOCK);
+    return ::recv(socket_, &byte, 1, MSG_PEEK | MSG_DONTWAIT) < 0 &&
+           (errno == EAGAIN || errno == EWOULDBLOCK);
   }
 
  private:
@@ -153,7 +159,8 @@ TEST(Port, TakesSoManyConnectionsInAPeriod) {
     client.send("GET / HTTP/1.1\r\n\r\n");
     EXPECT_NE(client.hear(), "");
   }
-  EXPECT_GE(std::chrono::steady_clock::now() - begun, Listening::period);  // the first may have been at the end of one
+  EXPECT_GE(std::chrono::steady_clock::now() - begun,
+            Listening::period);  // the first may have been at the end of one
 }
 
 TEST(Port, ATakenAddressIsAnErrorThatNamesTheOption) {

@@ -238,8 +238,8 @@ struct Touching {
 };
 
 TEST(Adaptive, ShiftedPlatesThatTouchStayWithinTheTolerance) {
-  const Vector3 sizes[] = {{0.02, 0.02, 0.001}, {0.02, 0.02, 0.0005}, {0.04, 0.005, 0.001},
-                           {0.01, 0.01, 0.01}};
+  const Vector3 sizes[] = {
+      {0.02, 0.02, 0.001}, {0.02, 0.02, 0.0005}, {0.04, 0.005, 0.001}, {0.01, 0.01, 0.01}};
   const Vector3 shifts[] = {{0, 0, 0}, {0.25, 0, 0}, {0.5, 0.1, 0}, {0.33, 0.47, 0}, {0.9, 0.3, 0}};
   for (const Vector3& size : sizes) {
     for (const Vector3& shift : shifts) {
@@ -372,7 +372,8 @@ TEST(Adaptive, HasTheSameBitsOnEveryInstructionSetAndWithoutAList) {
   options.max_distance = 0.04;
   std::vector<std::vector<Wrench>> results;
   for (const Kernel* kernel : {&baseline_kernel(), &best_kernel()}) {
-    for (const std::size_t idle : {0, 2000}) {  // with 2000 idle magnets, all pairs are faster than a list
+    for (const std::size_t idle :
+         {0, 2000}) {  // with 2000 idle magnets, all pairs are faster than a list
       options.kernel = kernel;
       auto all = magnets;
       auto where = bodies;

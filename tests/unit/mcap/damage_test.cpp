@@ -53,7 +53,7 @@ TEST(Damage, DefinitionsInLargeChunksTakeTheirOwnSizeOnly) {
   EXPECT_EQ(scanned.contents.chunks.size(), 1U);
 }
 
-/// How many messages are in chunks that end there or before.
+/// Number of messages in chunks that end there or before.
 std::size_t messages_before(const Reader& whole, std::size_t size) {
   std::size_t count = 0;
   for (const ChunkIndex& chunk : whole.contents().chunks) {
@@ -80,7 +80,8 @@ TEST(Damage, AFileThatIsCutOffHasAllWholeChunks) {
 
 /// Without compression only the chunk's CRC tells it.
 class DamagedChunk : public testing::TestWithParam<Compression> {};
-INSTANTIATE_TEST_SUITE_P(Of, DamagedChunk, testing::Values(Compression::none, Compression::lz4, Compression::zstd));
+INSTANTIATE_TEST_SUITE_P(Of, DamagedChunk,
+                         testing::Values(Compression::none, Compression::lz4, Compression::zstd));
 
 TEST_P(DamagedChunk, TakesNoOtherAlong) {
   std::string file = example(GetParam());

@@ -99,7 +99,8 @@ TEST(Writer, CountsMessagesOfEachChannel) {
   EXPECT_EQ(writer.size(), file.size());
   const Reader reader(bytes_of(file));
   EXPECT_EQ(reader.contents().chunks.at(0).start_time, 3u);
-  EXPECT_EQ(read_all(reader), (std::vector<Read>{{"/late", 0, 5, "late"}, {"/late", 1, 3, "early"}}));
+  EXPECT_EQ(read_all(reader),
+            (std::vector<Read>{{"/late", 0, 5, "late"}, {"/late", 1, 3, "early"}}));
   EXPECT_TRUE(check(bytes_of(file)).faults.empty());
 }
 

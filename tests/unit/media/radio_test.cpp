@@ -62,10 +62,12 @@ TEST(Radio, OrdersByReceiverSenderAndCall) {
 TEST(Radio, OfTooManyMessagesTheLastOnesOfThoseThatSendMostAreLeftOut) {
   Scattered world;
   for (int i = 0; i < 5; ++i) world.add_radio({0.1 * i, 0, 0}, 10);
-  const Sent sent{{1, "1a"}, {1, "1b"}, {1, "1c"}, {1, "1d"}, {3, "3a"}};  // to three: fifteen in all
+  const Sent sent{
+      {1, "1a"}, {1, "1b"}, {1, "1c"}, {1, "1d"}, {3, "3a"}};  // to three: fifteen in all
   RadioMedium all(15), some(14), few(4), least(1);
   EXPECT_EQ(deliver(world, sent, all).size(), 15u);
-  const Received cut{{0, "1a"}, {0, "1b"}, {0, "3a"}, {2, "1a"}, {2, "1b"}, {2, "3a"}, {4, "1a"}, {4, "1b"}, {4, "3a"}};
+  const Received cut{{0, "1a"}, {0, "1b"}, {0, "3a"}, {2, "1a"}, {2, "1b"},
+                     {2, "3a"}, {4, "1a"}, {4, "1b"}, {4, "3a"}};
   EXPECT_EQ(deliver(world, sent, some), cut) << "two of each sender, and who sends few loses none";
   EXPECT_EQ(deliver(world, sent, few).size(), 4u);
   EXPECT_EQ(deliver(world, sent, least), (Received{{0, "1a"}}));

@@ -38,8 +38,11 @@ TEST(RangeAndBearing, TooManyPairsEndWithASentence) {
     RangeAndBearingMedium(11).sight(world.layout, world.index());
     ADD_FAILURE();
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("more than 11 pairs of the 4 devices"), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("write a smaller range"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("more than 11 pairs of the 4 devices"),
+              std::string::npos)
+        << error.what();
+    EXPECT_NE(std::string(error.what()).find("write a smaller range"), std::string::npos)
+        << error.what();
   }
 }
 

@@ -64,7 +64,7 @@ TEST(Accepting, GoesOnByItselfAfterACrowd) {
   EXPECT_TRUE(serve(socket, patience.timeout));
 }
 
-/// What a server answers to a client that says something and, perhaps, that it says no more.
+/// Answer of a server to a client that sends these bytes and, perhaps, closes its sending side.
 std::string answer_to(Socket& socket, const std::string& said, bool ends) {
   const posix::Descriptor client = connect_and_send(socket.endpoints().front(), said);
   if (ends) ::shutdown(client.number(), SHUT_WR);
@@ -84,9 +84,11 @@ TEST(Accepting, WhoEndsWithinTheHandshakeIsNotListenedTo) {
   Socket socket(config);
   const zmtp::CurveKeys keys(*config.curve);
   const zmtp::CurveClient client(zmtp::CurveClient::make_pair(), keys.public_key());
-  const std::string said = "\xFF\0\0\0\0\0\0\0\x01\x7F\x03\0CURVE"s + std::string(47, '\0') + client.hello();
+  const std::string said =
+      "\xFF\0\0\0\0\0\0\0\x01\x7F\x03\0CURVE"s + std::string(47, '\0') + client.hello();
   EXPECT_NE(answer_to(socket, said, false).find("WELCOME"), std::string::npos);
-  EXPECT_EQ(answer_to(socket, said, true).find("WELCOME"), std::string::npos) << "or keys are multiplied for nothing";
+  EXPECT_EQ(answer_to(socket, said, true).find("WELCOME"), std::string::npos)
+      << "or keys are multiplied for nothing";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What is done to the world between two ticks, while clients come to be gone.
+// Changes of the world between two ticks, while clients connect and leave.
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,8 @@ TEST(BetweenTicks, ASessionOfRobotsThatAResetHasTakenAwayIsOverWithoutThem) {
     client.say(answer);
     ASSERT_EQ(server.collect(commands, patience), Outcome::complete);
   }
-  std::this_thread::sleep_for(milliseconds{200});  // longer than between heartbeats; the client is gone
+  std::this_thread::sleep_for(
+      milliseconds{200});  // longer than between heartbeats; the client is gone
   server.take_report();
   small.layout().robots.resize(1);
   server.restart({42});
@@ -96,7 +97,7 @@ TEST(BetweenTicks, WhatDirectorsWantStaysWhileRobotsAreSpawned) {
   Config config = path_config();
   config.allows_directors = true;
   Server server(config, small.run());
-  DirectorsDesk desk(server);
+  ServerDirectors directors(server);
   world::Commands commands = small.commands();
   const world::Layout layout;
   const std::vector<scene::Entity> entities;
@@ -111,24 +112,25 @@ TEST(BetweenTicks, WhatDirectorsWantStaysWhileRobotsAreSpawned) {
     wish.mutable_hello()->mutable_deadline_policy()->set_action(v1::DeadlinePolicy::HOLD);
     wish.mutable_hello()->mutable_deadline_policy()->set_wall_deadline_ms(1000);
     client.say(wish);
-    while (!desk.has("judge")) ASSERT_NE(server.gather({milliseconds{20}, {}}), Outcome::woken);
+    while (!directors.has("judge"))
+      ASSERT_NE(server.gather({milliseconds{20}, {}}), Outcome::woken);
     server.publish(seen, no_tags, &truth);
     v1::ClientMessage answer;
     answer.mutable_direction()->add_acts()->mutable_remove()->set_entity("box");
     client.say(answer);
     ASSERT_EQ(server.collect(commands, patience), Outcome::complete);
   }
-  ASSERT_EQ(desk.directions().size(), 1U);
+  ASSERT_EQ(directors.directions().size(), 1U);
   ASSERT_TRUE(comes_true([&] {
-    desk.warn("judge", {});
-    return !desk.status()[0].is_held;
+    directors.warn("judge", {});
+    return !directors.status()[0].is_held;
   }));
   std::this_thread::sleep_for(milliseconds{1100});  // its deadline as one that is gone
   small.add_robot();
   const world::Observations theirs = small.observations(0);
   const std::string script;
   server.add_robots({&script, 1}, theirs, no_tags);
-  EXPECT_EQ(desk.directions().size(), 1U) << "they are being done";
+  EXPECT_EQ(directors.directions().size(), 1U) << "they are being done";
 }
 
 }  // namespace

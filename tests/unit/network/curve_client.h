@@ -1,6 +1,6 @@
 #pragma once
-// The client's end of CURVE (RFC 26), step by step, so that tests can send steps again, in another order
-// or altered. The mathematics is libsodium's.
+// The client's end of CURVE (RFC 26), step by step, so that tests can send steps again, in another
+// order or altered. The mathematics is libsodium's.
 
 #include <gtest/gtest.h>
 #include <sodium.h>
@@ -30,8 +30,8 @@ class CurveClient {
   /// @param number  of the box
   std::string hello(std::uint64_t number = 1, const std::string& version = {1, 0}) const {
     return framed("HELLO", version + std::string(72, '\0') + text(transient_.open) + bytes(number) +
-                               box(std::string(64, '\0'), "CurveZMQHELLO---" + bytes(number), server_,
-                                   transient_.secret));
+                               box(std::string(64, '\0'), "CurveZMQHELLO---" + bytes(number),
+                                   server_, transient_.secret));
   }
 
   /// The server's WELCOME has the cookie and the server's transient key.
@@ -48,12 +48,12 @@ class CurveClient {
 
   std::string initiate(std::uint64_t number = 2) const {
     const std::string nonce(16, 'n');
-    const std::string vouch =
-        box(text(transient_.open) + text(server_), "VOUCH---" + nonce, server_transient_, own_.secret);
+    const std::string vouch = box(text(transient_.open) + text(server_), "VOUCH---" + nonce,
+                                  server_transient_, own_.secret);
     const std::string content = text(own_.open) + nonce + vouch + metadata_of("DEALER");
     return framed("INITIATE", cookie_ + bytes(number) +
-                                  box(content, "CurveZMQINITIATE" + bytes(number), server_transient_,
-                                      transient_.secret));
+                                  box(content, "CurveZMQINITIATE" + bytes(number),
+                                      server_transient_, transient_.secret));
   }
 
   /// The body of a MESSAGE. @param content  with its byte of flags

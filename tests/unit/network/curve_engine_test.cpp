@@ -1,5 +1,5 @@
-// What a peer with the right keys can do with them: boxes again, in another order, of another length or
-// direction, and steps of the handshake where they do not belong. All end the connection.
+// Attacks of a peer that has the right keys. It sends boxes again, in another order, of another
+// length or direction, or steps of the handshake at the wrong time. All end the connection.
 
 #include <gtest/gtest.h>
 #include <zmq.h>
@@ -27,7 +27,8 @@ std::string z85(const Key& key) {
 /// A server with one listed client, and connections to it.
 struct CurveEngine : ::testing::Test {
   struct Connection {
-    Connection(const CurveKeys& keys, const CurveClient::Pair& pair) : engine(&keys), client(pair, keys.public_key()) {
+    Connection(const CurveKeys& keys, const CurveClient::Pair& pair)
+        : engine(&keys), client(pair, keys.public_key()) {
       EXPECT_EQ(say(greeting("CURVE", false)), Step::passed);
     }
     Step say(std::string bytes) {
@@ -97,7 +98,8 @@ TEST_F(CurveEngine, StepsOfTheHandshakeBehindItEndTheConnection) {
     std::string ready, error;
     append_command(ready, "READY", metadata_of("DEALER"));
     append_command(error, "ERROR", "\0"s);
-    const std::string late[] = {connection.client.hello(7), connection.client.initiate(7), ready, error};
+    const std::string late[] = {connection.client.hello(7), connection.client.initiate(7), ready,
+                                error};
     EXPECT_EQ(connection.say(late[step]), Step::failed) << step;
   }
 }
@@ -169,18 +171,20 @@ TEST_F(CurveEngine, BoxesOfOtherLengthsEndTheConnection) {
     EXPECT_EQ(fresh.say(CurveClient::frame(body)), Step::failed) << body.size();
   }
   Connection without_flags = open();
-  EXPECT_EQ(without_flags.say(CurveClient::frame(without_flags.client.message(3, ""))), Step::failed);
+  EXPECT_EQ(without_flags.say(CurveClient::frame(without_flags.client.message(3, ""))),
+            Step::failed);
 }
 
 TEST_F(CurveEngine, MessagesThatNoClientHasSealedEndTheConnection) {
   Connection reflected = open();  // the server's own direction
-  EXPECT_EQ(reflected.say(CurveClient::frame(
-                reflected.client.message(3, "\0text"s, "CurveZMQMESSAGES"))),
-            Step::failed);
+  EXPECT_EQ(
+      reflected.say(CurveClient::frame(reflected.client.message(3, "\0text"s, "CurveZMQMESSAGES"))),
+      Step::failed);
   Connection of_another = open();
   EXPECT_EQ(of_another.say(CurveClient::frame(open().client.message(3, "\0text"s))), Step::failed);
   Connection plain = open();
-  EXPECT_EQ(plain.say(CurveClient::frame("a message that is not encrypted, and long enough")), Step::failed);
+  EXPECT_EQ(plain.say(CurveClient::frame("a message that is not encrypted, and long enough")),
+            Step::failed);
   for (std::size_t at : {0U, 9U, 15U, 16U, 36U}) {
     Connection altered = open();
     std::string body = altered.client.message(3, "\0text"s);

@@ -1,5 +1,5 @@
-// What a client's ZeroMQ socket reports of a handshake: K8 of docs/protocol.md, which authors of
-// clients tell refusal from slowness by.
+// Events of a client's ZeroMQ socket during a handshake (docs/protocol.md, K8). Authors of clients
+// tell a refusal from slowness by them.
 
 #include <gtest/gtest.h>
 #include <unistd.h>

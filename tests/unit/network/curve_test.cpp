@@ -106,20 +106,21 @@ TEST_F(Keys, ALineLimitsWhatAKeyMayDrive) {
 
 TEST_F(Keys, FaultsOfLimitsAreNamed) {
   const std::string a = write_key_pair(path("a"));
-  for (const auto& [line, part] : {std::pair(" controller robot=r1", "'robot=' limits nothing"),
-                                   std::pair(" controller robots=", "robots= names nothing"),
-                                   std::pair(" controller robots=a,,b", "empty pattern"),
-                                   std::pair(" controller takeover=maybe", "write yes or no"),
-                                   std::pair(" controller robots=a,", "empty pattern"),
-                                   std::pair(" controller,", "are no roles"),
-                                   std::pair(" controller robots=a robots=*", "robots= stands there twice"),
-                                   std::pair(" controller takeover=no takeover=yes", "takeover= stands there twice"),
-                                   std::pair(" controller Robots=a", "'Robots=' limits nothing"),
-                                   std::pair(" controller take-over=no", "'take-over=' limits nothing"),
-                                   std::pair(" controller Alice robots=a", "robots= stands in the name"),
-                                   std::pair(" controller takeover =no", "takeover= stands in the name"),
-                                   std::pair(" controller\tA\tControllers\t=\ta", "controllers= stands in the name"),
-                                   std::pair(" observer robots=r1", "role controller")}) {
+  for (const auto& [line, part] :
+       {std::pair(" controller robot=r1", "'robot=' limits nothing"),
+        std::pair(" controller robots=", "robots= names nothing"),
+        std::pair(" controller robots=a,,b", "empty pattern"),
+        std::pair(" controller takeover=maybe", "write yes or no"),
+        std::pair(" controller robots=a,", "empty pattern"),
+        std::pair(" controller,", "are no roles"),
+        std::pair(" controller robots=a robots=*", "robots= stands there twice"),
+        std::pair(" controller takeover=no takeover=yes", "takeover= stands there twice"),
+        std::pair(" controller Robots=a", "'Robots=' limits nothing"),
+        std::pair(" controller take-over=no", "'take-over=' limits nothing"),
+        std::pair(" controller Alice robots=a", "robots= stands in the name"),
+        std::pair(" controller takeover =no", "takeover= stands in the name"),
+        std::pair(" controller\tA\tControllers\t=\ta", "controllers= stands in the name"),
+        std::pair(" observer robots=r1", "role controller")}) {
     const std::string file = write("list", a + line + "\n");
     const auto text = complaint([&] { read_client_keys(file); });
     EXPECT_NE(text.find(part), std::string::npos) << line << ": " << text;
@@ -128,11 +129,13 @@ TEST_F(Keys, FaultsOfLimitsAreNamed) {
 
 TEST_F(Keys, ANulByteIsNamed) {
   const std::string a = write_key_pair(path("a"));
-  for (const std::string& line : {a + " contr" + '\0' + "oller", a + " controller robots=a" + '\0', a + " controller A" + '\0'}) {
+  for (const std::string& line : {a + " contr" + '\0' + "oller", a + " controller robots=a" + '\0',
+                                  a + " controller A" + '\0'}) {
     const std::string file = write("list", line + "\n" + a + " nonsense\n");
     const auto text = complaint([&] { read_client_keys(file); });
     EXPECT_NE(text.find("list:1: has a NUL byte, \\u0000"), std::string::npos) << text;
-    EXPECT_NE(text.find("list:2: 'nonsense' are no roles"), std::string::npos) << "nothing is cut: " << text;
+    EXPECT_NE(text.find("list:2: 'nonsense' are no roles"), std::string::npos)
+        << "nothing is cut: " << text;
   }
 }
 
@@ -156,7 +159,7 @@ struct Protected : Keys {
     options.connect_timeout = milliseconds{700};
     return options;
   }
-  /// Of a controller of one robot that wishes for a deadline policy.
+  /// Options of a controller of one robot that asks for a deadline policy.
   Options wishing(const Server& server, const std::string& key, const std::string& robot,
                   Deadline::Action action) const {
     Options wish = options(server, key);
@@ -247,7 +250,8 @@ TEST_F(Protected, ARefusedKeyIsToldOnBothSides) {
   Server server(config, small.run());
   std::string unlisted, none, other;
   meanwhile(server, [&] {
-    // Without a key the client breaks off itself, maybe before the server has looked: it comes first.
+    // Without a key the client breaks off itself, maybe before the server has looked: it comes
+    // first.
     Options without = options(server, "");
     without.connect_timeout = milliseconds{20'000};
     none = complaint_of(without);
@@ -263,7 +267,8 @@ TEST_F(Protected, ARefusedKeyIsToldOnBothSides) {
   EXPECT_NE(other.find("refused key? The server breaks off"), std::string::npos) << other;
   EXPECT_NE(none.find("refused key? The endpoint is protected"), std::string::npos) << none;
   const auto notices = server.take_report().notices;
-  for (const char* why : {" is not in --curve-clients", "it expects another server key", "it has no key"}) {
+  for (const char* why :
+       {" is not in --curve-clients", "it expects another server key", "it has no key"}) {
     EXPECT_TRUE(std::ranges::any_of(notices, [&](const std::string& notice) {
       return notice.starts_with("A client was refused: ") && notice.find(why) != std::string::npos;
     })) << why;
@@ -308,7 +313,8 @@ TEST_F(Protected, K11_AKeyOfAControllerCannotEndTheRunByItsDeadline) {
   config.curve->clients[1].roles = {.controller = true, .supervisor = true};
   Server server(config, small.run());
   meanwhile(server, [&] {
-    const std::string told = complaint_of(wishing(server, "friend", "robot0", Deadline::Action::stop));
+    const std::string told =
+        complaint_of(wishing(server, "friend", "robot0", Deadline::Action::stop));
     EXPECT_NE(told.find("FORBIDDEN"), std::string::npos) << told;
     EXPECT_NE(told.find("it lacks the role `supervisor`"), std::string::npos) << told;
     EXPECT_EQ(complaint_of(wishing(server, "viewer", "robot1", Deadline::Action::stop)), "");
@@ -323,7 +329,8 @@ TEST_F(Protected, K11_AKeyOfAControllerCannotLetTheWorldWaitLonger) {
                       {{scene::DeadlineAction::hold, 1000, 0}, false}};
   Server server(config, small.run());
   meanwhile(server, [&] {
-    const std::string told = complaint_of(wishing(server, "friend", "robot0", Deadline::Action::wait));
+    const std::string told =
+        complaint_of(wishing(server, "friend", "robot0", Deadline::Action::wait));
     EXPECT_NE(told.find("FORBIDDEN"), std::string::npos) << told;
     EXPECT_NE(told.find("robot 'robot0' by hold:1000"), std::string::npos) << told;
     Options from = wishing(server, "friend", "robot0", Deadline::Action::drop);

@@ -1,4 +1,4 @@
-// What is drawn for each message, and lines on which messages are under way.
+// Random draws for messages, and delay lines.
 
 #include "network/delays.h"
 

@@ -156,7 +156,8 @@ TEST(EndToEnd, AWishForADeadlineIsGrantedAndMissesAreCounted) {
     options.deadline = {Deadline::Action::hold, milliseconds{200}, 0};
     ziggurat::Session session(options);
     while (session.next()) {
-      if (session.tick() == 1) std::this_thread::sleep_for(milliseconds{500});  // longer than its deadline
+      if (session.tick() == 1)
+        std::this_thread::sleep_for(milliseconds{500});  // longer than its deadline
     }
     missed = session.missed();
   });

@@ -67,8 +67,7 @@ TEST(AnswerTimes, EachTimeIsInItsBin) {
   EXPECT_EQ(times.counts.back(), 1u);
   times = {};
   times.add(1e-3);
-  const auto bin = static_cast<int>(
-      std::ranges::find(times.counts, 1u) - times.counts.begin());
+  const auto bin = static_cast<int>(std::ranges::find(times.counts, 1u) - times.counts.begin());
   EXPECT_LE(AnswerTimes::least * std::pow(AnswerTimes::growth, bin), 1e-3);
   EXPECT_GT(AnswerTimes::least * std::pow(AnswerTimes::growth, bin + 1), 1e-3);
 }

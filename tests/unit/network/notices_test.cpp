@@ -10,7 +10,7 @@ using std::chrono::seconds;
 
 constexpr Notices::Time start{std::chrono::hours(1)};
 
-/// How many of so many at once are told.
+/// Number of sentences that are printed of so many at once.
 std::size_t told_of(Notices& notices, int count, Notices::Time now) {
   for (int i = 0; i < count; ++i) notices.add("Wrong.", now);
   return notices.take().size();

@@ -1,4 +1,5 @@
-// How much time others than controllers and supervisors have: much of what is idle, and a small share of the ticks'.
+// Time that the server gives to others than controllers and supervisors: much of the idle time, and
+// a small share of the ticks'.
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -52,7 +53,8 @@ struct Crowd {
 };
 
 void say(const posix::Descriptor& client, const std::string& bytes) {
-  ASSERT_EQ(::send(client.number(), bytes.data(), bytes.size(), MSG_DONTWAIT), static_cast<ssize_t>(bytes.size()));
+  ASSERT_EQ(::send(client.number(), bytes.data(), bytes.size(), MSG_DONTWAIT),
+            static_cast<ssize_t>(bytes.size()));
 }
 
 /// Until what was sent has arrived, on a busy machine, too.
@@ -67,17 +69,20 @@ std::string repeated(int count, const std::string& frame) {
 const std::string ping = "\x04\x07\x04PING\0\0"s, pong = "\x04\x05\x04PONG"s;
 const std::string short_message = "\0\1x"s, longer_message = "\0\2xx"s;
 
-/// How many PINGs of a connection are answered before the message of another that came behind them.
+/// Number of PINGs of one connection that are answered before the message of another that came
+/// behind them.
 std::size_t answered_before_other(Standing standing) {
   Crowd crowd;
-  const posix::Descriptor busy = crowd.join("busy", standing), other = crowd.join("other", Standing::controller);
+  const posix::Descriptor busy = crowd.join("busy", standing),
+                          other = crowd.join("other", Standing::controller);
   say(busy, repeated(5000, ping));
   say(other, short_message);
   wait();
   while (!crowd.socket.receive(crowd.received)) crowd.socket.poll(patience.timeout, {});
   std::string heard(100'000, '\0');
   std::size_t size = 0;
-  for (ssize_t part; (part = ::recv(busy.number(), heard.data() + size, heard.size() - size, MSG_DONTWAIT)) > 0;) {
+  for (ssize_t part; (part = ::recv(busy.number(), heard.data() + size, heard.size() - size,
+                                    MSG_DONTWAIT)) > 0;) {
     size += static_cast<std::size_t>(part);
   }
   return size / pong.size();
@@ -98,7 +103,8 @@ TEST(Others, HaveMuchOfTheTimeInWhichNoControllerWaits) {
   crowd.socket.set_ticking(true);
   const auto begin = Clock::now();
   crowd.take_until([](const auto& taken) { return taken[1] == many; });
-  const std::chrono::duration<double> wall = Clock::now() - begin, limited = many * least_cost / share_of_others;
+  const std::chrono::duration<double> wall = Clock::now() - begin,
+                                      limited = many * least_cost / share_of_others;
   EXPECT_LT(wall.count(), limited.count() / 5);
 }
 
@@ -119,14 +125,15 @@ TEST(Others, HaveASmallShareWhileControllersWait) {
   const std::chrono::duration<double> wall = Clock::now() - begin, cost = least_cost;
   EXPECT_EQ(limited[1] + limited[2], 2 * many) << "a supervisor is not limited";
   EXPECT_GE(limited[3], 1) << "they are not kept out";
-  EXPECT_LE(limited[3], (std::chrono::duration<double>(saved_share) + wall * share_of_others) / cost + 20);
+  EXPECT_LE(limited[3],
+            (std::chrono::duration<double>(saved_share) + wall * share_of_others) / cost + 20);
   crowd.socket.set_ticking(false);
   const auto rest = of_other - limited[3];
   EXPECT_EQ(crowd.take_until([&](const auto& taken) { return taken[3] == rest; })[3], rest);
 }
 
-/// The reset of an environment took a hundred times as long as its work: the tick was open because the program
-/// that asked had not answered it yet.
+/// The reset of an environment took a hundred times as long as its work: the tick was open because
+/// the program that asked had not answered it yet.
 TEST(Others, WhoOwesTheCommandIsAnsweredAtOnce) {
   for (const v1::Role role : {v1::ROLE_SUPERVISOR, v1::ROLE_OBSERVER}) {
     const SmallRun small(1);

@@ -1,4 +1,6 @@
-// How long connections may be there without session, and what all of them may take together.
+// Age limits of connections without session, and the memory limits of all connections.
+
+#include "network/peer_table.h"
 
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -7,7 +9,6 @@
 #include <cstring>
 #include <vector>
 
-#include "network/peer_table.h"
 #include "network/raw_client.h"
 
 namespace ziggurat::network {
@@ -69,17 +70,21 @@ TEST(PeerTable, TheOldestWhoseHandshakeIsNotOverMakesPlaceAfterASecond) {
   using std::chrono::milliseconds;
   const Time start = std::chrono::steady_clock::now();
   PeerTable table;
-  const posix::Descriptor open = connect(table, false, start), silent = connect(table, false, start),
+  const posix::Descriptor open = connect(table, false, start),
+                          silent = connect(table, false, start),
                           later = connect(table, false, start + milliseconds{500});
   shake_hands(table, PeerTable::first_id + 1, open);
-  const auto has = [&](std::uint64_t number) { return table.find(PeerTable::first_id + number) != nullptr; };
+  const auto has = [&](std::uint64_t number) {
+    return table.find(PeerTable::first_id + number) != nullptr;
+  };
   EXPECT_FALSE(table.make_place(start + milliseconds{999}));
   EXPECT_TRUE(table.make_place(start + seconds{1}));
   EXPECT_TRUE(has(1) && !has(2) && has(3));
   EXPECT_FALSE(table.make_place(start + milliseconds{1499})) << "it has a second for its handshake";
   EXPECT_TRUE(table.make_place(start + milliseconds{1500}));
   EXPECT_TRUE(has(1) && !has(3));
-  EXPECT_TRUE(table.make_place(start + milliseconds{1500})) << "none is left but that whose handshake is over";
+  EXPECT_TRUE(table.make_place(start + milliseconds{1500}))
+      << "none is left but that whose handshake is over";
 }
 
 TEST(PeerTable, ThoseWithSessionStay) {
@@ -147,14 +152,16 @@ TEST(PeerTable, WhatWaitsForAllIsBoundedAndTheOneForWhichMostWaitsIsDisconnected
   EXPECT_EQ(Shared{}.waiting, 256 * mebibyte) << "docs/protocol.md, K5";
   Crowd crowd({.waiting = 3 * mebibyte}, 3, false);
   for (int i = 0; i < 5; ++i) {
-    for (const std::uint64_t index : {0, 1, 2}) crowd.tell(index, (index == 1 ? 300 : 200) * kibibyte);
+    for (const std::uint64_t index : {0, 1, 2})
+      crowd.tell(index, (index == 1 ? 300 : 200) * kibibyte);
   }
   EXPECT_EQ(crowd.peer(1), nullptr);
   EXPECT_NE(crowd.peer(0), nullptr);
   EXPECT_NE(crowd.peer(2), nullptr);
   const auto notices = crowd.table.take_notices(std::chrono::steady_clock::now());
   ASSERT_EQ(notices.size(), 1u);
-  EXPECT_EQ(notices[0], "A client was disconnected because too much waits for clients that do not read.");
+  EXPECT_EQ(notices[0],
+            "A client was disconnected because too much waits for clients that do not read.");
 }
 
 /// Many end before the table is asked to forget them.
@@ -184,7 +191,8 @@ TEST(PeerTable, UnfinishedMessagesOfAllAreBounded) {
   EXPECT_NE(crowd.peer(3), nullptr);
   const auto notices = crowd.table.take_notices(std::chrono::steady_clock::now());
   ASSERT_FALSE(notices.empty());
-  EXPECT_EQ(notices[0], "A client was disconnected: too much of clients' messages has arrived in part.");
+  EXPECT_EQ(notices[0],
+            "A client was disconnected: too much of clients' messages has arrived in part.");
 }
 
 }  // namespace

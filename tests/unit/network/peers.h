@@ -13,7 +13,7 @@
 #include "network/barrier/exchange.h"
 #include "network/barrier/overview.h"
 #include "network/barrier/population.h"
-#include "network/barrier/timing.h"
+#include "network/barrier/timeouts.h"
 #include "network/disturbed_link.h"
 #include "network/small_run.h"
 #include "ziggurat/v1/json.h"
@@ -142,7 +142,7 @@ class Peers {
   }
   bool is_complete() const { return barrier.gate.is_complete(); }
   bool is_gathered() const {
-    return barrier.seats.all_taken() && barrier.directors.seats.all_taken();
+    return barrier.ownership.all_taken() && barrier.directors.ownership.all_taken();
   }
   std::vector<RobotStatus> status() const { return robot_status(barrier); }
   Report take_report() { return barrier.journal.take(); }

@@ -1,4 +1,5 @@
-// Clients that can't talk with the server: each is told of in a line that says what it is and what is needed.
+// Clients that can't talk with the server: each is told of in a line that says what it is and what
+// is needed.
 
 #include <gtest/gtest.h>
 
@@ -23,19 +24,22 @@ using namespace std::string_literals;
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-/// What the server tells people first, until then as it serves.
+/// First notice of the server, which serves until then.
 std::string line_of(Socket& socket) {
   Received received;
   for (const auto end = Clock::now() + patience.timeout; Clock::now() < end;) {
     EXPECT_FALSE(socket.receive(received));
-    if (const auto notices = socket.take_notices(Clock::now()); !notices.empty()) return notices.front();
+    if (const auto notices = socket.take_notices(Clock::now()); !notices.empty())
+      return notices.front();
     socket.poll(milliseconds{10}, {});
   }
   return {};
 }
 
-/// The line on a client of libzmq, which closes a connection by itself when it knows that the server is another.
-std::string line_on(Socket& socket, zmq::socket_type type, const std::function<void(zmq::socket_t&)>& set = {}) {
+/// The line on a client of libzmq, which closes a connection by itself when it knows that the
+/// server is another.
+std::string line_on(Socket& socket, zmq::socket_type type,
+                    const std::function<void(zmq::socket_t&)>& set = {}) {
   zmq::context_t context;
   zmq::socket_t client(context, type);
   client.set(zmq::sockopt::linger, 0);
@@ -46,12 +50,13 @@ std::string line_on(Socket& socket, zmq::socket_type type, const std::function<v
 
 TEST(Refusals, SocketsOfOtherTypesAreNamed) {
   const std::vector<std::pair<zmq::socket_type, std::string>> types{
-      {zmq::socket_type::pair, "PAIR"}, {zmq::socket_type::push, "PUSH"}, {zmq::socket_type::sub, "SUB"},
-      {zmq::socket_type::req, "REQ"},   {zmq::socket_type::pub, "PUB"},   {zmq::socket_type::pull, "PULL"}};
+      {zmq::socket_type::pair, "PAIR"}, {zmq::socket_type::push, "PUSH"},
+      {zmq::socket_type::sub, "SUB"},   {zmq::socket_type::req, "REQ"},
+      {zmq::socket_type::pub, "PUB"},   {zmq::socket_type::pull, "PULL"}};
   for (const auto& [type, name] : types) {
     Socket socket(local_config());
-    EXPECT_EQ(line_on(socket, type),
-              "A client was refused: it is a socket of type " + name + ", and the server talks with a DEALER.");
+    EXPECT_EQ(line_on(socket, type), "A client was refused: it is a socket of type " + name +
+                                         ", and the server talks with a DEALER.");
   }
 }
 
@@ -60,7 +65,8 @@ struct RefusedKeys : ::testing::Test {
     write_key_pair(folder / "server");
     write_key_pair(folder / "client");
     config.curve = {read_secret_key(folder / "server.secret"), {}};
-    config.curve->clients.push_back({public_key_of(read_secret_key(folder / "client.secret")), {true, true, true}, "", {}});
+    config.curve->clients.push_back(
+        {public_key_of(read_secret_key(folder / "client.secret")), {true, true, true}, "", {}});
   }
   void use_keys(zmq::socket_t& client) const {
     const std::string secret = read_secret_key(folder / "client.secret");
@@ -76,10 +82,12 @@ TEST_F(RefusedKeys, AreNamed) {
   Socket plain(local_config()), secured(config);
   EXPECT_EQ(line_on(plain, zmq::socket_type::dealer, [&](auto& client) { use_keys(client); }),
             "A client was refused: it has keys, and the endpoint is not protected.");
-  EXPECT_EQ(line_on(secured, zmq::socket_type::dealer),
-            "A client was refused: it has no key, and the endpoint is protected (--curve-clients).");
-  EXPECT_EQ(line_on(secured, zmq::socket_type::push, [&](auto& client) { use_keys(client); }),
-            "A client was refused: it is a socket of type PUSH, and the server talks with a DEALER.");
+  EXPECT_EQ(
+      line_on(secured, zmq::socket_type::dealer),
+      "A client was refused: it has no key, and the endpoint is protected (--curve-clients).");
+  EXPECT_EQ(
+      line_on(secured, zmq::socket_type::push, [&](auto& client) { use_keys(client); }),
+      "A client was refused: it is a socket of type PUSH, and the server talks with a DEALER.");
 }
 
 TEST(Refusals, PasswordsAreNone) {
@@ -99,22 +107,25 @@ TEST(Refusals, OlderVersionsAreNamed) {
   };
   EXPECT_EQ(line("\xff\0\0\0\0\0\0\0\1\x7f\1"s),
             "A client was refused: it speaks ZMTP 2.0, and ZMTP 3 is needed (libzmq 4).");
-  EXPECT_EQ(line("\1\0"s), "A client was refused: it speaks ZMTP 1.0, and ZMTP 3 is needed (libzmq 4).");
+  EXPECT_EQ(line("\1\0"s),
+            "A client was refused: it speaks ZMTP 1.0, and ZMTP 3 is needed (libzmq 4).");
   EXPECT_EQ(line("GET / HTTP/1.1\r\n"),
             "A client was refused: what it sends is not ZMTP 3, ZeroMQ's wire protocol.");
 }
 
 TEST(Refusals, AMessageOfMoreThanTwiceWhatIsAllowedIsTold) {
   Socket socket(local_config());
-  const posix::Descriptor client = connect_and_send(socket.endpoints().front(), greeting_and(1, "me"));
+  const posix::Descriptor client =
+      connect_and_send(socket.endpoints().front(), greeting_and(1, "me"));
   Received received;
   while (!socket.receive(received)) socket.poll(patience.timeout, {});
   socket.set_standing(received.connection, Standing::observer, longest_without_session);
   socket.handled();
   const std::string header = "\2\0\0\0\0\0\2\0\0"s;  // of 128 KiB
   ASSERT_EQ(::send(client.number(), header.data(), header.size(), 0), 9);
-  EXPECT_EQ(line_of(socket),
-            "A client was disconnected: a message of its has about 131081 bytes, and 65536 are allowed.");
+  EXPECT_EQ(
+      line_of(socket),
+      "A client was disconnected: a message of its has about 131081 bytes, and 65536 are allowed.");
 }
 
 v1::ClientMessage hello_of_observer() {
@@ -151,7 +162,8 @@ TEST(Refusals, SessionsThatAreLostFillNoLog) {
     const std::string name = "o" + std::to_string(i);
     peers.say(name, hello_of_observer());
     disconnect(peers.barrier, name);
-    for (const std::string& line : peers.barrier.journal.take(peers.now).notices) told.push_back(line);
+    for (const std::string& line : peers.barrier.journal.take(peers.now).notices)
+      told.push_back(line);
   }
   EXPECT_EQ(told.size(), 20U);
   peers.join("driver", "robot0");

@@ -43,13 +43,15 @@ TEST(Turns, AConnectionThatSendsMuchDoesNotKeepOthersWaiting) {
   }
 }
 
-/// Each was counted as a message: who asks now and then waited for its turn although no other client asked.
+/// Each was counted as a message: who asks now and then waited for its turn although no other
+/// client asked.
 TEST(Turns, LooksAtOthersWhereNothingIsTakeNoneOfTheirTime) {
   Socket socket(local_config());
   socket.set_ticking(true);
   Received received;
   for (int i = 0; i < 10'000; ++i) EXPECT_FALSE(socket.receive(received));
-  const posix::Descriptor other = connect_and_send(socket.endpoints().front(), greeting_and(1, "question"));
+  const posix::Descriptor other =
+      connect_and_send(socket.endpoints().front(), greeting_and(1, "question"));
   bool is_taken = false;
   for (int look = 0; look < 10 && !is_taken; ++look) is_taken = socket.receive(received);
   ASSERT_TRUE(is_taken) << "without waiting";
@@ -96,7 +98,8 @@ TEST(Turns, AConnectionThatSendsCommandsWithoutEndDoesNotKeepOthersWaiting) {
 
 TEST(Turns, OtherDescriptorsAreLookedAtWhileMessagesWait) {
   Socket socket(local_config());
-  const posix::Descriptor busy = connect_and_send(socket.endpoints().front(), greeting_and(100, "busy"));
+  const posix::Descriptor busy =
+      connect_and_send(socket.endpoints().front(), greeting_and(100, "busy"));
   Received received;
   while (!socket.receive(received)) socket.poll(patience.timeout, {});
   int ends[2];
@@ -107,8 +110,8 @@ TEST(Turns, OtherDescriptorsAreLookedAtWhileMessagesWait) {
   EXPECT_EQ(socket.poll(patience.timeout, std::array{reader.number()}), Socket::Ready::woken);
 }
 
-/// Of this user's own processes, though others without session have all places, and their entrance
-/// is closed meanwhile.
+/// Processes of this user can connect even if others without session have all places, and their
+/// entrance is closed.
 TEST(Turns, ThePrivateEntranceStaysOpenWhenOthersHaveAllPlaces) {
   rlimit usual{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &usual), 0);
@@ -140,7 +143,8 @@ TEST(Turns, ThePrivateEntranceStaysOpenWhenOthersHaveAllPlaces) {
   const posix::Descriptor own(::socket(AF_UNIX, SOCK_STREAM, 0));
   ASSERT_EQ(::connect(own.number(), reinterpret_cast<const sockaddr*>(&address), size), 0);
   const std::string bytes = greeting_and(1, "own");
-  ASSERT_EQ(::send(own.number(), bytes.data(), bytes.size(), 0), static_cast<ssize_t>(bytes.size()));
+  ASSERT_EQ(::send(own.number(), bytes.data(), bytes.size(), 0),
+            static_cast<ssize_t>(bytes.size()));
   bool is_taken = false;
   for (int i = 0; i < 100 && !is_taken; ++i) {
     socket.poll(std::chrono::milliseconds{10}, {});

@@ -1,11 +1,10 @@
 #pragma once
-// Small worlds for physics tests, built without a scene file. CMakeLists.txt makes a program for
-// each solver.
+// Small worlds for physics tests, built without a scene file.
 
 #include <string>
 #include <vector>
 
-#include "physics/contact_limits.h"
+#include "physics/collision/contact_limits.h"
 #include "physics/world.h"
 #include "scene/scene.h"
 
@@ -21,17 +20,7 @@ inline math::Pose at(double x, double y, double z) {
   return {{x, y, z}, math::Quaternion::Identity()};
 }
 
-#ifdef ZIGGURAT_TEST_SWEEPS
-constexpr scene::Solver tested_solver = scene::Solver::sweeps;
-#else
-constexpr scene::Solver tested_solver = scene::usual_solver(scene::Clock::nominal);
-#endif
-
-inline scene::Physics empty_space() {
-  scene::Physics physics;
-  physics.solver = tested_solver;
-  return physics;
-}
+inline scene::Physics empty_space() { return {}; }
 
 inline scene::Physics with_gravity(double g) {
   scene::Physics physics = empty_space();
@@ -39,12 +28,9 @@ inline scene::Physics with_gravity(double g) {
   return physics;
 }
 
-/// Distance of a fall from rest [m]: exactly, or by semi-implicit Euler.
+/// Distance of a fall from rest [m].
 /// @param g  [m/s^2]  @param h  length of a substep [s]
-inline double fall(double g, double h, int substeps) {
-  const int twice = tested_solver == scene::Solver::newton ? substeps : substeps + 1;
-  return g * h * h * substeps * twice / 2;
-}
+inline double fall(double g, double h, int substeps) { return g * h * h * substeps * substeps / 2; }
 
 inline scene::Physics with_floor(double g) {
   scene::Physics physics = with_gravity(g);

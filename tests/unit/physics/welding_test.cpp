@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "bench_scene.h"
-#include "physics/ray.h"
+#include "physics/collision/ray.h"
 
 namespace ziggurat::physics {
 namespace {

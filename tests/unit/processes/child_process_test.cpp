@@ -55,7 +55,8 @@ TEST(ChildProcess, TakesItsWholeGroupWithItWhenDropped) {
     ASSERT_TRUE(comes_true([&] { return std::filesystem::exists(ready); }));
   }
   char byte;
-  EXPECT_TRUE(comes_true([&] { return ::read(reader.number(), &byte, 1) == 0; })) << "none of the group has it open";
+  EXPECT_TRUE(comes_true([&] { return ::read(reader.number(), &byte, 1) == 0; }))
+      << "none of the group has it open";
 }
 
 TEST(ChildProcess, StubbornOnesAreKilledInTheEnd) {
@@ -65,7 +66,9 @@ TEST(ChildProcess, StubbornOnesAreKilledInTheEnd) {
   ChildProcess polite(shell("exit 0"));
   ASSERT_TRUE(comes_true([&] { return std::filesystem::exists(ready); }));
   std::vector<pid_t> slow;
-  end_all({&stubborn, &polite}, 50, [] { return false; }, [&](const ChildProcess& each) { slow.push_back(each.id()); });
+  end_all(
+      {&stubborn, &polite}, 50, [] { return false; },
+      [&](const ChildProcess& each) { slow.push_back(each.id()); });
   EXPECT_EQ(slow, std::vector{stubborn.id()});
   EXPECT_EQ(stubborn.how_it_ended(), "was killed by signal 9 (Killed)");
   EXPECT_EQ(polite.how_it_ended(), "ended with exit code 0");

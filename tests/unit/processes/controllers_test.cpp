@@ -61,8 +61,8 @@ TEST(Controllers, CommandsFindTheServerInTheirEnvironment) {
   EXPECT_EQ(blocks(launches), (Blocks{{1}, {0, 2}}));
   EXPECT_EQ(launches[0].program.arguments,
             (std::vector<std::string>{"ziggurat-lua", "--connect", "ipc:///e", "--robots-file",
-                                      "/f/robots-0", "--quiet", "--max-memory", "9",
-                                      "--place-file", "/f/robots-0-place"}));
+                                      "/f/robots-0", "--quiet", "--max-memory", "9", "--place-file",
+                                      "/f/robots-0-place"}));
   EXPECT_EQ(launches[1].program.arguments,
             (std::vector<std::string>{"/bin/sh", "-c", "./drive --fast"}));
   EXPECT_EQ(launches[1].program.environment,

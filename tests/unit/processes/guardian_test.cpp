@@ -7,11 +7,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <thread>
 
 #include "processes/child_process.h"
 #include "processes/private_folder.h"
@@ -63,93 +60,7 @@ TEST(Guardian, EndsGroupsAndRemovesFilesOfAKilledProcess) {
   EXPECT_TRUE(comes_true([&] { return !fs::exists(in + "/private"); }));
 }
 
-TEST(Guardian, DoesNothingAfterAnOrderlyEnd) {
-  const PrivateFolder folder;
-  fs::create_directory(folder.path() + "/private");
-  {
-    const Guardian guardian;
-    guardian.remove_folder(folder.path() + "/private");
-  }
-  EXPECT_TRUE(fs::exists(folder.path() + "/private"));
-}
-
-TEST(Guardian, WorksAtOnceIfAsked) {
-  const PrivateFolder folder;
-  fs::create_directory(folder.path() + "/private");
-  Guardian guardian;
-  guardian.remove_folder(folder.path() + "/private");
-  guardian.end_now();
-  EXPECT_TRUE(comes_true([&] { return !fs::exists(folder.path() + "/private"); }));
-}
-
-TEST(Guardian, RemovesWhatIsMadeBetweenItsWorkAndTheEnd) {
-  const PrivateFolder folder;
-  const std::string in = folder.path() + "/private";
-  in_another_process([&] {
-    Guardian guardian;
-    guardian.remove_folder(in);
-    std::atomic<int> made = 0;
-    std::thread worker([&] {  // as one that starts processes
-      for (;; ++made) {
-        std::error_code ignored;
-        fs::create_directory(in, ignored);
-        std::ofstream(in + "/robots-" + std::to_string(made)) << "x";
-      }
-    });
-    comes_true([&] { return made >= 100; });
-    guardian.end_now();
-    const int before = made;
-    comes_true([&] { return made >= before + 100; });
-    ::kill(::getpid(), SIGKILL);
-  });
-  EXPECT_TRUE(comes_true([&] { return !fs::exists(in); }));
-}
-
-TEST(Guardian, OneThatIsSlowIsNotCutShort) {
-  const PrivateFolder folder;
-  fs::create_directory(folder.path() + "/private");
-  in_another_process([&] {
-    Guardian guardian;
-    guardian.remove_folder(folder.path() + "/private");
-    const std::string me = std::to_string(::getpid());
-    pid_t process = 0;
-    std::ifstream("/proc/" + me + "/task/" + me + "/children") >> process;
-    if (process == 0 || ::kill(process, SIGSTOP) != 0) return;
-    guardian.end_now();
-    ::kill(::getpid(), SIGKILL);
-  });
-  EXPECT_TRUE(comes_true([&] { return !fs::exists(folder.path() + "/private"); }));
-}
-
-TEST(Guardian, OneThatIsKilledHasASecondThatTakesItsPlace) {
-  const PrivateFolder folder;
-  const std::string in = folder.path();
-  for (const char* name : {"before", "between", "after"}) fs::create_directory(in + "/" + name);
-  in_another_process([&] {
-    const Guardian guardian;
-    const auto child_of = [](pid_t parent) {
-      const std::string id = std::to_string(parent);
-      std::ifstream children("/proc/" + id + "/task/" + id + "/children");
-      pid_t child = 0;
-      children >> child;
-      return child;
-    };
-    guardian.remove_folder(in + "/before");
-    const pid_t first = child_of(::getpid());
-    comes_true([&] { return child_of(first) != 0; });
-    const pid_t second = child_of(first);
-    ::kill(first, SIGKILL);
-    guardian.remove_folder(in + "/between");
-    comes_true([&] { return child_of(second) != 0; });
-    guardian.remove_folder(in + "/after");
-    ::kill(::getpid(), SIGKILL);
-  });
-  for (const char* name : {"before", "between", "after"}) {
-    EXPECT_TRUE(comes_true([&] { return !fs::exists(in + "/" + name); })) << name;
-  }
-}
-
-/// A socket that listens at this path, or, if it begins with NUL, under this name.
+/// A socket that listens at this path.
 int listen(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -166,7 +77,8 @@ TEST(Guardian, RemovesADeadSocketAndNoOther) {
   std::ofstream(folder.path() + "/file") << "of the user";
   in_another_process([&] {
     const Guardian guardian;
-    for (const char* name : {"/missing", "/live", "/file", "/dead"}) guardian.remove_dead_socket(folder.path() + name, "a lock");
+    for (const char* name : {"/missing", "/live", "/file", "/dead"})
+      guardian.remove_dead_socket(folder.path() + name);
     listen(folder.path() + "/dead");
     ::kill(::getpid(), SIGKILL);
   });
@@ -174,23 +86,6 @@ TEST(Guardian, RemovesADeadSocketAndNoOther) {
   EXPECT_TRUE(fs::exists(folder.path() + "/live"));
   EXPECT_TRUE(fs::exists(folder.path() + "/file"));
   ::close(live);
-}
-
-TEST(Guardian, RemovesNoSocketWhileAServerBeginsAtItsPath) {
-  const PrivateFolder folder;
-  const std::string dead = folder.path() + "/dead", lock = folder.path() + "/lock", over = folder.path() + "/over";
-  const int begins = listen('\0' + lock);
-  in_another_process([&] {
-    const Guardian guardian;
-    guardian.remove_dead_socket(dead, lock);
-    guardian.remove_folder(over);
-    fs::create_directory(over);
-    listen(dead);
-    ::kill(::getpid(), SIGKILL);
-  });
-  EXPECT_TRUE(comes_true([&] { return !fs::exists(over); }));  // which is the last that it does
-  EXPECT_TRUE(fs::exists(dead));
-  ::close(begins);
 }
 
 }  // namespace

@@ -2,17 +2,13 @@
 
 #include <gtest/gtest.h>
 #include <sched.h>
-#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <vector>
-
-#include "waiting.h"
 
 namespace ziggurat::processes {
 namespace {
@@ -36,39 +32,18 @@ TEST(PrivateFolder, RemovesWhatDeadProgramsLeftAndNothingElse) {
   const std::string kept = before ? before : "";
   ::setenv("XDG_RUNTIME_DIR", parent.path().c_str(), 1);
   const std::string left = parent.path() + "/ziggurat-aaaaaa";
-  const std::string unlocked = parent.path() + "/ziggurat-bbbbbb";
-  const std::string other = parent.path() + "/ziggurat-notes";
-  for (const auto& each : {left, unlocked, other}) fs::create_directory(each);
+  const std::string empty = parent.path() + "/ziggurat-bbbbbb";
+  const std::string other = parent.path() + "/ziggurat-cccccc";
+  for (const auto& each : {left, empty, other}) fs::create_directory(each);
   for (const char* file : {"/lock", "/run"}) std::ofstream(left + file) << "x";
   std::ofstream(other + "/notes") << "of the user";
   const PrivateFolder first;
   const PrivateFolder second;
   before ? ::setenv("XDG_RUNTIME_DIR", kept.c_str(), 1) : ::unsetenv("XDG_RUNTIME_DIR");
   EXPECT_FALSE(fs::exists(left));
-  EXPECT_TRUE(fs::exists(unlocked)) << "young: it may be locked in a moment";
+  EXPECT_FALSE(fs::exists(empty));
   EXPECT_TRUE(fs::exists(other + "/notes"));
   EXPECT_TRUE(fs::exists(first.path())) << "its program runs";
-}
-
-TEST(PrivateFolder, RemovesOldOnesWithoutLockThatHaveOnlyFilesOfRuns) {
-  const PrivateFolder parent;
-  const char* before = std::getenv("XDG_RUNTIME_DIR");
-  const std::string kept = before ? before : "";
-  ::setenv("XDG_RUNTIME_DIR", parent.path().c_str(), 1);
-  const std::string left = parent.path() + "/ziggurat-aaaaaa";
-  const std::string other = parent.path() + "/ziggurat-bbbbbb";
-  const auto old = fs::file_time_type::clock::now() - std::chrono::hours(1);
-  for (const auto& each : {left, other}) {
-    fs::create_directories(each + "/files/scripts");
-    for (const char* file : {"/robots-0", "/robots-0-place", "/spawned-1-place", "/run"}) std::ofstream(each + file) << "x";
-  }
-  std::ofstream(other + "/notes") << "of the user";
-  for (const auto& each : {left, other}) fs::last_write_time(each, old);
-  const PrivateFolder folder;
-  before ? ::setenv("XDG_RUNTIME_DIR", kept.c_str(), 1) : ::unsetenv("XDG_RUNTIME_DIR");
-  EXPECT_FALSE(fs::exists(left));
-  EXPECT_TRUE(fs::exists(other + "/notes"));
-  EXPECT_TRUE(fs::exists(other + "/robots-0"));
 }
 
 TEST(PrivateFolder, IsNotTakenForOneThatWasLeftWhileItIsMade) {
@@ -106,30 +81,6 @@ TEST(PrivateFolder, IsShortEvenIfTheRuntimeFolderIsNot) {
   const PrivateFolder folder;
   before ? ::setenv("XDG_RUNTIME_DIR", kept.c_str(), 1) : ::unsetenv("XDG_RUNTIME_DIR");
   EXPECT_LT(folder.path().size(), 100u);
-}
-
-/// How many are left of those of a process that is killed while it makes one after another.
-std::ptrdiff_t left_after_kills(const PrivateFolder& parent, int kills) {
-  for (int i = 0; i < kills; ++i) {
-    const pid_t process = ::fork();
-    if (process == 0) {
-      ::setenv("XDG_RUNTIME_DIR", parent.path().c_str(), 1);
-      const Guardian guardian;
-      for (int k = 0; k < 100; ++k) const PrivateFolder folder(&guardian);  // its pipe has room for so many
-      for (;;) ::pause();
-    }
-    ::usleep(static_cast<useconds_t>(1000 + 73 * i));  // another moment each time
-    ::kill(process, SIGKILL);
-    ::waitpid(process, nullptr, 0);
-  }
-  const auto count = [&] { return std::distance(fs::directory_iterator(parent.path()), fs::directory_iterator()) - 1; };
-  comes_true([&] { return count() == 0; });
-  return count();
-}
-
-TEST(PrivateFolder, OfAProcessThatIsKilledWhileItIsMadeDoesNotStay) {
-  const PrivateFolder parent;
-  EXPECT_EQ(left_after_kills(parent, 60), 0);
 }
 
 }  // namespace

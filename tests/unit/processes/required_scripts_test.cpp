@@ -19,7 +19,8 @@ struct RequiredScripts : ::testing::Test {
   TemporaryFolder folder;
   std::vector<fs::path> left_out;
 
-  /// What is added to main.lua with this text, as paths in the folder. There are a.lua, b.lua and sub/c.lua.
+  /// Files added to main.lua with this text, as paths in the folder. There are a.lua, b.lua and
+  /// sub/c.lua.
   std::vector<std::string> added(const std::string& text) {
     fs::create_directory(folder / "sub");
     for (const char* name : {"a.lua", "b.lua", "sub/c.lua", "notes.txt"}) write(name, "");
@@ -27,22 +28,28 @@ struct RequiredScripts : ::testing::Test {
     std::vector<fs::path> scripts{folder / "main.lua"};
     left_out = add_required(scripts);
     std::vector<std::string> names;
-    for (const fs::path& path : scripts) names.push_back(path.lexically_relative(folder.path).string());
+    for (const fs::path& path : scripts)
+      names.push_back(path.lexically_relative(folder.path).string());
     names.erase(names.begin());
     return names;
   }
-  void write(const std::string& name, const std::string& text) { std::ofstream(folder / name) << text; }
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder / name) << text;
+  }
 };
 
 using Names = std::vector<std::string>;
 
 TEST_F(RequiredScripts, ThatAreNotThereAreFound) {
-  added("local a, b = require 'a', require(\"nothing\")\nlocal s = require('string')\n-- require 'comment'\n"
-        "local ok = pcall(require, 'maybe')\nlocal c = require('sub.c') require('parts.' .. a)");
+  added(
+      "local a, b = require 'a', require(\"nothing\")\nlocal s = require('string')\n-- require "
+      "'comment'\n"
+      "local ok = pcall(require, 'maybe')\nlocal c = require('sub.c') require('parts.' .. a)");
   write("sub/c.lua", "return require('sub.gone')");
   std::vector<std::string> missing;
   for (const MissingModule& each : missing_modules(folder / "main.lua")) {
-    missing.push_back(each.script.filename().string() + ":" + std::to_string(each.line) + ":" + each.name);
+    missing.push_back(each.script.filename().string() + ":" + std::to_string(each.line) + ":" +
+                      each.name);
   }
   EXPECT_EQ(missing, (std::vector<std::string>{"main.lua:1:nothing", "c.lua:1:sub.gone"}));
 }

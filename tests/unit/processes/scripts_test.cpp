@@ -116,7 +116,8 @@ TEST_F(Scripts, CommandsBehindOthersQuotedOrInTheSceneFolder) {
   write("a b/drive.py", "");
   fs::permissions(program, fs::perms::owner_all);
   const std::string folder = scene.parent_path().string();
-  const std::string found_script = "'" + script.string() + "'", found_program = "'" + program.string() + "'";
+  const std::string found_script = "'" + script.string() + "'",
+                    found_program = "'" + program.string() + "'";
   for (const auto& [command, found] : std::vector<std::pair<std::string, std::string>>{
            {"'./my drive' --fast", found_program + " --fast"},
            {"./my\\ drive", found_program},
@@ -126,7 +127,8 @@ TEST_F(Scripts, CommandsBehindOthersQuotedOrInTheSceneFolder) {
            {"nice sh drive.py", "nice sh '" + folder + "/drive.py'"},
            {"nice -n 5 ./my\\ drive", "nice -n 5 " + found_program},
            {"exec env A=1 B='2 3' ./my\\ drive", "exec env A=1 B='2 3' " + found_program},
-           {"A=1 timeout -s INT 5 /bin/sh drive.py", "A=1 timeout -s INT 5 /bin/sh '" + folder + "/drive.py'"},
+           {"A=1 timeout -s INT 5 /bin/sh drive.py",
+            "A=1 timeout -s INT 5 /bin/sh '" + folder + "/drive.py'"},
            {"sh $ZIGGURAT_SCENE_FOLDER/drive.py", "sh '" + folder + "/drive.py'"},
            {"sh \"${ZIGGURAT_SCENE_FOLDER}/my drive.py\"", "sh " + found_script},
            {"sh -c 'exec drive.py'", "sh -c 'exec drive.py'"}}) {
@@ -134,11 +136,13 @@ TEST_F(Scripts, CommandsBehindOthersQuotedOrInTheSceneFolder) {
     EXPECT_EQ(result.text, found);
     EXPECT_EQ(result.missing, "") << command;
   }
-  for (const char* command : {"nice ./nothing", "env A=1 ./nothing", "A=1 ./nothing", "/bin/sh nothing.py", "'./no thing'",
-                              "sh 'no thing.py'", "$ZIGGURAT_SCENE_FOLDER/nothing", "nice no-such-program"}) {
+  for (const char* command : {"nice ./nothing", "env A=1 ./nothing", "A=1 ./nothing",
+                              "/bin/sh nothing.py", "'./no thing'", "sh 'no thing.py'",
+                              "$ZIGGURAT_SCENE_FOLDER/nothing", "nice no-such-program"}) {
     EXPECT_NE(find_command(command, scene, scene).missing, "") << command;
   }
-  for (const char* command : {"$ZIGGURAT_SCENE_FOLDERS/x", "sh '$ZIGGURAT_SCENE_FOLDER' y", "sh '", "sh -lc x.sh"}) {
+  for (const char* command :
+       {"$ZIGGURAT_SCENE_FOLDERS/x", "sh '$ZIGGURAT_SCENE_FOLDER' y", "sh '", "sh -lc x.sh"}) {
     EXPECT_EQ(find_command(command, scene, scene).missing, "") << command;
     EXPECT_EQ(find_command(command, scene, scene).text, command);
   }
@@ -148,11 +152,13 @@ TEST_F(Scripts, ACommandThatNoShellCanStartIsTold) {
   const auto program = write("drive", "#!/bin/sh\n");
   const auto plain = write("drive.txt", "");
   fs::permissions(program, fs::perms::owner_all);
-  for (const std::string& command : {program.string() + " --fast", "exec " + program.string(), std::string("sleep 1"),
-                                     std::string("X=$A ./nothing"), std::string("cd /tmp && ./nothing"), std::string("exit 4")}) {
+  for (const std::string& command : {program.string() + " --fast", "exec " + program.string(),
+                                     std::string("sleep 1"), std::string("X=$A ./nothing"),
+                                     std::string("cd /tmp && ./nothing"), std::string("exit 4")}) {
     EXPECT_EQ(why_not_started(command), "") << command;
   }
-  EXPECT_NE(why_not_started(program.string() + "r").find("did you mean 'drive'?"), std::string::npos);
+  EXPECT_NE(why_not_started(program.string() + "r").find("did you mean 'drive'?"),
+            std::string::npos);
   EXPECT_NE(why_not_started(plain.string()).find("chmod +x"), std::string::npos);
   EXPECT_NE(why_not_started("./").find("is no program"), std::string::npos);
   for (const char* command : {"", " ", "''", "'' --fast", "\"\"", "exec ''"}) {
@@ -183,7 +189,8 @@ TEST_F(Scripts, AMisspeltNameOfTheParameterIsDoubted) {
   const auto problems = check_scripts(scene, fs::path(folder_.path()) / "a.argos");
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_EQ(problems[0].severity, scene::Problem::Severity::warning);
-  EXPECT_NE(problems[0].text.find("did you mean script=\"…\" by scrpt=\"…\"?"), std::string::npos) << problems[0].text;
+  EXPECT_NE(problems[0].text.find("did you mean script=\"…\" by scrpt=\"…\"?"), std::string::npos)
+      << problems[0].text;
 }
 
 TEST_F(Scripts, GoodOnesAreNoProblem) {
@@ -241,9 +248,12 @@ TEST_F(Scripts, OneThatCannotBeReadSaysWhy) {
   fs::permissions(folder_.path(), fs::perms{0755});
   const auto path = write("secret.lua", "function init() end function step() end");
   fs::permissions(path, fs::perms{0});
-  const auto problems = without_rights_of_root([&] { return check_scripts(naming("secret.lua"), fs::path(folder_.path()) / "a.argos"); });
+  const auto problems = without_rights_of_root(
+      [&] { return check_scripts(naming("secret.lua"), fs::path(folder_.path()) / "a.argos"); });
   ASSERT_EQ(problems.size(), 1u);
-  EXPECT_TRUE(to_string(problems[0]).ends_with("script '" + path.string() + "' cannot be read: Permission denied; check its permissions"))
+  EXPECT_TRUE(to_string(problems[0])
+                  .ends_with("script '" + path.string() +
+                             "' cannot be read: Permission denied; check its permissions"))
       << to_string(problems[0]);
 }
 

@@ -65,7 +65,8 @@ TEST(Signals, TheEndOfAnInputIsAnInterruption) {
     EXPECT_EQ(signals.take().interruptions, 0);
     ::close(ends[1]);
     int interruptions = 0;
-    while (interruptions == 0 && readable(signals, 5000)) interruptions += signals.take().interruptions;
+    while (interruptions == 0 && readable(signals, 5000))
+      interruptions += signals.take().interruptions;
     EXPECT_EQ(interruptions, 1);
     EXPECT_FALSE(readable(signals, 50)) << "once";
   }

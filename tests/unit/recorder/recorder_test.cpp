@@ -51,8 +51,11 @@ struct Recorded : ShownWorld {
   }
   void publish() {
     hashes.push_back(simulation.hash());
-    recorder.tick({simulation.state(), simulation.observations(), simulation.commands(),
-                   simulation.contacts(), {}});
+    recorder.tick({simulation.state(),
+                   simulation.observations(),
+                   simulation.commands(),
+                   simulation.contacts(),
+                   {}});
   }
   void step(double target) {
     simulation.commands().joint_targets = {target};
@@ -241,10 +244,14 @@ TEST(Recorder, AFileThatIsShortenedOrRemovedIsToldWhileTheRunGoesOn) {
     grows_beyond(1 << 28);
     return run.recorder.take_failure().value_or("");
   };
-  const std::string shortened = failure_after([](const char* path) { return ::truncate(path, 100); });
-  EXPECT_NE(shortened.find("was shortened by another program while it was written"), std::string::npos) << shortened;
+  const std::string shortened =
+      failure_after([](const char* path) { return ::truncate(path, 100); });
+  EXPECT_NE(shortened.find("was shortened by another program while it was written"),
+            std::string::npos)
+      << shortened;
   const std::string removed = failure_after([](const char* path) { return ::unlink(path); });
-  EXPECT_NE(removed.find("was removed while it was written, and is lost"), std::string::npos) << removed;
+  EXPECT_NE(removed.find("was removed while it was written, and is lost"), std::string::npos)
+      << removed;
 }
 
 /// A disk that takes what its pipe holds, and more only when it is read.

@@ -23,7 +23,7 @@ namespace {
 using google::protobuf::Message;
 constexpr std::size_t no_bound = ~std::size_t{0} / 4;
 
-/// What this process has of the system's memory for objects [bytes].
+/// Memory that this process holds for objects [bytes].
 std::size_t allocated() {
   const struct mallinfo2 info = ::mallinfo2();
   return info.uordblks + info.hblkhd;
@@ -40,22 +40,26 @@ std::vector<Bomb> bombs() {
   using namespace std::string_literals;
   const auto& world = v1::World::default_instance();
   const auto& inputs = v1::Inputs::default_instance();
-  std::vector<Bomb> all{{"empty acts", inputs, "\x22\0"s},
-                        {"pauses", inputs, "\x22\x02\x3a\0"s},
-                        {"unknown numbers", inputs, "\x78\x01"s},
-                        {"unknown texts", inputs, "\x7a\0"s},
-                        {"a number as text", inputs, "\x0a\0"s},
-                        {"acts as numbers", inputs, "\x20\0"s},
-                        {"radio messages", inputs, "\x2a\x02\x5a\0"s},
-                        {"contacts", v1::Contacts::default_instance(), "\x18\x01"s},
-                        {"packed contacts", v1::Contacts::default_instance(), "\x1a\x04\1\1\1\1"s},
-                        {"kinds of rays", v1::Rays::default_instance(), "\x1a\x08\0\0\0\0\0\0\0\0"s},
-                        {"maps", v1::RobotObservation::default_instance(), "\x0a\0"s},
-                        {"transforms", foxglove::FrameTransforms::default_instance(), "\x0a\0"s},
-                        {"entities of the scene", foxglove::SceneUpdate::default_instance(), "\x12\0"s}};
-  for (char tag = 12; tag < 16; ++tag) all.push_back({"parts of the world", world, {static_cast<char>(tag << 3 | 2), '\0'}});
+  std::vector<Bomb> all{
+      {"empty acts", inputs, "\x22\0"s},
+      {"pauses", inputs, "\x22\x02\x3a\0"s},
+      {"unknown numbers", inputs, "\x78\x01"s},
+      {"unknown texts", inputs, "\x7a\0"s},
+      {"a number as text", inputs, "\x0a\0"s},
+      {"acts as numbers", inputs, "\x20\0"s},
+      {"radio messages", inputs, "\x2a\x02\x5a\0"s},
+      {"contacts", v1::Contacts::default_instance(), "\x18\x01"s},
+      {"packed contacts", v1::Contacts::default_instance(), "\x1a\x04\1\1\1\1"s},
+      {"kinds of rays", v1::Rays::default_instance(), "\x1a\x08\0\0\0\0\0\0\0\0"s},
+      {"maps", v1::RobotObservation::default_instance(), "\x0a\0"s},
+      {"transforms", foxglove::FrameTransforms::default_instance(), "\x0a\0"s},
+      {"entities of the scene", foxglove::SceneUpdate::default_instance(), "\x12\0"s}};
+  for (char tag = 12; tag < 16; ++tag)
+    all.push_back({"parts of the world", world, {static_cast<char>(tag << 3 | 2), '\0'}});
   for (int tag = 16; tag < (long_runs::is_slow ? 17 : 27); ++tag) {
-    all.push_back({"more parts of the world", world, {static_cast<char>((tag << 3 | 2) | 0x80), static_cast<char>(tag >> 4), '\0'}});
+    all.push_back({"more parts of the world",
+                   world,
+                   {static_cast<char>((tag << 3 | 2) | 0x80), static_cast<char>(tag >> 4), '\0'}});
   }
   return all;
 }
@@ -85,7 +89,8 @@ TEST(Decoding, TheMemoryThatIsFoundOutIsEnough) {
     ASSERT_TRUE(message->ParseFromString(bytes)) << bomb.name;
     const std::size_t taken = allocated() - before;
     EXPECT_GE(counted, taken) << bomb.name;
-    if (std::string_view("maps") == bomb.name || taken == 0) continue;  // the same key in all; sanitizers tell nothing
+    if (std::string_view("maps") == bomb.name || taken == 0)
+      continue;  // the same key in all; sanitizers tell nothing
     EXPECT_LT(counted, 15 * taken + 1'000'000) << bomb.name;
   }
 }
@@ -114,7 +119,8 @@ TEST(Decoding, ALongMessageIsNotDecoded) {
 
 TEST(Decoding, GroupsAreNotDecoded) {
   v1::Inputs inputs;
-  EXPECT_TRUE(decode(std::string("\x7b\x08\x01\x7c", 4), inputs)) << "what is in a group would be kept as unknown";
+  EXPECT_TRUE(decode(std::string("\x7b\x08\x01\x7c", 4), inputs))
+      << "what is in a group would be kept as unknown";
   EXPECT_FALSE(decode(std::string("\x08\x01", 2), inputs));
   EXPECT_EQ(inputs.epoch(), 1u);
 }
@@ -173,11 +179,13 @@ TEST(Decoding, AWorldOfFortyThousandBodiesIsFarBelowTheBounds) {
     transform.mutable_translation()->set_x(1);
     transform.mutable_rotation()->set_w(1);
   }
-  for (const Message* each : std::initializer_list<const Message*>{&world, &scene, &state, &inputs, &transforms}) {
+  for (const Message* each :
+       std::initializer_list<const Message*>{&world, &scene, &state, &inputs, &transforms}) {
     const Bound most = bound_of(*each->GetDescriptor());
     const std::string bytes = each->SerializeAsString();
     EXPECT_LT(bytes.size(), most.bytes / 2) << each->GetTypeName();
-    EXPECT_LT(v1::decoded_size(bytes, *each->GetDescriptor(), no_bound), most.memory / 2) << each->GetTypeName();
+    EXPECT_LT(v1::decoded_size(bytes, *each->GetDescriptor(), no_bound), most.memory / 2)
+        << each->GetTypeName();
     const std::unique_ptr<Message> decoded(each->New());
     EXPECT_FALSE(decode(bytes, *decoded));
     EXPECT_EQ(decoded->SerializeAsString(), bytes);

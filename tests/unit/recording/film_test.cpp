@@ -19,7 +19,9 @@ namespace fs = std::filesystem;
 
 class Films : public testing::Test {
  protected:
-  Films() : folder_(fs::path(testing::TempDir()) / ("film." + std::to_string(::getpid()))), frame_(std::size_t{16 * 16 * 3}) {
+  Films()
+      : folder_(fs::path(testing::TempDir()) / ("film." + std::to_string(::getpid()))),
+        frame_(std::size_t{16 * 16 * 3}) {
     fs::create_directories(folder_);
     std::iota(frame_.begin(), frame_.end(), std::uint8_t{0});
   }
@@ -35,13 +37,6 @@ TEST_F(Films, LeavesNoFileWithoutAFrame) {
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
-TEST_F(Films, LeavesALinkWhoseFileIsNotThere) {
-  fs::create_symlink(folder_ / "later.mp4", folder_ / "link.mp4");
-  { Film film(folder_ / "link.mp4", format_); }
-  EXPECT_TRUE(fs::is_symlink(folder_ / "link.mp4"));
-  EXPECT_FALSE(fs::exists(folder_ / "later.mp4"));
-}
-
 TEST_F(Films, IsMadeInEachFormat) {
   for (const char* name : {"a.mp4", "a.webm", "a.webp", "a.gif", "a: b.mp4"}) {
     Film film(folder_ / name, format_);
@@ -49,20 +44,6 @@ TEST_F(Films, IsMadeInEachFormat) {
     film.close();
     EXPECT_GT(fs::file_size(folder_ / name), 100U) << name;
   }
-}
-
-/// ffmpeg opened it by its name, which another user of a folder may have made a link by then.
-TEST_F(Films, GoesIntoTheFileThatWasOpenedWhateverStandsAtItsNameThen) {
-  const fs::path path = folder_ / "film.gif", moved = folder_ / "moved.gif", other = folder_ / "other.gif";
-  std::ofstream(other) << "ours";
-  Film film(path, format_);
-  film.write(frame_);
-  fs::rename(path, moved);
-  fs::create_symlink(other, path);
-  for (int i = 0; i < 3; ++i) film.write(frame_);
-  film.close();
-  EXPECT_EQ(fs::file_size(other), 4U);
-  EXPECT_GT(fs::file_size(moved), 100U);
 }
 
 TEST_F(Films, HasOneWriter) {

@@ -42,8 +42,8 @@ struct Example {
   }
 
   void send(std::size_t radio, const std::string& text) {
-    commands.radio_messages.add(
-        radio, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    commands.radio_messages.add(radio,
+                                {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   }
   std::optional<std::string> read(const v1::Commands& message, world::Commands& to) const {
     return unpack(message, layout, state, commands, to);

@@ -41,7 +41,8 @@ std::string as_protobuf_writes(const pb::Message& message) {
   pb::util::JsonPrintOptions options;
   options.always_print_primitive_fields = true;
   options.preserve_proto_field_names = true;
-  const auto status = pb::util::BinaryToJsonString(resolver.get(), "type.ziggurat/" + type.full_name(), bytes, &json, options);
+  const auto status = pb::util::BinaryToJsonString(
+      resolver.get(), "type.ziggurat/" + type.full_name(), bytes, &json, options);
   EXPECT_TRUE(status.ok()) << status;
   return json;
 }
@@ -63,11 +64,15 @@ class Chance {
     const auto& type = *message.GetDescriptor();
     const auto& of = *message.GetReflection();
     if (type.file()->package() == "google.protobuf") {
-      return of.SetInt64(&message, type.FindFieldByName("seconds"), static_cast<std::int64_t>(draw_() % 4'000'000'000U));
+      return of.SetInt64(&message, type.FindFieldByName("seconds"),
+                         static_cast<std::int64_t>(draw_() % 4'000'000'000U));
     }
     for (int i = 0; i < type.field_count(); ++i) {
       const FieldDescriptor& field = *type.field(i);
-      const auto count = type.options().map_entry() ? 1 : field.is_map() ? draw_() % 8 : field.is_repeated() ? draw_() % 3 : draw_() % 2;
+      const auto count = type.options().map_entry() ? 1
+                         : field.is_map()           ? draw_() % 8
+                         : field.is_repeated()      ? draw_() % 3
+                                                    : draw_() % 2;
       for (unsigned n = 0; n < count; ++n) set(message, field, levels);
     }
   }
@@ -79,13 +84,23 @@ class Chance {
   }
 
   double number() {
-    const double special[] = {0.0, -0.0, 1e300, 5e-324, 0.1, 1.0 / 3, std::numeric_limits<double>::infinity(),
-                              -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN(), 1e15, 1e-7};
+    const double special[] = {0.0,
+                              -0.0,
+                              1e300,
+                              5e-324,
+                              0.1,
+                              1.0 / 3,
+                              std::numeric_limits<double>::infinity(),
+                              -std::numeric_limits<double>::infinity(),
+                              std::numeric_limits<double>::quiet_NaN(),
+                              1e15,
+                              1e-7};
     return draw_() % 2 ? special[draw_() % std::size(special)] : static_cast<double>(draw_()) / 7e5;
   }
 
   std::string text() {
-    const char* pieces[] = {"", "a", "\"", "\\", "<b>", "&", "/", "\n", "\x01", "\x7f", "é", "\u2028", "\U0001F600", "'", "\u200b", "\ufeff"};
+    const char* pieces[] = {"",     "a",    "\"", "\\",     "<b>",        "&", "/",      "\n",
+                            "\x01", "\x7f", "é",  "\u2028", "\U0001F600", "'", "\u200b", "\ufeff"};
     std::string all;
     for (auto n = draw_() % 6; n > 0; --n) all += pieces[draw_() % std::size(pieces)];
     return all;
@@ -94,19 +109,32 @@ class Chance {
   void set(pb::Message& to, const FieldDescriptor& field, int levels) {
     const auto& of = *to.GetReflection();
     const bool many = field.is_repeated();
-    const auto put = [&](auto single, auto add, auto value) { many ? (of.*add)(&to, &field, value) : (of.*single)(&to, &field, value); };
+    const auto put = [&](auto single, auto add, auto value) {
+      many ? (of.*add)(&to, &field, value) : (of.*single)(&to, &field, value);
+    };
     using R = pb::Reflection;
     switch (field.cpp_type()) {
-      case FieldDescriptor::CPPTYPE_INT32: return put(&R::SetInt32, &R::AddInt32, static_cast<int>(draw_()));
-      case FieldDescriptor::CPPTYPE_UINT32: return put(&R::SetUInt32, &R::AddUInt32, static_cast<unsigned>(draw_()));
-      case FieldDescriptor::CPPTYPE_INT64: return put(&R::SetInt64, &R::AddInt64, -static_cast<std::int64_t>(draw_()) * 9999);
-      case FieldDescriptor::CPPTYPE_UINT64: return put(&R::SetUInt64, &R::AddUInt64, ~std::uint64_t{draw_()});
-      case FieldDescriptor::CPPTYPE_BOOL: return put(&R::SetBool, &R::AddBool, draw_() % 2 == 0);
-      case FieldDescriptor::CPPTYPE_DOUBLE: return put(&R::SetDouble, &R::AddDouble, number());
-      case FieldDescriptor::CPPTYPE_FLOAT: return put(&R::SetFloat, &R::AddFloat, static_cast<float>(number()));
-      case FieldDescriptor::CPPTYPE_ENUM: return put(&R::SetEnumValue, &R::AddEnumValue, static_cast<int>(draw_() % 9));
-      case FieldDescriptor::CPPTYPE_STRING: return put(&R::SetString, &R::AddString, text() + (is_key(field) ? std::to_string(draw_()) : ""));
-      case FieldDescriptor::CPPTYPE_MESSAGE: break;
+      case FieldDescriptor::CPPTYPE_INT32:
+        return put(&R::SetInt32, &R::AddInt32, static_cast<int>(draw_()));
+      case FieldDescriptor::CPPTYPE_UINT32:
+        return put(&R::SetUInt32, &R::AddUInt32, static_cast<unsigned>(draw_()));
+      case FieldDescriptor::CPPTYPE_INT64:
+        return put(&R::SetInt64, &R::AddInt64, -static_cast<std::int64_t>(draw_()) * 9999);
+      case FieldDescriptor::CPPTYPE_UINT64:
+        return put(&R::SetUInt64, &R::AddUInt64, ~std::uint64_t{draw_()});
+      case FieldDescriptor::CPPTYPE_BOOL:
+        return put(&R::SetBool, &R::AddBool, draw_() % 2 == 0);
+      case FieldDescriptor::CPPTYPE_DOUBLE:
+        return put(&R::SetDouble, &R::AddDouble, number());
+      case FieldDescriptor::CPPTYPE_FLOAT:
+        return put(&R::SetFloat, &R::AddFloat, static_cast<float>(number()));
+      case FieldDescriptor::CPPTYPE_ENUM:
+        return put(&R::SetEnumValue, &R::AddEnumValue, static_cast<int>(draw_() % 9));
+      case FieldDescriptor::CPPTYPE_STRING:
+        return put(&R::SetString, &R::AddString,
+                   text() + (is_key(field) ? std::to_string(draw_()) : ""));
+      case FieldDescriptor::CPPTYPE_MESSAGE:
+        break;
     }
     pb::Message& inner = many ? *of.AddMessage(&to, &field) : *of.MutableMessage(&to, &field);
     if (levels > 0) fill(inner, levels - 1);
@@ -116,13 +144,24 @@ class Chance {
 };
 
 TEST(Json, IsWhatProtobufWrites) {
-  const pb::Message* types[] = {&v1::World::default_instance(), &v1::Poses::default_instance(), &v1::Detections::default_instance(),
-                                &v1::RadioTraffic::default_instance(), &v1::Rays::default_instance(), &v1::Contacts::default_instance(),
-                                &v1::RunStart::default_instance(), &v1::Inputs::default_instance(), &v1::ExactState::default_instance(),
-                                &v1::Observation::default_instance(), &v1::Command::default_instance(), &v1::Reading::default_instance(),
-                                &v1::RayLine::default_instance(), &foxglove::SceneUpdate::default_instance(),
-                                &foxglove::FrameTransforms::default_instance(), &foxglove::CompressedImage::default_instance(),
-                                &foxglove::ImageAnnotations::default_instance(), &foxglove::CameraCalibration::default_instance(),
+  const pb::Message* types[] = {&v1::World::default_instance(),
+                                &v1::Poses::default_instance(),
+                                &v1::Detections::default_instance(),
+                                &v1::RadioTraffic::default_instance(),
+                                &v1::Rays::default_instance(),
+                                &v1::Contacts::default_instance(),
+                                &v1::RunStart::default_instance(),
+                                &v1::Inputs::default_instance(),
+                                &v1::ExactState::default_instance(),
+                                &v1::Observation::default_instance(),
+                                &v1::Command::default_instance(),
+                                &v1::Reading::default_instance(),
+                                &v1::RayLine::default_instance(),
+                                &foxglove::SceneUpdate::default_instance(),
+                                &foxglove::FrameTransforms::default_instance(),
+                                &foxglove::CompressedImage::default_instance(),
+                                &foxglove::ImageAnnotations::default_instance(),
+                                &foxglove::CameraCalibration::default_instance(),
                                 &foxglove::Log::default_instance()};
   for (const pb::Message* type : types) {
     const std::unique_ptr<pb::Message> message(type->New());
@@ -130,7 +169,8 @@ TEST(Json, IsWhatProtobufWrites) {
     for (unsigned seed = 0; seed < 30; ++seed) {
       message->Clear();
       Chance(seed).fill(*message, 4);
-      ASSERT_EQ(as_json(*message), as_protobuf_writes(*message)) << type->GetTypeName() << " " << seed;
+      ASSERT_EQ(as_json(*message), as_protobuf_writes(*message))
+          << type->GetTypeName() << " " << seed;
     }
   }
 }
@@ -151,7 +191,8 @@ TEST(Json, EveryCharacterIsWhatProtobufWrites) {
       all += {static_cast<char>(0xF0U | code >> 18), low(code >> 12), low(code >> 6), low(code)};
     }
   }
-  for (int i = 0; i < 4; ++i) all += "x" + std::string(all);  // longer than a piece, which may end within a character
+  for (int i = 0; i < 4; ++i)
+    all += "x" + std::string(all);  // longer than a piece, which may end within a character
   EXPECT_EQ(as_json(start), as_protobuf_writes(start));
 }
 

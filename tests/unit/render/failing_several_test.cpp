@@ -1,4 +1,5 @@
-// Threads for pictures that can't all be started: each allocation of their begin is made to fail once.
+// Threads for pictures that can't all be started: each allocation of their begin is made to fail
+// once.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What is drawn over the world if a view asks for it.
+// Layers over the world if a view asks for them.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -69,7 +69,8 @@ TEST(Layers, AFrustumHasTheEdgesOfWhatACameraCanSee) {
   const Picture empty = world.picture(view);
   const auto carrier = world.add(scene::Sphere{0.001}, {{2, 0, 0}, Quaternion::Identity()});
   world::CameraLayout camera;
-  camera.mount = {carrier, carrier, {{0, 0, 0}, Quaternion(0.5, -0.5, 0.5, -0.5)}};  // looks along x
+  camera.mount = {
+      carrier, carrier, {{0, 0, 0}, Quaternion(0.5, -0.5, 0.5, -0.5)}};  // looks along x
   camera.near = 0.1;
   camera.far = 1;
   camera.focal_length = {100, 100};
@@ -78,7 +79,8 @@ TEST(Layers, AFrustumHasTheEdgesOfWhatACameraCanSee) {
   world.layout.cameras.push_back(camera);
   const Picture picture = world.picture(view);
   // The far plane is a square with sides of 1 m, at x = 3.
-  for (const Vector3& point : {Vector3(3, 0.5, 0.2), Vector3(3, -0.2, 0.5), Vector3(3, -0.5, -0.3)}) {
+  for (const Vector3& point :
+       {Vector3(3, 0.5, 0.2), Vector3(3, -0.2, 0.5), Vector3(3, -0.5, -0.3)}) {
     const auto at = project(view, point);
     EXPECT_GT(difference(pixel(picture, at), pixel(empty, at)), 60) << point.transpose();
   }

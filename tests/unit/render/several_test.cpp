@@ -40,7 +40,8 @@ TEST(Several, GivesTheSameBytesInTheSameOrderWithAnyNumberOfThreads) {
     std::vector<std::vector<std::uint8_t>> all;
     for (int i = 0; i < pictures; ++i) {
       put(world, 0.1 * i);
-      several.draw(world.state, {}, view, [&](const Picture& picture) { all.push_back(picture.rgb); });
+      several.draw(world.state, {}, view,
+                   [&](const Picture& picture) { all.push_back(picture.rgb); });
     }
     several.finish();
     EXPECT_EQ(all, one_by_one) << threads;
@@ -52,10 +53,12 @@ TEST(Several, ThrowsOnceWhatATakeThrewAndTakesNoMore) {
   const View view = forward_view(32, 24, 30);
   Several several(world.scene, world.entities, world.layout, 2);
   int taken = 0;
-  several.draw(world.state, {}, view, [](const Picture&) { throw std::runtime_error("the disk is full"); });
+  several.draw(world.state, {}, view,
+               [](const Picture&) { throw std::runtime_error("the disk is full"); });
   EXPECT_THROW(
       {
-        for (int i = 0; i < 9; ++i) several.draw(world.state, {}, view, [&](const Picture&) { ++taken; });
+        for (int i = 0; i < 9; ++i)
+          several.draw(world.state, {}, view, [&](const Picture&) { ++taken; });
         several.finish();
       },
       std::runtime_error);

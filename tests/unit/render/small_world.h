@@ -20,7 +20,8 @@ struct SmallWorld {
   world::Layout layout;
   world::State state;
 
-  /// Adds an entity of one link; the link's frame is at its bottom centre. @returns the link's index
+  /// Adds an entity of one link; the link's frame is at its bottom centre. @returns the link's
+  /// index
   std::size_t add(const scene::Geometry& geometry, const Pose& pose) {
     scene::Entity entity;
     scene::Link link;

@@ -29,8 +29,8 @@ struct Example {
     now = recorded;
   }
   static void send(world::Commands& commands, std::size_t radio, const std::string& text) {
-    commands.radio_messages.add(
-        radio, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    commands.radio_messages.add(radio,
+                                {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   }
   std::optional<CommandDifference> of(std::size_t robot) const {
     return first_difference(layout, robot, recorded, now);

@@ -12,7 +12,8 @@ TEST(MessageDifference, NamesTheFirstFieldAndBothValues) {
   EXPECT_FALSE(first_difference(a, b));
   for (v1::Inputs* each : {&a, &b}) {
     each->set_tick(4);
-    for (const double v : {0.5, 1.5}) each->mutable_commands()->mutable_joint_targets()->add_values(v);
+    for (const double v : {0.5, 1.5})
+      each->mutable_commands()->mutable_joint_targets()->add_values(v);
   }
   EXPECT_FALSE(first_difference(a, b));
   b.mutable_commands()->mutable_joint_targets()->set_values(1, 0.1 + 0.2);
@@ -21,8 +22,9 @@ TEST(MessageDifference, NamesTheFirstFieldAndBothValues) {
   EXPECT_EQ(found->field, "commands.joint_targets.values[1]");
   EXPECT_EQ(found->a, "1.5");
   EXPECT_EQ(found->b, "0.30000000000000004");
-  EXPECT_EQ(first_difference("ziggurat.v1.Inputs", a.SerializeAsString(), b.SerializeAsString())->field,
-            found->field);
+  EXPECT_EQ(
+      first_difference("ziggurat.v1.Inputs", a.SerializeAsString(), b.SerializeAsString())->field,
+      found->field);
 }
 
 TEST(MessageDifference, TellsWhatIsMissing) {

@@ -22,27 +22,29 @@ namespace ziggurat::replay::testing {
 /// A robot with an arm, whose model is in a file of its own, and two boxes that fall on a floor.
 inline EmbeddedFiles files() {
   EmbeddedFiles files;
-  files.add("scenes/small.argos",
-            R"(<argos><include file="models/arm.xml"/><framework><experiment ticks_per_second="10" )"
-            R"(random_seed="3"/></framework><controllers><external_controller id="c"><actuators>)"
-            R"(<joints implementation="default"><joint id="hinge" mode="velocity" max_impulse="20"/></joints>)"
-            R"(<radios implementation="default"/></actuators><sensors>)"
-            R"(<joints implementation="default"><joint id="hinge" mode="position"/></joints>)"
-            R"(<radios implementation="default"/><positioning implementation="default"/></sensors>)"
-            R"(<params/></external_controller></controllers><arena size="9,9,9">)"
-            R"(<prototype id="r" model="arm"><body position="1,0,0"/><controller config="c"/></prototype>)"
-            R"(<box id="low" size=".4,.4,.4" movable="true" mass="1"><body position="0,0,0"/></box>)"
-            R"(<box id="high" size=".2,.2,.2" movable="true" mass="1"><body position="0.05,0,0.5"/>)"
-            R"(</box></arena><physics_engines><dynamics3d id="d" iterations="4"><floor/>)"
-            R"(<gravity g="9.8"/></dynamics3d></physics_engines><media><radio id="air"/>)"
-            R"(<led id="leds"/></media></argos>)");
-  files.add("scenes/models/arm.xml",
-            R"(<ziggurat-models><models><prototype id="arm" movable="false"><links ref="base"><link id="base" )"
-            R"(geometry="box" size=".1,.1,.1" mass="1"/><link id="arm" geometry="box" )"
-            R"(size=".5,.1,.1" mass="1"/></links><joints><joint id="hinge" type="revolute" )"
-            R"(axis="0,1,0"><parent link="base" position="0,0,.4"/><child link="arm" )"
-            R"(position="-.25,0,0"/></joint></joints><devices><radios medium="air"><radio id="rx" )"
-            R"(anchor="base" position="0,0,.1" range="9"/></radios></devices></prototype></models></ziggurat-models>)");
+  files.add(
+      "scenes/small.argos",
+      R"(<argos><include file="models/arm.xml"/><framework><experiment ticks_per_second="10" )"
+      R"(random_seed="3"/></framework><controllers><external_controller id="c"><actuators>)"
+      R"(<joints implementation="default"><joint id="hinge" mode="velocity" max_impulse="20"/></joints>)"
+      R"(<radios implementation="default"/></actuators><sensors>)"
+      R"(<joints implementation="default"><joint id="hinge" mode="position"/></joints>)"
+      R"(<radios implementation="default"/><positioning implementation="default"/></sensors>)"
+      R"(<params/></external_controller></controllers><arena size="9,9,9">)"
+      R"(<prototype id="r" model="arm"><body position="1,0,0"/><controller config="c"/></prototype>)"
+      R"(<box id="low" size=".4,.4,.4" movable="true" mass="1"><body position="0,0,0"/></box>)"
+      R"(<box id="high" size=".2,.2,.2" movable="true" mass="1"><body position="0.05,0,0.5"/>)"
+      R"(</box></arena><physics_engines><dynamics3d id="d" iterations="4"><floor/>)"
+      R"(<gravity g="9.8"/></dynamics3d></physics_engines><media><radio id="air"/>)"
+      R"(<led id="leds"/></media></argos>)");
+  files.add(
+      "scenes/models/arm.xml",
+      R"(<ziggurat-models><models><prototype id="arm" movable="false"><links ref="base"><link id="base" )"
+      R"(geometry="box" size=".1,.1,.1" mass="1"/><link id="arm" geometry="box" )"
+      R"(size=".5,.1,.1" mass="1"/></links><joints><joint id="hinge" type="revolute" )"
+      R"(axis="0,1,0"><parent link="base" position="0,0,.4"/><child link="arm" )"
+      R"(position="-.25,0,0"/></joint></joints><devices><radios medium="air"><radio id="rx" )"
+      R"(anchor="base" position="0,0,.1" range="9"/></radios></devices></prototype></models></ziggurat-models>)");
   return files;
 }
 
@@ -53,7 +55,7 @@ inline v1::RunStart start() {
   return start;
 }
 
-/// What is recorded of a run.
+/// Recorded inputs and states of a run.
 struct Recording {
   std::vector<v1::Inputs> inputs;
   std::vector<std::vector<world::LinkState>> links;
@@ -118,8 +120,8 @@ class Recorder {
   }
   void spawn(const std::string& xml) {
     inputs().add_acts()->mutable_spawn()->set_xml(xml);
-    const auto addition = own.opened.additions.read(
-        xml, own.opened.scene, 1 << 20, [](const auto&) { return false; });
+    const auto addition = own.opened.additions.read(xml, own.opened.scene, 1 << 20,
+                                                    [](const auto&) { return false; });
     for (const auto& problem : addition.problems) ADD_FAILURE() << scene::to_string(problem);
     simulation().spawn(own.opened.scene, addition.entity);
   }
@@ -173,8 +175,10 @@ inline Recording eventful_run() {
   pose.position = {1, 2, 0.5};
   pose.orientation = math::Quaternion(1, 2, 3, 4).normalized();
   run.move("high", pose);
-  run.spawn(R"(<prototype id="s" model="arm"><body position="3,0,0"/><controller config="c"/></prototype>)");
-  run.spawn(R"(<box id="extra" size=".1,.1,.1" movable="true" mass="1"><body position="-2,0,1"/></box>)");
+  run.spawn(
+      R"(<prototype id="s" model="arm"><body position="3,0,0"/><controller config="c"/></prototype>)");
+  run.spawn(
+      R"(<box id="extra" size=".1,.1,.1" movable="true" mass="1"><body position="-2,0,1"/></box>)");
   run.step();
   run.simulation().commands().joint_targets.at(1) = -2;
   for (int i = 0; i < 4; ++i) run.step();

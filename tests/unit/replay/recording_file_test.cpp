@@ -34,7 +34,8 @@ class Disk : public ::testing::Test {
 
   /// @param size   of the file's bytes that are written; -1: all
   /// @param topic  of the inputs
-  std::string write(const Recording& recording, long size = -1, const char* topic = "/inputs") const {
+  std::string write(const Recording& recording, long size = -1,
+                    const char* topic = "/inputs") const {
     std::string bytes;
     mcap::Writer writer([&](std::string_view more) { bytes += more; }, {"ziggurat", "test"},
                         mcap::Compression::zstd);
@@ -117,7 +118,8 @@ TEST_F(Disk, OneThatIsCutBeforeItsFirstMessageSaysSo) {
     const RecordingFile cut(path);
     FAIL();
   } catch (const RecordingError& error) {
-    EXPECT_NE(std::string_view(error.what()).find("its end is missing"), std::string_view::npos) << error.what();
+    EXPECT_NE(std::string_view(error.what()).find("its end is missing"), std::string_view::npos)
+        << error.what();
   }
 }
 
@@ -178,7 +180,7 @@ std::string repeated(std::string_view piece, std::size_t count) {
   return all;
 }
 
-/// What is told of it; empty: nothing was.
+/// Sentence of the fault; empty: there was none.
 std::string fault_of(const std::function<void()>& read) {
   try {
     read();
@@ -191,8 +193,10 @@ std::string fault_of(const std::function<void()>& read) {
 TEST_F(Disk, NamesLinksOfEntitiesThatAreNotThere) {
   v1::World message;
   message.add_entities()->set_id("box");
-  for (const std::uint32_t entity : {0U, 1U, 0x80000000U, 0xffffffffU}) message.add_links()->set_entity(entity);
-  const std::string bytes = recording_of({{"/world", "ziggurat.v1.World", message.SerializeAsString()}});
+  for (const std::uint32_t entity : {0U, 1U, 0x80000000U, 0xffffffffU})
+    message.add_links()->set_entity(entity);
+  const std::string bytes =
+      recording_of({{"/world", "ziggurat.v1.World", message.SerializeAsString()}});
   const RecordingFile file("hostile", mcap::bytes_of(bytes));
   EXPECT_EQ(link_names(file), (std::vector<std::string>{"'box'", "'?'", "'?'", "'?'"}));
 }
@@ -202,21 +206,27 @@ TEST_F(Disk, NamesThatEachLinkRepeatsAreBounded) {
   message.add_entities()->set_id(std::string(1'000'000, 'x'));
   message.mutable_entities(0)->set_link_count(1000);
   for (int i = 0; i < 1000; ++i) message.add_links();
-  const std::string bytes = recording_of({{"/world", "ziggurat.v1.World", message.SerializeAsString()},
-                                          {"/state", "ziggurat.v1.ExactState", {}}});
+  const std::string bytes =
+      recording_of({{"/world", "ziggurat.v1.World", message.SerializeAsString()},
+                    {"/state", "ziggurat.v1.ExactState", {}}});
   const RecordingFile file("hostile", mcap::bytes_of(bytes));
-  EXPECT_NE(fault_of([&] { link_names(file); }).find("the names of its links have"), std::string::npos);
-  EXPECT_NE(fault_of([&] { export_csv(file, path("out.csv")); }).find("the names of its links have"), std::string::npos);
+  EXPECT_NE(fault_of([&] { link_names(file); }).find("the names of its links have"),
+            std::string::npos);
+  EXPECT_NE(
+      fault_of([&] { export_csv(file, path("out.csv")); }).find("the names of its links have"),
+      std::string::npos);
 }
 
 TEST_F(Disk, LinksOfAnotherEntityAreNoRowsOfATable) {
   v1::World message;
   for (int i = 0; i < 2; ++i) message.add_entities()->set_link_count(2);
   for (int i = 0; i < 2; ++i) message.add_links();
-  const std::string bytes = recording_of({{"/world", "ziggurat.v1.World", message.SerializeAsString()},
-                                          {"/state", "ziggurat.v1.ExactState", {}}});
+  const std::string bytes =
+      recording_of({{"/world", "ziggurat.v1.World", message.SerializeAsString()},
+                    {"/state", "ziggurat.v1.ExactState", {}}});
   const RecordingFile file("hostile", mcap::bytes_of(bytes));
-  EXPECT_NE(fault_of([&] { export_csv(file, path("out.csv")); }).find("not its own"), std::string::npos);
+  EXPECT_NE(fault_of([&] { export_csv(file, path("out.csv")); }).find("not its own"),
+            std::string::npos);
 }
 
 TEST_F(Disk, ATableWithoutAnyStateIsAFault) {
@@ -224,30 +234,39 @@ TEST_F(Disk, ATableWithoutAnyStateIsAFault) {
   message.add_entities()->set_link_count(1);
   message.add_links();
   const std::string world = message.SerializeAsString();
-  const std::string bytes = recording_of({{"/world", "ziggurat.v1.World", world}, {"/state", "ziggurat.v1.ExactState", {}}});
+  const std::string bytes = recording_of(
+      {{"/world", "ziggurat.v1.World", world}, {"/state", "ziggurat.v1.ExactState", {}}});
   const RecordingFile file("cut.mcap", mcap::bytes_of(bytes));
-  EXPECT_EQ(fault_of([&] { export_csv(file, path("out.csv")); }), "cut.mcap: no state of it is intact, so a table would be empty");
+  EXPECT_EQ(fault_of([&] { export_csv(file, path("out.csv")); }),
+            "cut.mcap: no state of it is intact, so a table would be empty");
 }
 
 TEST_F(Disk, AMessageOfManySmallPartsIsToldAndNotDecoded) {
   const std::string world = repeated({"\x62\0", 2}, 40'000'000);  // entities
-  const std::string bytes = recording_of({{"/world", "ziggurat.v1.World", world},
-                                          {"/state", "ziggurat.v1.ExactState", {}},
-                                          {"/inputs", "ziggurat.v1.Inputs", repeated("\x22\x02\x3a\x00", 1)}});
+  const std::string bytes =
+      recording_of({{"/world", "ziggurat.v1.World", world},
+                    {"/state", "ziggurat.v1.ExactState", {}},
+                    {"/inputs", "ziggurat.v1.Inputs", repeated("\x22\x02\x3a\x00", 1)}});
   const RecordingFile file("hostile.mcap", mcap::bytes_of(bytes));
-  const std::function<void()> readers[] = {[&] { link_names(file); }, [&] { export_csv(file, path("out.csv")); },
-                                           [&] { export_jsonl(file, [](const auto&) { return true; }, path("out.jsonl")); }};
+  const std::function<void()> readers[] = {
+      [&] { link_names(file); }, [&] { export_csv(file, path("out.csv")); },
+      [&] {
+        export_jsonl(
+            file, [](const auto&) { return true; }, path("out.jsonl"));
+      }};
   for (const auto& read : readers) {
     const std::string told = fault_of(read);
-    EXPECT_TRUE(told.starts_with("hostile.mcap: a message of /world at 0 s, in the chunk at byte ")) << told;
+    EXPECT_TRUE(told.starts_with("hostile.mcap: a message of /world at 0 s, in the chunk at byte "))
+        << told;
     EXPECT_NE(told.find("take another copy of the recording"), std::string::npos) << told;
   }
 }
 
 TEST_F(Disk, InputsAndStatesOfManySmallPartsAreToldAndNotDecoded) {
-  const Topic topics[] = {{"/inputs", "ziggurat.v1.Inputs", repeated({"\x22\x02\x3a\0", 4}, 8'000'000)},
-                          {"/state", "ziggurat.v1.ExactState", repeated({"\x7a\0", 2}, 15'000'000)},
-                          {"/state", "ziggurat.v1.ExactState", std::string(33'554'433, '\0')}};
+  const Topic topics[] = {
+      {"/inputs", "ziggurat.v1.Inputs", repeated({"\x22\x02\x3a\0", 4}, 8'000'000)},
+      {"/state", "ziggurat.v1.ExactState", repeated({"\x7a\0", 2}, 15'000'000)},
+      {"/state", "ziggurat.v1.ExactState", std::string(33'554'433, '\0')}};
   for (const Topic& topic : topics) {
     const std::string bytes = recording_of({topic, {"/inputs", "ziggurat.v1.Inputs", {}}});
     const RecordingFile file("hostile.mcap", mcap::bytes_of(bytes));
@@ -259,21 +278,28 @@ TEST_F(Disk, InputsAndStatesOfManySmallPartsAreToldAndNotDecoded) {
 
 TEST_F(Disk, ARunThatIsTooLargeIsToldAndNotDecoded) {
   std::string bytes;
-  mcap::Writer writer([&](std::string_view more) { bytes += more; }, {"ziggurat", "test"}, mcap::Compression::zstd);
+  mcap::Writer writer([&](std::string_view more) { bytes += more; }, {"ziggurat", "test"},
+                      mcap::Compression::zstd);
   const auto schema = writer.add_schema("ziggurat.v1.RunStart", "protobuf", "x");
-  writer.write(writer.add_channel(schema, "/run", "protobuf"), 0, 0, repeated({"\x3a\0", 2}, 20'000'000));
+  writer.write(writer.add_channel(schema, "/run", "protobuf"), 0, 0,
+               repeated({"\x3a\0", 2}, 20'000'000));
   writer.close();
-  EXPECT_NE(fault_of([&] { const RecordingFile file("hostile.mcap", mcap::bytes_of(bytes)); }).find("/run"), std::string::npos);
+  EXPECT_NE(fault_of([&] {
+              const RecordingFile file("hostile.mcap", mcap::bytes_of(bytes));
+            }).find("/run"),
+            std::string::npos);
 }
 
 /// Later rows must not refer to entities that a smaller world lacks.
 TEST_F(Disk, ASmallerWorldHasRowsOfItsOwn) {
   std::string bytes;
-  mcap::Writer writer([&](std::string_view more) { bytes += more; }, {"ziggurat", "test"}, mcap::Compression::none);
+  mcap::Writer writer([&](std::string_view more) { bytes += more; }, {"ziggurat", "test"},
+                      mcap::Compression::none);
   const auto channel = [&](const char* topic, const char* type) {
     return writer.add_channel(writer.add_schema(type, "protobuf", "x"), topic, "protobuf");
   };
-  const auto run = channel("/run", "ziggurat.v1.RunStart"), world = channel("/world", "ziggurat.v1.World"),
+  const auto run = channel("/run", "ziggurat.v1.RunStart"),
+             world = channel("/world", "ziggurat.v1.World"),
              state = channel("/state", "ziggurat.v1.ExactState");
   writer.write(run, 0, 0, testing::start().SerializeAsString());
   for (std::uint64_t tick = 0; tick < 2; ++tick) {
@@ -315,8 +341,12 @@ TEST_F(Disk, MessagesBecomeLines) {
   std::ifstream lines(path("out.jsonl"));
   std::string first;
   std::getline(lines, first);
-  EXPECT_TRUE(first.starts_with(R"({"topic":"/inputs","time_s":0,"message":{"epoch":"0","tick":"0")")) << first;
-  EXPECT_THROW(export_jsonl(file, [](const auto&) { return false; }, path("out.jsonl")), RecordingError);
+  EXPECT_TRUE(
+      first.starts_with(R"({"topic":"/inputs","time_s":0,"message":{"epoch":"0","tick":"0")"))
+      << first;
+  EXPECT_THROW(export_jsonl(
+                   file, [](const auto&) { return false; }, path("out.jsonl")),
+               RecordingError);
   EXPECT_THROW(export_csv(file, path("out.csv")), RecordingError) << "it has no /world";
 }
 

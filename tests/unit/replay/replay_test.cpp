@@ -16,7 +16,7 @@ using testing::eventful_run;
 using testing::OwnWorld;
 using testing::Recording;
 
-/// How many states are the same, from the first on.
+/// Number of states that are the same, from the first on.
 std::size_t same_states(const Recording& recording) {
   OwnWorld world;
   Replay replay = world.replay(recording);
@@ -41,7 +41,8 @@ TEST(Replay, RepeatsCommandsMovesSpawnsRemovalsAndResets) {
 }
 
 TEST(Replay, FindsTheEntityOfANameThatIsUsedAgain) {
-  const std::string box = R"(<box id="b" size=".1,.1,.1" movable="true" mass="1"><body position="-2,0,1"/></box>)";
+  const std::string box =
+      R"(<box id="b" size=".1,.1,.1" movable="true" mass="1"><body position="-2,0,1"/></box>)";
   testing::Recorder run;
   run.spawn(box);
   run.snapshot("one");
@@ -74,7 +75,7 @@ TEST(Replay, RepeatsSnapshotsAndRestores) {
   EXPECT_NE(error_of(run.recording).find("no snapshot"), std::string::npos);
 }
 
-/// What was done, also where a world that did not move has no room: what is shown is what was recorded.
+/// Shows recorded poses. Acts are applied also where a world that did not move has no free place.
 TEST(Replay, ShowsRecordedPosesWithoutSimulating) {
   testing::Recorder run;
   for (int i = 0; i < 3; ++i) run.step();
@@ -82,7 +83,8 @@ TEST(Replay, ShowsRecordedPosesWithoutSimulating) {
   away.position = {2, 2, 0.1};
   run.move("high", away);
   run.snapshot("before");
-  run.spawn(R"(<box id="new" size=".2,.2,.2" movable="true" mass="1"><body position="0.05,0,0.5"/></box>)");
+  run.spawn(
+      R"(<box id="new" size=".2,.2,.2" movable="true" mass="1"><body position="0.05,0,0.5"/></box>)");
   for (int i = 0; i < 4; ++i) run.step();
   run.remove("low");
   run.step();
@@ -169,12 +171,14 @@ TEST(Replay, RefusesInputsThatThisWorldCannotHaveHad) {
   const Recording good = eventful_run();
   Recording bad = good;
   bad.inputs[3].mutable_commands()->mutable_joint_targets()->clear_values();
-  EXPECT_EQ(error_of(bad), "the recording's inputs of tick 3: the array joint_targets has 0 values; "
-                           "the world has 1 joint actuators");
+  EXPECT_EQ(error_of(bad),
+            "the recording's inputs of tick 3: the array joint_targets has 0 values; "
+            "the world has 1 joint actuators");
   bad = good;
   bad.inputs[2].clear_commands();
-  EXPECT_EQ(error_of(bad), "the recording's inputs of tick 2: they have no commands, and yet there "
-                           "is a next tick");
+  EXPECT_EQ(error_of(bad),
+            "the recording's inputs of tick 2: they have no commands, and yet there "
+            "is a next tick");
   bad = good;
   bad.inputs.erase(bad.inputs.begin() + 3);
   EXPECT_EQ(error_of(bad), "the recording's inputs of tick 4: the tick 3 was expected");
@@ -210,10 +214,13 @@ TEST(Replay, SetsJointsAgain) {
   Recording bad = run.recording;
   auto& set = *bad.inputs[0].mutable_acts(0)->mutable_set_joint();
   set.set_position(std::nan(""));
-  EXPECT_EQ(error_of(bad), "the recording's inputs of tick 0: a joint cannot be set: The position of joint 'hinge' of 'r' is nan; "
-                           "it must be from -1e+06 to 1e+06 rad.");
+  EXPECT_EQ(error_of(bad),
+            "the recording's inputs of tick 0: a joint cannot be set: The position of joint "
+            "'hinge' of 'r' is nan; "
+            "it must be from -1e+06 to 1e+06 rad.");
   set.set_joint("knee");
-  EXPECT_NE(error_of(bad).find("'r' has no joint 'knee'; write one of 'hinge'."), std::string::npos) << error_of(bad);
+  EXPECT_NE(error_of(bad).find("'r' has no joint 'knee'; write one of 'hinge'."), std::string::npos)
+      << error_of(bad);
   set.set_entity("ghost");
   EXPECT_EQ(error_of(bad), "the recording's inputs of tick 0: there is no entity 'ghost'");
 }
@@ -229,18 +236,22 @@ TEST(Replay, SpawnsReadNoFileFromTheDisk) {
 TEST(Replay, AllThatIsSpawnedHasABoundUntilAReset) {
   testing::Recorder run;
   const auto spawn = [&](int i) {
-    const std::string xml = "<box id='s" + std::to_string(i) + "' size='.1,.1,.1' movable='false'><body position='5," +
-                            std::to_string(i) + ",1'/><!--" + std::string(1'000'000, 'x') + "--></box>";
+    const std::string xml =
+        "<box id='s" + std::to_string(i) + "' size='.1,.1,.1' movable='false'><body position='5," +
+        std::to_string(i) + ",1'/><!--" + std::string(1'000'000, 'x') + "--></box>";
     run.inputs().add_acts()->mutable_spawn()->set_xml(xml);
   };
   for (int i = 0; i < 66; ++i) spawn(i);
   run.inputs().add_acts()->mutable_reset()->set_seed(4);
   spawn(66);
   spawn(67);
-  EXPECT_EQ(error_of(run.recording).find("larger than"), std::string::npos) << error_of(run.recording);
+  EXPECT_EQ(error_of(run.recording).find("larger than"), std::string::npos)
+      << error_of(run.recording);
   spawn(0);
   for (int i = 100; i < 166; ++i) spawn(i);
-  EXPECT_NE(error_of(run.recording).find("an entity cannot be spawned: spawn: the file is larger than"), std::string::npos)
+  EXPECT_NE(
+      error_of(run.recording).find("an entity cannot be spawned: spawn: the file is larger than"),
+      std::string::npos)
       << error_of(run.recording);
 }
 

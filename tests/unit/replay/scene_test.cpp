@@ -54,7 +54,8 @@ TEST(EmbeddedScene, ItsSettingsAreCheckedAsThoseOfOptions) {
     return read_scene(run, embedded).scene;
   };
   EXPECT_EQ(set("arena/box[@id='low']/@mass").entities.size(), 3u);
-  for (const std::string path : {"//*[.//*]/@mass", "//*//*/@mass", "//*/following::*/@mass", "arena/ghost/@mass", "", "@"}) {
+  for (const std::string path : {"//*[.//*]/@mass", "//*//*/@mass", "//*/following::*/@mass",
+                                 "arena/ghost/@mass", "", "@"}) {
     EXPECT_THROW(set(path), scene::SceneError) << path;
   }
   EXPECT_THROW(set(std::string(1 << 20, '/')), scene::SceneError);
@@ -62,18 +63,22 @@ TEST(EmbeddedScene, ItsSettingsAreCheckedAsThoseOfOptions) {
 
 TEST(EmbeddedScene, TakesNoMoreMemoryThanOneOnTheDisk) {
   EmbeddedFiles embedded;
-  embedded.add("scenes/small.argos",
-               R"(<argos><framework><experiment ticks_per_second="10"/></framework><controllers>)"
-               R"(<external_controller id="c"><actuators/><sensors/><params large=")" + std::string(1'000'000, 'x') +
-               R"("/></external_controller></controllers><media/><physics_engines><dynamics3d id="d"/></physics_engines>)"
-               R"(<arena size="9,9,9"><distribute><position method="uniform" min="0,0,0" max="9,9,9"/>)"
-               R"(<orientation method="constant" values="0,0,0"/><entity quantity="5000" max_trials="1"><e-puck id="e">)"
-               R"(<controller config="c"/></e-puck></entity></distribute></arena></argos>)");
+  embedded.add(
+      "scenes/small.argos",
+      R"(<argos><framework><experiment ticks_per_second="10"/></framework><controllers>)"
+      R"(<external_controller id="c"><actuators/><sensors/><params large=")" +
+          std::string(1'000'000, 'x') +
+          R"("/></external_controller></controllers><media/><physics_engines><dynamics3d id="d"/></physics_engines>)"
+          R"(<arena size="9,9,9"><distribute><position method="uniform" min="0,0,0" max="9,9,9"/>)"
+          R"(<orientation method="constant" values="0,0,0"/><entity quantity="5000" max_trials="1"><e-puck id="e">)"
+          R"(<controller config="c"/></e-puck></entity></distribute></arena></argos>)");
   try {
     read_scene(start(), embedded);
     ADD_FAILURE();
   } catch (const scene::SceneError& error) {
-    EXPECT_NE(std::string(error.what()).find("is too many: each of these entities takes some 4.0 MB"), std::string::npos)
+    EXPECT_NE(
+        std::string(error.what()).find("is too many: each of these entities takes some 4.0 MB"),
+        std::string::npos)
         << error.what();
   }
 }
@@ -90,6 +95,24 @@ TEST(EmbeddedScene, HasTheRecordedHash) {
   EXPECT_EQ(read_scene(run, embedded).scene.physics.clock, scene::Clock::beta50);
   run.set_seed(0);
   EXPECT_THROW(read_scene(run, embedded), RecordingError);
+}
+
+TEST(RecordedCore, OfARunThatCanNotBeRepeatedIsToldWithItsVersion) {
+  v1::RunStart run = start();
+  scene::Scene scene;
+  EXPECT_NO_THROW(check_core(run, scene));
+  scene.physics.had_second_core = true;
+  run.mutable_build()->set_version("0.0.9");
+  try {
+    check_core(run, scene);
+    ADD_FAILURE();
+  } catch (const RecordingError& error) {
+    EXPECT_NE(std::string(error.what()).find("solver=\"sweeps\""), std::string::npos)
+        << error.what();
+    EXPECT_NE(std::string(error.what()).find("0.0.9"), std::string::npos) << error.what();
+  }
+  run.set_core(1);
+  EXPECT_NO_THROW(check_core(run, scene));
 }
 
 }  // namespace

@@ -31,9 +31,10 @@ TEST(Console, MessagesInJsonHaveNoEffectOnATerminalEither) {
     Console console({false, true});
     console.fault("bad \u009b31m \u009d0;x\u009c \x7f \u202e \x1b \U000e0041");
   }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(),
-            R"({"severity":"fault","text":"bad \u009b31m \u009d0;x\u009c \u007f \u202e \u001b \udb40\udc41"})"
-            "\n");
+  EXPECT_EQ(
+      testing::internal::GetCapturedStderr(),
+      R"({"severity":"fault","text":"bad \u009b31m \u009d0;x\u009c \u007f \u202e \u001b \udb40\udc41"})"
+      "\n");
 }
 
 }  // namespace

@@ -24,8 +24,9 @@ TEST(Gate, ReadsTimesSharesAndNumbers) {
 }
 
 TEST(Gate, NamesThePartThatIsWrong) {
-  for (const char* text : {"", "p99", "p99<", "p99<2", "p99<2%", "p98<2ms", "misses<2ms", "p99>2ms",
-                           "p99<-1ms", "p99<nanms", "p99<2ms,,", "p99<2ms,", "p99<0x10ms", "misses<101%", "late<1e3%"}) {
+  for (const char* text :
+       {"", "p99", "p99<", "p99<2", "p99<2%", "p98<2ms", "misses<2ms", "p99>2ms", "p99<-1ms",
+        "p99<nanms", "p99<2ms,,", "p99<2ms,", "p99<0x10ms", "misses<101%", "late<1e3%"}) {
     EXPECT_THROW(parse_gate(text), text::UsageError) << text;
   }
   for (const char* text : {"late<0", "misses<0%", "p99<0ms", "run<0.0", "max<0us"}) {
@@ -33,7 +34,9 @@ TEST(Gate, NamesThePartThatIsWrong) {
       parse_gate(text);
       ADD_FAILURE() << text;
     } catch (const text::UsageError& error) {
-      EXPECT_NE(std::string(error.what()).find("is never met: nothing is below 0"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("is never met: nothing is below 0"),
+                std::string::npos)
+          << error.what();
     }
   }
   EXPECT_EQ(parse_gate("misses<100%")[0].limit, 1);

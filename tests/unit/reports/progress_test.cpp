@@ -16,7 +16,8 @@ TEST(Progress, HasTotalShareAndTimeLeft) {
 
 TEST(Progress, TellsWhomItWaitsForWithin80Columns) {
   const Speed at{1, 20, 0.1, 0.2, 0.3};
-  EXPECT_EQ(progress_line(at, "r2: lim/bad.lua:3"), "t = 0.10 of 2.00 s (5 %), waiting for r2: lim/bad.lua:3");
+  EXPECT_EQ(progress_line(at, "r2: lim/bad.lua:3"),
+            "t = 0.10 of 2.00 s (5 %), waiting for r2: lim/bad.lua:3");
   EXPECT_EQ(progress_line({10, 20, 0.1, 5, 5}, ""),
             "t = 1.00 of 2.00 s (50 %), 2 s left, real-time factor 0.50, 5 ticks/s");
 }

@@ -59,9 +59,11 @@ TEST(ReportCard, TheGateIsMetIfAllMeetIt) {
 TEST(ReportCard, WithoutADeadlineNothingIsMissedSoNoGateOnMissesIsMet) {
   for (const char* gate : {"misses<100%", "run<9", "p99<40ms"}) {
     ReportCard waiting = card(gate);
-    for (auto& controller : waiting.controllers) controller.deadlines = {{scene::DeadlineAction::wait, 0, 0}};
+    for (auto& controller : waiting.controllers)
+      controller.deadlines = {{scene::DeadlineAction::wait, 0, 0}};
     EXPECT_EQ(passes(waiting), is_time(waiting.gate[0].subject)) << gate;
-    const bool tells_why = to_text(waiting).find(": no controller had a deadline") != std::string::npos;
+    const bool tells_why =
+        to_text(waiting).find(": no controller had a deadline") != std::string::npos;
     EXPECT_EQ(tells_why, reports::is_of_misses(waiting.gate[0].subject)) << to_text(waiting);
   }
 }
@@ -83,7 +85,8 @@ TEST(ReportCard, TheWarmUpDoesNotCount) {
 TEST(ReportCard, WhereNothingCountsNoGateIsMet) {
   const ReportCard warm = card("misses<1,late<1", 100'000);
   EXPECT_FALSE(passes(warm));
-  EXPECT_NE(to_text(warm).find("MISSED  misses<1: no observation counts"), std::string::npos) << to_text(warm);
+  EXPECT_NE(to_text(warm).find("MISSED  misses<1: no observation counts"), std::string::npos)
+      << to_text(warm);
   ReportCard none = card("late<100");
   none.controllers.clear();
   EXPECT_FALSE(passes(none));

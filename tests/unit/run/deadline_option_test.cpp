@@ -74,8 +74,9 @@ TEST(DeadlineOption, DirectorsAreNamedAsControllersAre) {
     deadlines_of({to_deadline("juge=hold:5")}, scene);
     ADD_FAILURE();
   } catch (const text::UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find("no controller or director 'juge'; did you mean 'judge'"),
-              std::string::npos)
+    EXPECT_NE(
+        std::string(error.what()).find("no controller or director 'juge'; did you mean 'judge'"),
+        std::string::npos)
         << error.what();
   }
 }

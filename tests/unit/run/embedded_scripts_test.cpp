@@ -34,7 +34,7 @@ TEST(EmbeddedScripts, NoNameLeavesTheFolder) {
   EXPECT_EQ(written, (std::set<std::string>{"a.lua", "b.lua", "c.lua", "d.lua", "e.lua", "f.lua"}));
 }
 
-/// Of the one director that such a scene has.
+/// Script of the only director of such a scene.
 std::string script_of_director(const std::string& script, const std::string& scene_path,
                                const std::vector<std::string>& names) {
   replay::EmbeddedFiles files;
@@ -46,23 +46,31 @@ std::string script_of_director(const std::string& script, const std::string& sce
 }
 
 TEST(EmbeddedScripts, AScriptThatIsNamedFromTheRootIsThatOfItsFolder) {
-  EXPECT_EQ(script_of_director("/a/left/main.lua", "scene.argos", {"left/main.lua", "right/main.lua"}),
-            "/below/left/main.lua");
+  EXPECT_EQ(
+      script_of_director("/a/left/main.lua", "scene.argos", {"left/main.lua", "right/main.lua"}),
+      "/below/left/main.lua");
   EXPECT_EQ(script_of_director("/a/left/main.lua", "b/c/scene.argos", {"../left/main.lua"}),
             "/below/_up_/left/main.lua");
-  EXPECT_EQ(script_of_director("/a/main.lua", "scene.argos", {"main.lua", "parts/main.lua"}), "/below/main.lua");
+  EXPECT_EQ(script_of_director("/a/main.lua", "scene.argos", {"main.lua", "parts/main.lua"}),
+            "/below/main.lua");
   EXPECT_EQ(script_of_director("/a/main.lua", "/b/scene.argos", {"/a/main.lua", "/b/main.lua"}),
             "/below/a/main.lua");
-  EXPECT_EQ(script_of_director("mine.lua", "scene.argos", {"allowed/mine.lua"}), "/below/allowed/mine.lua");
+  EXPECT_EQ(script_of_director("mine.lua", "scene.argos", {"allowed/mine.lua"}),
+            "/below/allowed/mine.lua");
 }
 
 TEST(EmbeddedScripts, AScriptOfAnotherFolderIsNotTakenForIt) {
   using Names = std::vector<std::string>;
-  for (const Names& names : {Names{"../right/main.lua"}, {"right/main.lua"}, {"/a/right/main.lua"},
-                             {"left/main.lua", "main.lua"}, {}}) {
-    EXPECT_THROW(script_of_director("/a/left/main.lua", "/a/scenes/scene.argos", names), replay::RecordingError);
+  for (const Names& names : {Names{"../right/main.lua"},
+                             {"right/main.lua"},
+                             {"/a/right/main.lua"},
+                             {"left/main.lua", "main.lua"},
+                             {}}) {
+    EXPECT_THROW(script_of_director("/a/left/main.lua", "/a/scenes/scene.argos", names),
+                 replay::RecordingError);
   }
-  EXPECT_THROW(script_of_director("main.lua", "scene.argos", {"x/main.lua", "y/main.lua"}), replay::RecordingError);
+  EXPECT_THROW(script_of_director("main.lua", "scene.argos", {"x/main.lua", "y/main.lua"}),
+               replay::RecordingError);
 }
 
 }  // namespace

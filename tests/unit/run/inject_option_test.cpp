@@ -103,7 +103,8 @@ TEST(InjectOption, DirectorsAreNamedAsControllersAre) {
     check_losses(injections, scene, std::vector<network::Config::Deadline>(3));
     ADD_FAILURE();
   } catch (const text::UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find("director 'judge'"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("director 'judge'"), std::string::npos)
+        << error.what();
   }
 }
 

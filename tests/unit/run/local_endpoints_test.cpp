@@ -26,7 +26,8 @@ class LocalEndpointsTest : public ::testing::Test {
 TEST_F(LocalEndpointsTest, OfServersAreInAFolderOfThisUser) {
   {
     LocalEndpoints local(nullptr);
-    EXPECT_TRUE(local.of_server("some/vehicle.argos").starts_with("ipc://" + shared_ + "/vehicle-"));
+    EXPECT_TRUE(
+        local.of_server("some/vehicle.argos").starts_with("ipc://" + shared_ + "/vehicle-"));
     EXPECT_EQ(std::filesystem::status(shared_).permissions(), std::filesystem::perms::owner_all);
   }
   EXPECT_FALSE(std::filesystem::exists(shared_)) << "nobody uses it any more";

@@ -91,7 +91,8 @@ TEST_F(Spawning, AFailureIsNotThatOfARobotOfASnapshotAtItsPlace) {
 
 TEST_F(Spawning, DeparturesAreToldTwentyAtOnceThenOneASecond) {
   std::vector<std::string> told;
-  PeerReports telling{world, console, [&](auto, auto, std::string_view text) { told.emplace_back(text); }};
+  PeerReports telling{world, console,
+                      [&](auto, auto, std::string_view text) { told.emplace_back(text); }};
   std::uint64_t tick = 0;
   const auto take = [&](int count, auto now) {
     network::Report report;

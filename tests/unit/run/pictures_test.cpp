@@ -54,14 +54,17 @@ TEST(PicturePath, HasOnePlaceForANumberAndNoOtherDirection) {
     }
     return "";
   };
-  for (const char* good : {"", "a.png", "%d.png", "f%03d.png", "100%/f%02d.png", "50%.png", "50% off.png", "%%.png", "%"}) {
+  for (const char* good : {"", "a.png", "%d.png", "f%03d.png", "100%/f%02d.png", "50%.png",
+                           "50% off.png", "%%.png", "%"}) {
     EXPECT_EQ(complaint(good), "") << good;
   }
   EXPECT_EQ(complaint("%03d_%03d.png"),
-            "--out is '%03d_%03d.png': '%03d' stands behind another place for a number; write %03d once, for the number of the "
+            "--out is '%03d_%03d.png': '%03d' stands behind another place for a number; write %03d "
+            "once, for the number of the "
             "picture");
   EXPECT_EQ(complaint("f%s.png"),
-            "--out is 'f%s.png': '%s' is no place for a number; write %03d once, for the number of the picture");
+            "--out is 'f%s.png': '%s' is no place for a number; write %03d once, for the number of "
+            "the picture");
   for (const char* bad : {"%-3d.png", "%03i.png", "%x%d.png", "f%99999999999999999999d.png"}) {
     EXPECT_NE(complaint(bad), "") << bad;
   }

@@ -39,8 +39,8 @@ struct Two {
 TEST(RadioWatch, TellsOfRadiosThatNeverFellSilent) {
   Two two;
   for (int i = 0; i < 20; ++i) two.tick({0, 1});
-  EXPECT_EQ(two.watch.warning(two.layout).find(
-                "radio 'r' of 'a' and 1 more sent at every tick and so heard nothing"),
+  EXPECT_EQ(two.watch.warning(two.layout)
+                .find("radio 'r' of 'a' and 1 more sent at every tick and so heard nothing"),
             0u)
       << two.watch.warning(two.layout);
 }
@@ -54,7 +54,9 @@ TEST(RadioWatch, TellsOfMessagesThatWereTooMany) {
     observations.radio_messages.left_out = left_out;
     two.watch.tick(observations, {});
   }
-  EXPECT_EQ(two.watch.warning(two.layout).find("from tick 1 on, 12 radio messages were not received: all radios together"), 0u)
+  EXPECT_EQ(two.watch.warning(two.layout)
+                .find("from tick 1 on, 12 radio messages were not received: all radios together"),
+            0u)
       << two.watch.warning(two.layout);
 }
 
@@ -63,7 +65,8 @@ TEST(RadioWatch, IsQuietAboutOthers) {
   for (int i = 0; i < 20; ++i) alone.tick({0});
   EXPECT_EQ(alone.watch.warning(alone.layout), "") << "there was nothing to hear";
   Two pauses;
-  for (int i = 0; i < 20; ++i) pauses.tick(i % 4 == 0 ? std::vector<std::size_t>{} : std::vector<std::size_t>{0, 1});
+  for (int i = 0; i < 20; ++i)
+    pauses.tick(i % 4 == 0 ? std::vector<std::size_t>{} : std::vector<std::size_t>{0, 1});
   EXPECT_EQ(pauses.watch.warning(pauses.layout), "");
   Two hears;
   for (int i = 0; i < 20; ++i) hears.tick({0, 1}, {0, 1});

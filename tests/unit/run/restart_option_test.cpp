@@ -15,7 +15,8 @@ TEST(RestartOption, ANumberForAllOrForOneController) {
 }
 
 TEST(RestartOption, WrongTextsAreRefused) {
-  for (const char* text : {"", "robot", "robot=", "=2", "robot=-1", "robot=1.5", "robot=99999999"}) {
+  for (const char* text :
+       {"", "robot", "robot=", "=2", "robot=-1", "robot=1.5", "robot=99999999"}) {
     EXPECT_THROW(to_restart(text), text::UsageError) << text;
   }
 }

@@ -88,9 +88,10 @@ TEST_F(Additions, ARobotUsesAControllerOfTheScene) {
 }
 
 TEST_F(Additions, HaveTheSameFaultsAsInTheArena) {
-  EXPECT_EQ(fault("<box id="),
-            "spawn:1:9: malformed XML: the file ends too early, in the tag <box> of line 1; complete "
-            "it, and close every element that was opened");
+  EXPECT_EQ(
+      fault("<box id="),
+      "spawn:1:9: malformed XML: the file ends too early, in the tag <box> of line 1; complete "
+      "it, and close every element that was opened");
   EXPECT_EQ(fault("<box id=\"x\"\n movable=\"maybe\" size=\"1,1,1\" mass=\"1\"><body "
                   "position=\"0,0,0\"/></box>"),
             "spawn:2:11: movable=\"maybe\" of <box> is not a truth value; write true or false (in "
@@ -114,7 +115,9 @@ TEST_F(Additions, MustBeEntitiesWithABody) {
 
 TEST_F(Additions, ThatAreEmptyAreToldWhatToWrite) {
   for (const std::string text : {"", "\n", "box"}) {
-    EXPECT_EQ(fault(text).substr(0, 60), "spawn: there is no element; write one, such as <box id=\"b\" s") << text;
+    EXPECT_EQ(fault(text).substr(0, 60),
+              "spawn: there is no element; write one, such as <box id=\"b\" s")
+        << text;
   }
 }
 
@@ -145,11 +148,13 @@ TEST_F(Additions, HaveElementsOf1000AttributesAtMost) {
   std::string params;
   for (int i = 0; i < 1000; ++i) params += " a" + std::to_string(i) + "='1'";
   const auto robot = [&](const std::string& more) {
-    return "<prototype id='p' model='block'><body position='0,0,3'/><controller config='lua'><params" + params + more +
-           "/></controller></prototype>";
+    return "<prototype id='p' model='block'><body position='0,0,3'/><controller "
+           "config='lua'><params" +
+           params + more + "/></controller></prototype>";
   };
   EXPECT_TRUE(add(robot("")).ok());
-  EXPECT_EQ(fault(robot(" b='1'")), "spawn:1:82: <params> has more than 1000 attributes; write fewer");
+  EXPECT_EQ(fault(robot(" b='1'")),
+            "spawn:1:82: <params> has more than 1000 attributes; write fewer");
 }
 
 TEST_F(Additions, WithManyMistakesAreNotReadToTheirEnd) {
@@ -157,10 +162,12 @@ TEST_F(Additions, WithManyMistakesAreNotReadToTheirEnd) {
   for (int i = 0; i < 300; ++i) {
     const std::string name = std::string(60, 'x') + std::to_string(i);
     links += "<link id='" + name + "' geometry='sphere' radius='1' mass='1'/>";
-    joints += "<joint type='fixed'><parent link='y" + name + "'/><child link='z" + name + "'/></joint>";
+    joints +=
+        "<joint type='fixed'><parent link='y" + name + "'/><child link='z" + name + "'/></joint>";
   }
-  const Addition addition = add("<prototype id='p'><body position='0,0,0'/><links ref='" + std::string(60, 'x') + "0'>" + links +
-                                "</links><joints>" + joints + "</joints></prototype>");
+  const Addition addition =
+      add("<prototype id='p'><body position='0,0,0'/><links ref='" + std::string(60, 'x') + "0'>" +
+          links + "</links><joints>" + joints + "</joints></prototype>");
   ASSERT_EQ(addition.problems.size(), 21u);
   EXPECT_NE(to_string(addition.problems.back()).find("20 faults; the rest"), std::string::npos);
 }

@@ -24,7 +24,8 @@ TEST(Controllers, OwnDeadlinesReplaceTheDeadlineOfAll) {
            R"(<lua_controller id="c" deadline="wait"/></controllers>)");
   EXPECT_EQ(controllers[0].deadline, (DeadlinePolicy{DeadlineAction::hold, 50, 3}));
   EXPECT_EQ(controllers[1].deadline, (DeadlinePolicy{DeadlineAction::zero, 20, 0}));
-  EXPECT_EQ(controllers[2].deadline, DeadlinePolicy{});  // written, so the deadline of all does not replace it
+  EXPECT_EQ(controllers[2].deadline,
+            DeadlinePolicy{});  // written, so the deadline of all does not replace it
   EXPECT_EQ(read(R"(<controllers><x id="a" deadline="drop" deadline_ms="1"/></controllers>)")[0]
                 .deadline->action,
             DeadlineAction::drop);
@@ -56,8 +57,9 @@ TEST(Directors, AreReadWithWhatStartsThem) {
   EXPECT_EQ(directors[1].params.at(0).second, "0.3") << "the scene's parameters are all directors'";
   EXPECT_EQ(directors[2].id, "loop_functions");
   EXPECT_EQ(directors[2].script, "rule.lua");
-  EXPECT_NE(all_problems(result).find("<loop_functions> is read as <director id=\"loop_functions\">"),
-            std::string::npos);
+  EXPECT_NE(
+      all_problems(result).find("<loop_functions> is read as <director id=\"loop_functions\">"),
+      std::string::npos);
 }
 
 TEST(Directors, OneNeedsNoId) {
@@ -71,11 +73,13 @@ TEST(Directors, OneNeedsNoId) {
 TEST(Directors, HaveNoIdOfAnEntity) {
   SceneText text;
   text.rest = R"(<director id="p" command="./feed"/>)";
-  text.arena = R"(<arena size="2,2,1" center="0,0,0.5"><prototype id="p" movable="false"><links ref="l">)"
-               R"(<link id="l" geometry="box" size="1,1,1" mass="1"/></links><body/></prototype></arena>)";
+  text.arena =
+      R"(<arena size="2,2,1" center="0,0,0.5"><prototype id="p" movable="false"><links ref="l">)"
+      R"(<link id="l" geometry="box" size="1,1,1" mass="1"/></links><body/></prototype></arena>)";
   const ReadResult result = text.read();
-  EXPECT_NE(all_problems(result).find("id=\"p\" of <prototype> is also the id of the director at line "),
-            std::string::npos)
+  EXPECT_NE(
+      all_problems(result).find("id=\"p\" of <prototype> is also the id of the director at line "),
+      std::string::npos)
       << all_problems(result);
 }
 
@@ -108,9 +112,10 @@ TEST(Controllers, KindsAndParams) {
 
 TEST(Controllers, AMisspeltOneIsAFault) {
   const auto told = [](const std::string& name) {
-    const auto result = read_text("<a><controllers><" + name + " id=\"c\"><actuators/><sensors/></" +
-                                      name + "></controllers></a>",
-                                  "a.argos");
+    const auto result =
+        read_text("<a><controllers><" + name + " id=\"c\"><actuators/><sensors/></" + name +
+                      "></controllers></a>",
+                  "a.argos");
     return count_containing(
         faults(result),
         "unknown element <" + name + "> in <controllers>; did you mean <lua_controller>?");
@@ -174,8 +179,9 @@ TEST(Controllers, EveryNameOfTheDialectIsKnown) {
   const ReadResult result = text.read();
   EXPECT_TRUE(result.ok()) << all_problems(result);
   const auto warnings = texts_of(result, Problem::Severity::warning);
-  for (const char* subject : {": light sensors do not work yet: <light> is checked, and its table in Lua is empty",
-                              "quadrotor_speed devices do not work yet"}) {
+  for (const char* subject :
+       {": light sensors do not work yet: <light> is checked, and its table in Lua is empty",
+        "quadrotor_speed devices do not work yet"}) {
     EXPECT_EQ(count_containing(warnings, subject), 1u) << subject << all_problems(result);
   }
   const auto& to_come = result.scene.controllers.at(0).devices.to_come;

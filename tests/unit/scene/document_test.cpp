@@ -34,9 +34,11 @@ TEST_F(Folder, AValidFileIsRead) {
 }
 
 TEST_F(Folder, MissingFilesAndOtherKindsOfFilesAreFaults) {
-  EXPECT_TRUE(contains(only_fault(read_file(path / "none.argos")), "does not exist; check its path"));
+  EXPECT_TRUE(
+      contains(only_fault(read_file(path / "none.argos")), "does not exist; check its path"));
   const auto valid = write("valid.argos", SceneText{}.str());
-  EXPECT_TRUE(contains(only_fault(read_file(path / "valid")), "does not exist; write " + valid.string()));
+  EXPECT_TRUE(
+      contains(only_fault(read_file(path / "valid")), "does not exist; write " + valid.string()));
   EXPECT_TRUE(contains(only_fault(read_file(path)), "is a folder"));
   ASSERT_EQ(::mkfifo((path / "fifo").c_str(), 0600), 0);
   EXPECT_TRUE(contains(only_fault(read_file(path / "fifo")), "not a regular file"));
@@ -45,26 +47,32 @@ TEST_F(Folder, MissingFilesAndOtherKindsOfFilesAreFaults) {
 
 TEST(Encoding, AnotherThanUtf8IsAFault) {
   const auto read_as = [](const std::string& encoding) {
-    return read_text("<?xml version=\"1.0\" encoding=" + encoding + "?>\n" + SceneText{}.str(), "scene.argos");
+    return read_text("<?xml version=\"1.0\" encoding=" + encoding + "?>\n" + SceneText{}.str(),
+                     "scene.argos");
   };
   for (const char* encoding : {"\"UTF-8\"", "'utf-8'", "\"US-ASCII\"", "\"ISO-8859-1\"", "\"\""}) {
     EXPECT_TRUE(read_as(encoding).problems.empty()) << encoding << all_problems(read_as(encoding));
   }
   for (const char* encoding : {"\"EBCDIC\"", "\"UTF-16\"", "'Shift_JIS'"}) {
-    EXPECT_TRUE(contains(only_fault(read_as(encoding)), "is not read; save the file in UTF-8")) << encoding;
+    EXPECT_TRUE(contains(only_fault(read_as(encoding)), "is not read; save the file in UTF-8"))
+        << encoding;
   }
   EXPECT_TRUE(contains(only_fault(read_as("\"EBCDIC\"")), "encoding=\"EBCDIC\""));
 }
 
 TEST(Root, ThatIsNearlyTheUsualOneIsDoubted) {
-  for (const std::string name : {"argos-config", "argos_configuration", "argos-configuraton", "Argos-configuration"}) {
+  for (const std::string name :
+       {"argos-config", "argos_configuration", "argos-configuraton", "Argos-configuration"}) {
     std::string text = SceneText{}.str();
-    for (auto at = text.find("argos-configuration"); at != std::string::npos; at = text.find("argos-configuration", at + name.size())) {
+    for (auto at = text.find("argos-configuration"); at != std::string::npos;
+         at = text.find("argos-configuration", at + name.size())) {
       text.replace(at, 19, name);
     }
     const ReadResult result = read_text(text, "scene.argos");
     EXPECT_TRUE(result.ok());
-    EXPECT_TRUE(contains(all_problems(result), "<" + name + ">; did you mean <argos-configuration>?")) << all_problems(result);
+    EXPECT_TRUE(
+        contains(all_problems(result), "<" + name + ">; did you mean <argos-configuration>?"))
+        << all_problems(result);
   }
 }
 
@@ -120,16 +128,20 @@ TEST(Text, MalformedXmlIsAFaultAtItsPlace) {
 }
 
 TEST(Text, LinesEndWithLineFeedReturnOrBoth) {
-  for (const char* text : {"<a>\n\n  <b></c>\n</a>", "<a>\r\r  <b></c>\r</a>", "<a>\r\n\r\n  <b></c>\r\n</a>"}) {
-    EXPECT_TRUE(contains(only_fault(read_text(text, "t")), "t:3:6: malformed XML: </c> does not close <b> of line 3"));
+  for (const char* text :
+       {"<a>\n\n  <b></c>\n</a>", "<a>\r\r  <b></c>\r</a>", "<a>\r\n\r\n  <b></c>\r\n</a>"}) {
+    EXPECT_TRUE(contains(only_fault(read_text(text, "t")),
+                         "t:3:6: malformed XML: </c> does not close <b> of line 3"));
   }
 }
 
 TEST(Text, WhatOtherParsersRefuseIsTold) {
   SceneText text;
   text.arena = arena_with(R"(<box id="a < b" size="1,1,1" movable="false"><body/></box>)");
-  EXPECT_TRUE(contains(only_fault(text.read()), "malformed XML: < inside a value; write &lt;")) << all_problems(text.read());
-  text.arena = arena_with(R"(<!-- a < b > c, "d' --><box id="a &lt; b > c" size="1,1,1" movable="false"><body/></box>)");
+  EXPECT_TRUE(contains(only_fault(text.read()), "malformed XML: < inside a value; write &lt;"))
+      << all_problems(text.read());
+  text.arena = arena_with(
+      R"(<!-- a < b > c, "d' --><box id="a &lt; b > c" size="1,1,1" movable="false"><body/></box>)");
   EXPECT_TRUE(text.read().problems.empty()) << all_problems(text.read());
   for (const char* comment : {"<!-- a -- b -->", "<!-- a --->", "<!---------->"}) {
     text.arena = arena_with(comment);
@@ -149,7 +161,8 @@ TEST_F(Folder, TextOutsideOfTheRootElementIsTold) {
     const ReadResult result = read_file(write("told.argos", text));
     EXPECT_TRUE(result.ok()) << all_problems(result);
     ASSERT_EQ(result.problems.size(), 1u) << all_problems(result);
-    EXPECT_TRUE(contains(result.problems[0].text, "outside of the root element")) << all_problems(result);
+    EXPECT_TRUE(contains(result.problems[0].text, "outside of the root element"))
+        << all_problems(result);
   }
 }
 
@@ -179,7 +192,8 @@ TEST(Text, NoMessageQuotesMoreThanAPartOfALongText) {
   const std::string word(5000, 'x');
   std::string words, numbers, condition = "${";
   for (int i = 0; i < 1000; ++i) words += "a b ", numbers += "1, ", condition += "a ";
-  const ReadOptions options{.variation = {{{"//@g", words}, {"arena/@" + word, word}}, {{"gain", numbers}, {"none", words}}}};
+  const ReadOptions options{.variation = {{{"//@g", words}, {"arena/@" + word, word}},
+                                          {{"gain", numbers}, {"none", words}}}};
   std::size_t tried = 0;
   const auto check = [&](const std::string& text) {
     for (const ReadOptions& each : {ReadOptions{}, options}) {
@@ -192,7 +206,8 @@ TEST(Text, NoMessageQuotesMoreThanAPartOfALongText) {
   for (std::size_t begin = 0; begin < sample.size();) {
     constexpr std::string_view ends = "<>/=\" \n";
     const std::size_t end = std::min(sample.find_first_of(ends, begin + 1), sample.size());
-    for (const std::string& longer : {word, words, numbers, condition + "}", "\"" + word, "=" + word, word + " " + word}) {
+    for (const std::string& longer :
+         {word, words, numbers, condition + "}", "\"" + word, "=" + word, word + " " + word}) {
       check(std::string(sample.substr(0, begin + 1)) + longer + std::string(sample.substr(end)));
     }
     begin = end;
@@ -206,7 +221,8 @@ TEST(Text, NoMessageQuotesMoreThanAPartOfALongText) {
 TEST(Text, AnXmlDeclarationBehindTheBeginningIsTold) {
   constexpr std::string_view declaration = "<?xml version=\"1.0\" ?>";
   const std::string scene = SceneText{}.str(), declared = std::string(declaration) + "\n" + scene;
-  for (const std::string& good : {declared, "\xEF\xBB\xBF" + declared, "<?xml-stylesheet href='a'?>\n<?xmlx?>" + scene}) {
+  for (const std::string& good :
+       {declared, "\xEF\xBB\xBF" + declared, "<?xml-stylesheet href='a'?>\n<?xmlx?>" + scene}) {
     EXPECT_TRUE(read_text(good, "t").problems.empty()) << all_problems(read_text(good, "t"));
   }
   const auto told = [](const std::string& text) {
@@ -218,8 +234,10 @@ TEST(Text, AnXmlDeclarationBehindTheBeginningIsTold) {
   EXPECT_TRUE(contains(told("\n" + declared), "t:2:1: " + text)) << told("\n" + declared);
   EXPECT_TRUE(contains(told("<!-- a -->\n\n" + declared), "t:3:1: " + text));
   EXPECT_TRUE(contains(told(declared + "<?XML?>"), ": " + text));
-  const std::string type = "<!DOCTYPE argos-configuration [<!-- > ' --><!ELEMENT a (#PCDATA)><?b ' ?>] >\n";
-  EXPECT_TRUE(contains(all_problems(read_text(type + declared, "t")), "t:2:1: " + text)) << all_problems(read_text(type + declared, "t"));
+  const std::string type =
+      "<!DOCTYPE argos-configuration [<!-- > ' --><!ELEMENT a (#PCDATA)><?b ' ?>] >\n";
+  EXPECT_TRUE(contains(all_problems(read_text(type + declared, "t")), "t:2:1: " + text))
+      << all_problems(read_text(type + declared, "t"));
   SceneText inside;
   inside.arena = arena_with(std::string(declaration));
   EXPECT_TRUE(contains(told(inside.str()), "t:4:")) << told(inside.str());

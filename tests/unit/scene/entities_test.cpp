@@ -116,8 +116,10 @@ TEST(Joints, CyclesAndUnconnectedLinksAreReportedOnceEach) {
   found = tree_faults(abc, joint("1", "base", "a") + joint("2", "a", "b") + joint("3", "b", "c") +
                                joint("4", "c", "base"));
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(count_containing(found, "joint \"4\" has the reference link \"base\" as its child; links form a tree, in "
-                                    "which no loop of joints can be closed: leave this joint out"),
+  EXPECT_EQ(count_containing(
+                found,
+                "joint \"4\" has the reference link \"base\" as its child; links form a tree, in "
+                "which no loop of joints can be closed: leave this joint out"),
             1u);
   found = tree_faults(link("base") + link("a"), joint("1", "a", "a"));
   EXPECT_EQ(count_containing(found, "loop"), 1u);
@@ -130,13 +132,15 @@ TEST(Joints, ALoopIsToldWhatToDoInsteadAndAReversedJointToBeSwapped) {
   for (const auto& last : {joint("4", "c", "b"), joint("4", "b", "c")}) {
     const auto found = tree_faults(ring, open + last);
     ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(count_containing(found, "no loop of joints can be closed: leave this joint out"), 1u) << found[0];
+    EXPECT_EQ(count_containing(found, "no loop of joints can be closed: leave this joint out"), 1u)
+        << found[0];
   }
   EXPECT_TRUE(tree_faults(ring, open).empty());  // the advice
   auto found = tree_faults(link("base") + link("a"), joint("1", "a", "base"));
   EXPECT_EQ(count_containing(found, "as its child; swap its parent and child"), 1u);
   found = tree_faults(ring, joint("1", "base", "a") + joint("2", "a", "b") + joint("3", "c", "b"));
-  EXPECT_EQ(count_containing(found, "a second parent, after joint \"2\"; swap its parent and child"), 1u);
+  EXPECT_EQ(
+      count_containing(found, "a second parent, after joint \"2\"; swap its parent and child"), 1u);
 }
 
 TEST(Links, UnnamedOnesAreNumbered) {
@@ -205,12 +209,15 @@ TEST(Distribute, TwoGroupsMustNotCreateTheSameIds) {
 }
 
 TEST(Distribute, LightsCountAsCopies) {
-  const std::string begin = R"(<distribute><position method="constant" values="0,0,0"/>)"
-                            R"(<orientation method="constant" values="0,0,0"/><entity max_trials="0" quantity=")";
-  const std::string light = R"("><light id="" color="red" intensity="1" medium="leds"/></entity></distribute>)";
+  const std::string begin =
+      R"(<distribute><position method="constant" values="0,0,0"/>)"
+      R"(<orientation method="constant" values="0,0,0"/><entity max_trials="0" quantity=")";
+  const std::string light =
+      R"("><light id="" color="red" intensity="1" medium="leds"/></entity></distribute>)";
   SceneText text;  // an empty id: no ids of copies are made
   text.arena = arena_with(begin + "1000000" + light + begin + "1" + light);
-  EXPECT_EQ(count_containing(faults(text.read()), "makes more than 1000000 distributed entities"), 1u);
+  EXPECT_EQ(count_containing(faults(text.read()), "makes more than 1000000 distributed entities"),
+            1u);
 }
 
 TEST(Arena, LightsAndGroundsAreCheckedWithoutEffect) {

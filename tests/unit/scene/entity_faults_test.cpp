@@ -67,10 +67,12 @@ constexpr Row entity_rows[] = {
     {"No_extent", Part::entity, R"(<sphere id="a" radius="0" movable="false"><body/></sphere>)",
      R"(5:24: radius="0" of <sphere> is below 1e-6 m, the least length of a scene: what has no extent has no )"
      "inertia and touches nothing; write 1e-6 to 1e6 m"},
-    {"Too_light", Part::entity, R"(<sphere id="a" radius="1" mass="1e-12" movable="true"><body/></sphere>)",
+    {"Too_light", Part::entity,
+     R"(<sphere id="a" radius="1" mass="1e-12" movable="true"><body/></sphere>)",
      R"(mass="1e-12" of <sphere> is below 1e-9 kg, the least mass of a body: contacts of bodies whose masses are )"
      "further apart are inexact; write 1e-9 to 1e9 kg"},
-    {"Too_heavy", Part::entity, R"(<sphere id="a" radius="1" mass="1e12" movable="true"><body/></sphere>)",
+    {"Too_heavy", Part::entity,
+     R"(<sphere id="a" radius="1" mass="1e12" movable="true"><body/></sphere>)",
      R"(mass="1e12" of <sphere> is above 1e9 kg, the largest mass of a body)"},
 };
 INSTANTIATE_TEST_SUITE_P(Entities, Fault, testing::ValuesIn(entity_rows),

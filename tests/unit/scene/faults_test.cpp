@@ -121,11 +121,9 @@ constexpr Row framework_rows[] = {
     {"Director_without_id_twice", Part::rest,
      "<director script=\"a.lua\"/><director script=\"b.lua\"/>\n",
      "7:27: <director> lacks the attribute id"},
-    {"Director_starts_twice", Part::rest,
-     "<director id=\"a\" script=\"a.lua\" command=\"./b\"/>\n",
+    {"Director_starts_twice", Part::rest, "<director id=\"a\" script=\"a.lua\" command=\"./b\"/>\n",
      "7:1: <director> has a script and a command; write one of them"},
-    {"Director_twice", Part::rest, "<director id=\"a\"/><director id=\"a\"/>\n",
-     "director"},
+    {"Director_twice", Part::rest, "<director id=\"a\"/><director id=\"a\"/>\n", "director"},
     {"Director_one_too_many", Part::rest,
      "<director id=\"a\"/><director id=\"b\"/><director id=\"c\"/><director id=\"d\"/>"
      "<director id=\"e\"/>\n",
@@ -170,10 +168,12 @@ constexpr Row controller_rows[] = {
      "<joint> has more than one of max_force, max_torque and max_impulse; write one"},
     {"Device_of_eye_bots", Part::controllers,
      R"(<controllers><lua_controller id="c"><sensors><eyebot_light implementation="rot_z_only"/></sensors></lua_controller></controllers>)",
-     "<eyebot_light> is a device of the eye-bot, which is not modelled here; remove it, or write <light>"},
+     "<eyebot_light> is a device of the eye-bot, which is not modelled here; remove it, or write "
+     "<light>"},
     {"Device_of_kilobots", Part::controllers,
      R"(<controllers><lua_controller id="c"><sensors><kilobot_light implementation="rot_z_only"/></sensors></lua_controller></controllers>)",
-     "<kilobot_light> is a device of the kilobot, which is not modelled here; remove it, or write <light>"},
+     "<kilobot_light> is a device of the kilobot, which is not modelled here; remove it, or write "
+     "<light>"},
     {"Device_of_drones", Part::controllers,
      R"(<controllers><lua_controller id="c"><actuators><drone_flight_system implementation="default"/></actuators></lua_controller></controllers>)",
      "<drone_flight_system> is a device of the drone, which is not modelled here; remove it"},

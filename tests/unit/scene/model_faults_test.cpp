@@ -50,7 +50,9 @@ constexpr Row rows[] = {
      "test.argos:5:20: model=\"crate\" of <box> names no model; define it in <models>"},
     {"Misspelt", "<prototype id=\"a\" model=\"blok\"><body/></prototype>", include_block,
      "test.argos:5:26: model=\"blok\" of <prototype> names no model; did you mean \"block\"?"},
-    {"MisspeltForAController", "<prototype id=\"a\" model=\"blok\"><body/><controller config=\"blink\"/></prototype>", include_block,
+    {"MisspeltForAController",
+     "<prototype id=\"a\" model=\"blok\"><body/><controller config=\"blink\"/></prototype>",
+     include_block,
      "test.argos:5:26: model=\"blok\" of <prototype> names no model; did you mean \"block\"?"},
     {"OtherElement", "<box id=\"a\" model=\"block\"><body/></box>", include_block,
      "test.argos:5:20: model=\"block\" of <box> is a <prototype>, defined at "
@@ -66,7 +68,8 @@ constexpr Row rows[] = {
     {"Attribute", "<box id=\"a\" model=\"crate\" friction=\"1\"><body/></box>",
      "<models><box id=\"crate\" size=\"1,1,1\" movable=\"true\" mass=\"1\"/></models>",
      "test.argos:5:27: the attribute friction=\"1\" can't stand in this <box>: the model has it"},
-    {"AttributeOfLinks", "<prototype id=\"a\" model=\"block\" mass=\"3\"><body/></prototype>", include_block,
+    {"AttributeOfLinks", "<prototype id=\"a\" model=\"block\" mass=\"3\"><body/></prototype>",
+     include_block,
      "test.argos:5:33: <prototype> has an unknown attribute mass=\"3\"; a <link> has it"},
     {"NoBody", "<prototype id=\"a\" model=\"block\"/>", include_block,
      "test.argos:5:1: <prototype> lacks the element <body>"},
@@ -77,7 +80,8 @@ constexpr Row rows[] = {
      include_block,
      "test.argos:5:60: config=\"blnk\" of <controller> names no controller; did you mean"},
     {"SecondModel", "", "<include file=\"parts/block.argos\"/><include file=\"again\"/>",
-     "again:1:27: id=\"block\" of <prototype> is the id of an earlier model at parts/block.argos:6:1"},
+     "again:1:27: id=\"block\" of <prototype> is the id of an earlier model at "
+     "parts/block.argos:6:1"},
     {"SecondController", "", "<include file=\"other\"/>",
      "other:2:26: id=\"other\" of <external_controller> is the id of an earlier controller at "
      "test.argos:3:14; give each its own"},
@@ -99,7 +103,8 @@ constexpr Row rows[] = {
     {"Arena", "", "<include file=\"arena\"/>",
      "arena:2:1: <arena> can't stand in this <m>: a file that is included may have <include>, "
      "<models>"},
-    {"Malformed", "", "<include file=\"bad\"/>", "bad:2:1: malformed XML: <b> is not closed before </a>"},
+    {"Malformed", "", "<include file=\"bad\"/>",
+     "bad:2:1: malformed XML: <b> is not closed before </a>"},
     {"Empty", "", "<include file=\"empty\"/>", "empty: the file is empty"},
     {"InTheArena", "<include file=\"parts/block.argos\"/>", "",
      "test.argos:5:1: unknown element <include> in <arena>"},

@@ -40,7 +40,8 @@ TEST(Names, AreListedOnceEach) {
   EXPECT_EQ(list_known(known), "known here: id, orientation, position");
   for (int i = 0; i < 20; ++i) known.push_back("position");
   EXPECT_EQ(list_known(known), "known here: id, orientation, position");
-  const std::vector<std::string> others{"a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m"};
+  const std::vector<std::string> others{"a", "b", "c", "d", "e", "f", "g",
+                                        "h", "i", "j", "k", "l", "m"};
   known.assign(others.begin(), others.end());
   EXPECT_EQ(list_known(known), "known here: a, b, c, d, e, f, g, h, i, j, k, l, …");
 }

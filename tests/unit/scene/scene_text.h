@@ -86,8 +86,8 @@ inline std::string joint(const std::string& id, const std::string& parent, const
 }
 
 /// A prototype whose reference link is `base`.
-inline std::string tree(const std::string& links, const std::string& joints, const std::string& rest = "",
-                        const std::string& attributes = "id=\"p\"") {
+inline std::string tree(const std::string& links, const std::string& joints,
+                        const std::string& rest = "", const std::string& attributes = "id=\"p\"") {
   return "<prototype " + attributes + "><body/><links ref=\"base\">" + links + "</links><joints>" +
          joints + "</joints>" + rest + "</prototype>";
 }

@@ -40,9 +40,12 @@ TEST(Framework, PartsWithoutEffectGiveNotices) {
 TEST(Framework, ALengthBetweenTwoTicksIsTold) {
   SceneText text;
   text.framework = R"(<framework><experiment ticks_per_second="10" length="1.25"/></framework>)";
-  EXPECT_EQ(count_containing(notices(text.read()), "2:54: length=\"1.25\" of <experiment> is 12.5 ticks of 1/10 s: the run "
-                                                   "has 12, and ends after 1.2 s"),
-            1u) << all_problems(text.read());
+  EXPECT_EQ(
+      count_containing(notices(text.read()),
+                       "2:54: length=\"1.25\" of <experiment> is 12.5 ticks of 1/10 s: the run "
+                       "has 12, and ends after 1.2 s"),
+      1u)
+      << all_problems(text.read());
   text.framework = R"(<framework><experiment ticks_per_second="100" length="0.29"/></framework>)";
   EXPECT_TRUE(notices(text.read()).empty());  // 28.999999999999996
 }
@@ -58,25 +61,29 @@ TEST(Framework, TheFirstOfTwoIsUsed) {
 
 TEST(Engines, NegativeGravityIsDoubted) {
   SceneText text;
-  text.engines = R"(<physics_engines><dynamics3d id="d"><gravity g="-9.8"/></dynamics3d></physics_engines>)";
+  text.engines =
+      R"(<physics_engines><dynamics3d id="d"><gravity g="-9.8"/></dynamics3d></physics_engines>)";
   const ReadResult result = text.read();
   ASSERT_TRUE(result.ok()) << all_problems(result);
-  EXPECT_NE(all_problems(result).find("g=\"-9.8\" of <gravity> lets everything fall up"), std::string::npos)
+  EXPECT_NE(all_problems(result).find("g=\"-9.8\" of <gravity> lets everything fall up"),
+            std::string::npos)
       << all_problems(result);
 }
 
 TEST(Engines, StrongGravityAndManyIterationsAreDoubted) {
   SceneText text;
   const auto read = [&](const std::string& iterations, const std::string& g) {
-    text.engines = "<physics_engines><dynamics3d id=\"d\" iterations=\"" + iterations + "\"><gravity g=\"" + g +
-                   "\"/></dynamics3d></physics_engines>";
+    text.engines = "<physics_engines><dynamics3d id=\"d\" iterations=\"" + iterations +
+                   "\"><gravity g=\"" + g + "\"/></dynamics3d></physics_engines>";
     const ReadResult result = text.read();
     EXPECT_TRUE(result.ok());
     return all_problems(result);
   };
-  EXPECT_NE(read("10", "-1e6").find("g=\"-1e6\" of <gravity> is stronger than 1000 m/s^2"), std::string::npos);
+  EXPECT_NE(read("10", "-1e6").find("g=\"-1e6\" of <gravity> is stronger than 1000 m/s^2"),
+            std::string::npos);
   EXPECT_EQ(read("10", "-1e6").find("fall up"), std::string::npos) << "one sentence says it";
-  EXPECT_NE(read("10001", "9.8").find("iterations=\"10001\" of <dynamics3d> are so many substeps"), std::string::npos);
+  EXPECT_NE(read("10001", "9.8").find("iterations=\"10001\" of <dynamics3d> are so many substeps"),
+            std::string::npos);
   EXPECT_EQ(read("10000", "1000"), read("10", "9.8"));
 }
 
@@ -85,11 +92,10 @@ TEST(Engines, DefaultsAndValues) {
   const ReadResult plain = text.read();
   EXPECT_EQ(plain.scene.physics.iterations, 10u);
   EXPECT_EQ(plain.scene.physics.clock, Clock::nominal);
-  EXPECT_EQ(plain.scene.physics.solver, Solver::newton);
   EXPECT_FALSE(plain.scene.physics.floor || plain.scene.physics.gravity);
   text.engines =
       R"(<physics_engines><dynamics3d id="d" iterations="25" clock="beta50" max_substep="0.001")"
-      R"( solver="newton" solver_iterations="50" friction="0.7" restitution="0.2"><gravity/>)"
+      R"( friction="0.7" restitution="0.2"><gravity/>)"
       R"(<floor rolling_friction="0.1" spinning_friction="0.01"/>)"
       R"(</dynamics3d></physics_engines>)";
   const ReadResult result = text.read();
@@ -98,8 +104,6 @@ TEST(Engines, DefaultsAndValues) {
   EXPECT_EQ(physics.iterations, 25u);
   EXPECT_EQ(physics.clock, Clock::beta50);
   EXPECT_EQ(physics.max_substep, 0.001);
-  EXPECT_EQ(physics.solver, Solver::newton);
-  EXPECT_EQ(physics.solver_iterations, 50u);
   EXPECT_EQ(physics.floor->surface.restitution, 0.2);
   EXPECT_EQ(physics.floor->surface.spinning_friction, 0.01);
   EXPECT_EQ(physics.gravity, 10.0);
@@ -107,57 +111,37 @@ TEST(Engines, DefaultsAndValues) {
   EXPECT_EQ(physics.floor->surface.rolling_friction, 0.1);
 }
 
-/// The clock and the solver of a scene.
-/// @param engine  attributes of <dynamics3d>
-/// @param instead  the clock of the command line
-std::pair<Clock, Solver> clock_and_solver(const std::string& engine,
-                                          std::optional<Clock> instead = {}) {
+TEST(Engines, TheClockOfTheCommandLineTakesThePlaceOfTheScenes) {
   SceneText text;
-  text.engines = "<physics_engines><dynamics3d id=\"d\" " + engine + "/></physics_engines>";
   ReadOptions options;
-  options.clock = instead;
-  const ReadResult result = text.read(options);
-  EXPECT_TRUE(result.problems.empty()) << all_problems(result);
-  return {result.scene.physics.clock, result.scene.physics.solver};
-}
-
-TEST(Engines, TheClockThatRunsChoosesTheSolverThatASceneDoesNotName) {
-  constexpr Clock nominal = Clock::nominal, beta50 = Clock::beta50;
-  const auto with = [](Clock clock, Solver solver) { return std::pair{clock, solver}; };
-  EXPECT_EQ(clock_and_solver(""), with(nominal, Solver::newton));
-  EXPECT_EQ(clock_and_solver("clock='beta50'"), with(beta50, Solver::sweeps));
-  EXPECT_EQ(clock_and_solver("", beta50), with(beta50, Solver::sweeps));
-  EXPECT_EQ(clock_and_solver("clock='beta50'", nominal), with(nominal, Solver::newton));
-  for (const Clock clock : {nominal, beta50}) {
-    EXPECT_EQ(clock_and_solver("solver='newton'", clock), with(clock, Solver::newton));
-    EXPECT_EQ(clock_and_solver("solver='sweeps'", clock), with(clock, Solver::sweeps));
-  }
-}
-
-TEST(Engines, AttributesWithoutEffectForTheSolverThatRunsGiveNotices) {
-  SceneText text;
-  text.engines = R"(<physics_engines><dynamics3d id="d" restitution="0.5"><floor/></dynamics3d>)"
-                 R"(</physics_engines>)";
-  ReadOptions options;
-  EXPECT_TRUE(text.read(options).problems.empty());
-  options.clock = Clock::beta50;
-  EXPECT_EQ(count_containing(notices(text.read(options)), "no effect with solver=\"sweeps\""), 1u);
-  text.engines =
-      R"(<physics_engines><dynamics3d id="d" solver_iterations="20"/></physics_engines>)";
-  EXPECT_TRUE(text.read(options).problems.empty());
+  text.engines = "<physics_engines><dynamics3d id='d' clock='beta50'/></physics_engines>";
+  EXPECT_EQ(text.read(options).scene.physics.clock, Clock::beta50);
   options.clock = Clock::nominal;
-  EXPECT_EQ(count_containing(notices(text.read(options)), "no effect with solver=\"newton\""), 1u);
+  EXPECT_EQ(text.read(options).scene.physics.clock, Clock::nominal);
+}
+
+/// Recordings of versions that had a second core can't be repeated.
+TEST(Engines, WhatWasMovedByASecondCoreIsKnown) {
+  const auto had_second_core = [](const std::string& attributes) {
+    SceneText text;
+    text.engines = "<physics_engines><dynamics3d id='d' " + attributes + "/></physics_engines>";
+    return text.read().scene.physics.had_second_core;
+  };
+  EXPECT_FALSE(had_second_core(""));
+  EXPECT_TRUE(had_second_core("clock='beta50'"));
+  EXPECT_TRUE(had_second_core("solver='sweeps'"));
+  EXPECT_FALSE(had_second_core("clock='beta50' solver='newton'"));
 }
 
 TEST(Engines, TheClockOfTheCommandLineHoldsForFlatWorlds) {
   SceneText text;
   text.engines = R"(<physics_engines><dynamics2d id="flat"/></physics_engines>)";
-  EXPECT_EQ(text.read().scene.physics.solver, Solver::newton);
+  EXPECT_EQ(text.read().scene.physics.clock, Clock::nominal);
   ReadOptions options;
   options.clock = Clock::beta50;
   const Physics physics = text.read(options).scene.physics;
   EXPECT_EQ(physics.clock, Clock::beta50);
-  EXPECT_EQ(physics.solver, Solver::sweeps);
+  EXPECT_TRUE(physics.had_second_core);
 }
 
 TEST(Engines, TwoDimensionalEnginesShareTheWorld) {

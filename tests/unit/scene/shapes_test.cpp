@@ -183,7 +183,8 @@ TEST(Shapes, WhatIsNoHullIsAFaultThatSaysWhy) {
     const double angle = 2 * std::numbers::pi * i / 65;
     round.emplace_back(std::cos(angle), std::sin(angle), i % 2);
   }
-  std::string binary = std::string(80, ' ') + std::string("\3\0\0\0", 4) + std::string(2 * 50, '\0');
+  std::string binary =
+      std::string(80, ' ') + std::string("\3\0\0\0", 4) + std::string(2 * 50, '\0');
   const std::string big = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1e7\n";
   struct Row {
     std::string hull, file, fault;
@@ -203,13 +204,19 @@ TEST(Shapes, WhatIsNoHullIsAFaultThatSaysWhy) {
       {R"(<hull file="part.obj"/>)", big, "farther than 1e6 from the origin"},
       {R"(<hull file="part.obj"/>)", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "<hull> has no volume"},
       {R"(<hull file="part.stl"/>)", "vertex 1 2 x", "vertex 1 has no three numbers"},
-      {R"(<hull file="part.stl"/>)", binary, "is no whole STL file: it ends within triangle 3 of 3; export it"},
+      {R"(<hull file="part.stl"/>)", binary,
+       "is no whole STL file: it ends within triangle 3 of 3; export it"},
       {R"(<hull file="part.stl"/>)", binary.substr(0, 133), "it ends within triangle 1 of 3"},
-      {R"(<hull file="part.stl"/>)", binary + std::string(51, 'x'), "tells of 3 triangles, and 1 bytes stand behind"},
-      {R"(<hull file="part.stl"/>)", std::string(60, '\0'), "it ends within its header, after 60 of 84 bytes"},
-      {R"(<hull file="part.stl"/>)", "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nvertex 1 1 1", "it ends within triangle 2"},
-      {R"(<hull file="part.obj"/>)", "v 0 0 0\r\nv 1 0 0\r\n  v 0 1", "the vertex in line 3 has no three numbers"},
-      {R"(<hull file="part.obj"/>)", std::string(most_mesh_bytes + 1, '#'), "which is larger than 16 MiB; write one with fewer"},
+      {R"(<hull file="part.stl"/>)", binary + std::string(51, 'x'),
+       "tells of 3 triangles, and 1 bytes stand behind"},
+      {R"(<hull file="part.stl"/>)", std::string(60, '\0'),
+       "it ends within its header, after 60 of 84 bytes"},
+      {R"(<hull file="part.stl"/>)", "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nvertex 1 1 1",
+       "it ends within triangle 2"},
+      {R"(<hull file="part.obj"/>)", "v 0 0 0\r\nv 1 0 0\r\n  v 0 1",
+       "the vertex in line 3 has no three numbers"},
+      {R"(<hull file="part.obj"/>)", std::string(most_mesh_bytes + 1, '#'),
+       "which is larger than 16 MiB; write one with fewer"},
       {R"(<hull file="part.obj" scale="0"/>)", big, R"(scale="0" of <hull> is not positive)"},
       {R"(<hull file="part.obj"><vertex position="0,0,0"/></hull>)", "v 0 0 0",
        "its vertices are those of the file"},

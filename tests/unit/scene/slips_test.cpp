@@ -81,7 +81,8 @@ INSTANTIATE_TEST_SUITE_P(
         Slip{"<body ", "<bdy ", "t:15:7: unknown element <bdy>"},
         Slip{"<link id=\"sled\"", "<lnk id=\"sled\"", "t:19:9: unknown element <lnk>"},
         Slip{"      <joints>\n", "      <jonts>\n",
-             "t:26:7: malformed XML: </joints> does not close <jonts> of line 21; write </jonts>, or <joints> there"},
+             "t:26:7: malformed XML: </joints> does not close <jonts> of line 21; write </jonts>, "
+             "or <joints> there"},
         Slip{"<parent ", "<parrent ", "t:23:11: unknown element <parrent>"},
         Slip{"<devices>", "<device>", "t:27:7: unknown element <device>"},
         Slip{"<physics_engines>", "<physic_engines>", "t:32:3: unknown element <physic_engines>"},
@@ -96,9 +97,10 @@ TEST(Slip, AMisspeltListOfJointsHidesWhatFollows) {
   text.replace(text.rfind("</joints>"), 9, "</jonts>");
   const auto found = faults(read_text(text, "t"));
   ASSERT_EQ(found.size(), 1u) << testing::PrintToString(found);
-  EXPECT_EQ(found[0],
-            "t:21:7: unknown element <jonts> in <prototype>; did you mean \"joints\"? (in prototype "
-            "\"slider\")");
+  EXPECT_EQ(
+      found[0],
+      "t:21:7: unknown element <jonts> in <prototype>; did you mean \"joints\"? (in prototype "
+      "\"slider\")");
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -107,7 +109,8 @@ INSTANTIATE_TEST_SUITE_P(
         Slip{"mass=\"0.2\"", "mas=\"0.2\"", "t:19:60: <link> has an unknown attribute mas=\"0.2\""},
         Slip{"mass=\"0.2\"", "mass=\"-0.2\"",
              "t:19:66: mass=\"-0.2\" of <link> is negative; write more than 0 kg"},
-        Slip{"max_impulse=\"1\"", "max_force=\"5N\"", "t:6:86: max_force=\"5N\" of <joint> has \"N\" behind the number"},
+        Slip{"max_impulse=\"1\"", "max_force=\"5N\"",
+             "t:6:86: max_force=\"5N\" of <joint> has \"N\" behind the number"},
         Slip{"config=\"push\"", "config=\"pusch\"", "t:16:27: config=\"pusch\" of <controller>"},
         Slip{"parent link=\"base\"", "parent link=\"bse\"",
              "t:23:25: link=\"bse\" of <parent> names no link; did you mean \"base\"?"},
@@ -127,12 +130,16 @@ INSTANTIATE_TEST_SUITE_P(
         Slip{"id=\"push\">", "id=\"push>",
              "t:4:24: malformed XML: the value of id in <lua_controller> has no closing quote"},
         Slip{"link=\"base\"", "link=base",
-             "t:23:24: malformed XML: the value of link in <parent> has no quotes; write link=\"base\""},
-        Slip{"link=\"base\"", "link=”base”",
-             "t:23:24: malformed XML: the value of link in <parent> has curly quotes, which are none in XML; write "
+             "t:23:24: malformed XML: the value of link in <parent> has no quotes; write "
              "link=\"base\""},
-        Slip{"link=\"base\"", "link=base\"", "t:23:24: malformed XML: the value of link in <parent>"},
-        Slip{"link=\"base\"", "link", "t:23:19: malformed XML: the attribute link of <parent> has no"},
+        Slip{"link=\"base\"", "link=”base”",
+             "t:23:24: malformed XML: the value of link in <parent> has curly quotes, which are "
+             "none in XML; write "
+             "link=\"base\""},
+        Slip{"link=\"base\"", "link=base\"",
+             "t:23:24: malformed XML: the value of link in <parent>"},
+        Slip{"link=\"base\"", "link",
+             "t:23:19: malformed XML: the attribute link of <parent> has no"},
         Slip{"mass=\"0.2\"/>", "mass=\"0.2\"\"/>",
              "t:19:70: malformed XML: \"\"\" stands directly behind the value of mass"},
         Slip{"    </prototype>\n", "",
@@ -170,7 +177,8 @@ TEST(OtherFiles, AreToldByTheirRootAndNotByWhatItLacks) {
   for (const char* text : {"<html><body>scene</body></html>", "<include file=\"x.argos\"/>"}) {
     const auto found = faults(read_text(text, "a"));
     ASSERT_EQ(found.size(), 1u) << text;
-    EXPECT_NE(found[0].find("> is no scene: it has neither <framework> nor <arena>; a scene begins with <argos-configuration>"),
+    EXPECT_NE(found[0].find("> is no scene: it has neither <framework> nor <arena>; a scene begins "
+                            "with <argos-configuration>"),
               std::string::npos)
         << found[0];
   }
@@ -198,7 +206,8 @@ TEST(Radians, AreDoubtedOnceWithTheirNumber) {
   for (const char* radians : {"-3.1416,0,0", "0.785,0,0", "0,0,0.5236", "0,2.094,0", "6.283,0,0"}) {
     EXPECT_EQ(warnings(radians).size(), 1u) << radians;
   }
-  for (const char* degrees : {"90,0,0", "1.5,0,0", "3.1,0,0", "0.52,0,0", "31.42,0,0", "0.25,0,0"}) {
+  for (const char* degrees :
+       {"90,0,0", "1.5,0,0", "3.1,0,0", "0.52,0,0", "31.42,0,0", "0.25,0,0"}) {
     EXPECT_TRUE(warnings(degrees).empty()) << degrees;
   }
 }
@@ -212,7 +221,8 @@ TEST(Limits, ThatLeaveOutTheAssembledPoseAreDoubted) {
   };
   ASSERT_EQ(warnings("0.1:0.2").size(), 1u);
   EXPECT_EQ(warnings("0.1:0.2")[0],
-            "t:22:63: limit=\"0.1:0.2\" of <joint> leaves out 0, where the joint is assembled: it is moved into its limits as the run "
+            "t:22:63: limit=\"0.1:0.2\" of <joint> leaves out 0, where the joint is assembled: it "
+            "is moved into its limits as the run "
             "begins; measure limits from the assembled pose (in prototype \"slider\")");
   EXPECT_EQ(warnings("-0.2:-0.1").size(), 1u);
   EXPECT_TRUE(warnings("0:0.2").empty());

@@ -1,4 +1,4 @@
-// What controllers use must be on their robots; the robots with a fixed set of devices.
+// Devices that controllers use must be on their robots; robots with a fixed set of devices.
 
 #include <gtest/gtest.h>
 

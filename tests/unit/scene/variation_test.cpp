@@ -51,7 +51,8 @@ TEST(Set, AddsAnAttributeThatTheReaderKnows) {
 TEST(Set, RefusesAnAttributeThatTheReaderDoesNotKnow) {
   EXPECT_EQ(only_fault(SceneText{}.read(set({"physics_engines/dynamics3d/@iteratons=7"}))),
             "test.argos:5:18: <dynamics3d> has an unknown attribute iteratons=\"7\"; did you mean "
-            "\"iterations\"?; set by --set 'physics_engines/dynamics3d/@iteratons=7' (--lenient ignores it)");
+            "\"iterations\"?; set by --set 'physics_engines/dynamics3d/@iteratons=7' (--lenient "
+            "ignores it)");
 }
 
 TEST(Set, RefusesAValueThatTheReaderRefuses) {
@@ -80,24 +81,30 @@ TEST(Set, TheLastOneWins) {
 }
 
 TEST(Set, SaysWhichStepIsNotThere) {
-  EXPECT_EQ(only_fault(boxes().read(set({"physics_engine/dynamics3d/@iterations=7"}))),
-            "test.argos: --set 'physics_engine/dynamics3d/@iterations=7': the path matches nothing: "
-            "there is no \"physics_engine\"; did you mean \"physics_engines\"?");
+  EXPECT_EQ(
+      only_fault(boxes().read(set({"physics_engine/dynamics3d/@iterations=7"}))),
+      "test.argos: --set 'physics_engine/dynamics3d/@iterations=7': the path matches nothing: "
+      "there is no \"physics_engine\"; did you mean \"physics_engines\"?");
   EXPECT_EQ(only_fault(boxes().read(set({"arena/box[@id='c']/@mass=7"}))),
             "test.argos: --set 'arena/box[@id='c']/@mass=7': the path matches nothing: there is no "
             "\"box[@id='c']\"");
-  for (const char* path : {"//tower/@mass", "/argos-configuration/tower/@mass", "//*[1]/tower/@mass"}) {
-    EXPECT_NE(only_fault(boxes().read(set({(std::string(path) + "=7").c_str()}))).find("no \"tower\""),
-              std::string::npos) << path;
+  for (const char* path :
+       {"//tower/@mass", "/argos-configuration/tower/@mass", "//*[1]/tower/@mass"}) {
+    EXPECT_NE(
+        only_fault(boxes().read(set({(std::string(path) + "=7").c_str()}))).find("no \"tower\""),
+        std::string::npos)
+        << path;
   }
 }
 
 TEST(Set, SaysThatAttributesBeginWithAt) {
   EXPECT_EQ(only_fault(boxes().read(set({"arena/box[@id='b']/mass=7"}))),
-            "test.argos: --set 'arena/box[@id='b']/mass=7': the path matches nothing: \"mass\" is an attribute, and its "
+            "test.argos: --set 'arena/box[@id='b']/mass=7': the path matches nothing: \"mass\" is "
+            "an attribute, and its "
             "name begins with @: write @mass");
   EXPECT_EQ(only_fault(boxes().read(set({"physics_engines/dynamics3d/iterations=7"}))),
-            "test.argos: --set 'physics_engines/dynamics3d/iterations=7': the path matches nothing: \"iterations\" is no "
+            "test.argos: --set 'physics_engines/dynamics3d/iterations=7': the path matches "
+            "nothing: \"iterations\" is no "
             "element, and the path names no attribute: let it end with /@NAME");
 }
 
@@ -109,37 +116,49 @@ TEST(Set, RefusesWhatIsNoPathToAttributes) {
 }
 
 TEST(Set, RefusesPathsThatWouldTakeForEver) {
-  const auto fault_of = [](const std::string& text) { return only_fault(boxes().read(set({text.c_str()}))); };
-  EXPECT_NE(fault_of("//*[count(//*[count(//*)>0])>0]/@mass=1").find("[conditions] in [conditions]"), std::string::npos);
-  for (const char* path : {"//*[following::*]", "//*/following::*", "//*/preceding::*", "arena/*/following-sibling::*"}) {
-    EXPECT_NE(fault_of(std::string(path) + "/@x=1").find("an axis (::)"), std::string::npos) << path;
+  const auto fault_of = [](const std::string& text) {
+    return only_fault(boxes().read(set({text.c_str()})));
+  };
+  EXPECT_NE(
+      fault_of("//*[count(//*[count(//*)>0])>0]/@mass=1").find("[conditions] in [conditions]"),
+      std::string::npos);
+  for (const char* path : {"//*[following::*]", "//*/following::*", "//*/preceding::*",
+                           "arena/*/following-sibling::*"}) {
+    EXPECT_NE(fault_of(std::string(path) + "/@x=1").find("an axis (::)"), std::string::npos)
+        << path;
   }
   for (const char* path : {"//*//*", "//*/..//*", "//*|//*", "*//*//@x/.."}) {
-    EXPECT_NE(fault_of(std::string(path) + "/@x=1").find("// more than once"), std::string::npos) << path;
+    EXPECT_NE(fault_of(std::string(path) + "/@x=1").find("// more than once"), std::string::npos)
+        << path;
   }
-  EXPECT_NE(fault_of("arena/*/../*/../*/../*/../box/@mass=1").find(".. more than three times"), std::string::npos);
-  for (const char* path : {"//*[count(//*/..//*/..//*)>0]", "//*[../*]", "//*[.//*]", "//*[/*/*]", "//*[@a and /*/*]",
-                           "//*[@a and/*/*]", "//*[2*/*/*]", "//*[1-/*/*]", "arena[*/@x=*/@y]", "arena['1'=*/@y]", "arena[]"}) {
-    EXPECT_NE(fault_of(std::string(path) + "/@x=1").find("has the condition ["), std::string::npos) << path;
+  EXPECT_NE(fault_of("arena/*/../*/../*/../*/../box/@mass=1").find(".. more than three times"),
+            std::string::npos);
+  for (const char* path : {"//*[count(//*/..//*/..//*)>0]", "//*[../*]", "//*[.//*]", "//*[/*/*]",
+                           "//*[@a and /*/*]", "//*[@a and/*/*]", "//*[2*/*/*]", "//*[1-/*/*]",
+                           "arena[*/@x=*/@y]", "arena['1'=*/@y]", "arena[]"}) {
+    EXPECT_NE(fault_of(std::string(path) + "/@x=1").find("has the condition ["), std::string::npos)
+        << path;
   }
   EXPECT_NE(fault_of(std::string(2000, 'a') + "/@mass=1").find("at most 1024"), std::string::npos);
-  for (const char* path : {"arena/box[@id='a' or @id='[[::..//'][body/@position]", "arena/box[@id='a']/../box[@id='b'][body]",
-                           "arena/box[last()]", "arena/box[2]", "//box[ not(@id = \"b\") and count(*) >= 1 ]",
-                           "arena/box[starts-with(@id, 'a')]", "arena/box[position()<2][./body/@position]", "(//box)[1]"}) {
+  for (const char* path :
+       {"arena/box[@id='a' or @id='[[::..//'][body/@position]",
+        "arena/box[@id='a']/../box[@id='b'][body]", "arena/box[last()]", "arena/box[2]",
+        "//box[ not(@id = \"b\") and count(*) >= 1 ]", "arena/box[starts-with(@id, 'a')]",
+        "arena/box[position()<2][./body/@position]", "(//box)[1]"}) {
     const auto result = boxes().read(set({(std::string(path) + "/@mass=1").c_str()}));
     EXPECT_TRUE(result.ok()) << path << all_problems(result);
   }
 }
 
 TEST(Set, ReachesIncludedFiles) {
-  const auto result =
-      using_block(R"(<prototype id="a" model="block"><body/></prototype>)",
-                  "<include file=\"parts/block.argos\"/>")
-          .read([] {
-            ReadOptions options = options_with({{"parts/block.argos", block}});
-            options.variation = set({"models/prototype[@id='block']//link[1]/@mass=0.5"}).variation;
-            return options;
-          }());
+  const auto result = using_block(R"(<prototype id="a" model="block"><body/></prototype>)",
+                                  "<include file=\"parts/block.argos\"/>")
+                          .read([] {
+                            ReadOptions options = options_with({{"parts/block.argos", block}});
+                            options.variation =
+                                set({"models/prototype[@id='block']//link[1]/@mass=0.5"}).variation;
+                            return options;
+                          }());
   EXPECT_TRUE(result.ok()) << all_problems(result);
   EXPECT_EQ(result.scene.entities[0].links[0].mass, 0.5);
 }
@@ -198,7 +217,11 @@ TEST(Parameters, AreNotMadeOfOthers) {
     SceneText text = boxes();
     text.rest = "<parameters m='2' n='${" + std::string(name) + "}'/>\n";
     const std::string fault = only_fault(text.read());
-    EXPECT_NE(fault.find("values in <parameters> are not made of other parameters; write the value itself"), std::string::npos) << fault;
+    EXPECT_NE(
+        fault.find(
+            "values in <parameters> are not made of other parameters; write the value itself"),
+        std::string::npos)
+        << fault;
   }
 }
 
@@ -251,7 +274,8 @@ TEST(Parameters, ManyTakeATimeInProportion) {
 TEST(Parameters, OfOneElementAre100000AtMost) {
   SceneText text;
   text.rest = "<parameters" + many_attributes(100'001, "1") + "/>\n";
-  EXPECT_EQ(only_fault(text.read()), "test.argos:7:1: <parameters> has more than 100000 attributes; write fewer");
+  EXPECT_EQ(only_fault(text.read()),
+            "test.argos:7:1: <parameters> has more than 100000 attributes; write fewer");
 }
 
 }  // namespace

@@ -82,24 +82,24 @@ TEST(Move, AStateThatIsNotFiniteIsAFaultThatNamesTheEntity) {
 
 /// Boxes of 0.1 m, one of which moves.
 TEST(Move, APlaceIsFreeWhereNothingIsOverlapped) {
-  for (const char* solver : {"newton", "sweeps"}) {
-    World world({"", "", box("a", "0,0,0") + box("b", "1,0,0", false), gravity + "<floor/>", solver});
-    const Simulation& simulation = world.simulation;
-    const auto overlapped = [&](std::size_t entity, double x, double z) {
-      math::Pose pose = simulation.state().origins[entity];
-      pose.position = {x, 0, z};
-      return overlapped_by(simulation, simulation.entities()[entity], pose, entity);
-    };
-    EXPECT_EQ(overlapped(0, 0.95, 0), std::optional<std::size_t>(1)) << solver;
-    EXPECT_EQ(overlapped(0, 0.9, 0), std::nullopt) << "it touches";
-    EXPECT_EQ(overlapped(0, 0.901, 0), std::optional<std::size_t>(1)) << "by 1 mm";
-    EXPECT_EQ(overlapped(0, 1, 0.1), std::nullopt) << "it stands on b";
-    EXPECT_EQ(overlapped(0, 0.01, 0), std::nullopt) << "it is where it was itself";
-    EXPECT_EQ(overlapped(0, 0.5, -0.05), std::nullopt) << "the floor does not count";
-    world.step(10);
-    EXPECT_EQ(overlapped(0, simulation.state().origins[0].position.x(), simulation.state().origins[0].position.z()),
-              std::nullopt) << "what rests may stay";
-  }
+  World world({"", "", box("a", "0,0,0") + box("b", "1,0,0", false), gravity + "<floor/>"});
+  const Simulation& simulation = world.simulation;
+  const auto overlapped = [&](std::size_t entity, double x, double z) {
+    math::Pose pose = simulation.state().origins[entity];
+    pose.position = {x, 0, z};
+    return overlapped_by(simulation, simulation.entities()[entity], pose, entity);
+  };
+  EXPECT_EQ(overlapped(0, 0.95, 0), std::optional<std::size_t>(1));
+  EXPECT_EQ(overlapped(0, 0.9, 0), std::nullopt) << "it touches";
+  EXPECT_EQ(overlapped(0, 0.901, 0), std::optional<std::size_t>(1)) << "by 1 mm";
+  EXPECT_EQ(overlapped(0, 1, 0.1), std::nullopt) << "it stands on b";
+  EXPECT_EQ(overlapped(0, 0.01, 0), std::nullopt) << "it is where it was itself";
+  EXPECT_EQ(overlapped(0, 0.5, -0.05), std::nullopt) << "the floor does not count";
+  world.step(10);
+  EXPECT_EQ(overlapped(0, simulation.state().origins[0].position.x(),
+                       simulation.state().origins[0].position.z()),
+            std::nullopt)
+      << "what rests may stay";
 }
 
 /// A body that lies on another one overlaps it a little.
@@ -107,7 +107,8 @@ TEST(Move, WhatRestsOnOthersMayStayAndComeBack) {
   World world({"", "", box("a", "0,0,0") + box("b", "0,0,0.1"), gravity + "<floor/>"});
   world.step(20);
   const Simulation& simulation = world.simulation;
-  EXPECT_EQ(overlapped_by(simulation, simulation.entities()[1], simulation.state().origins[1], 1), std::nullopt);
+  EXPECT_EQ(overlapped_by(simulation, simulation.entities()[1], simulation.state().origins[1], 1),
+            std::nullopt);
 }
 
 TEST(Spawn, WhereSomethingStandsIsRefusedAndChangesNothing) {

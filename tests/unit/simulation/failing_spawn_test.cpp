@@ -139,19 +139,8 @@ bool reset(Simulation& world, const scene::Scene& scene, std::size_t failing) {
   }
 }
 
-/// With each solver.
-struct FailingSpawnWith : ::testing::TestWithParam<const char*> {
-  SmallScene scene() const {
-    SmallScene small = robots;
-    small.solver = GetParam();
-    return small;
-  }
-};
-
-INSTANTIATE_TEST_SUITE_P(Solvers, FailingSpawnWith, ::testing::Values("sweeps", "newton"));
-
-TEST_P(FailingSpawnWith, OutOfMemoryAnywhereChangesNothing) {
-  Twins twins(scene());
+TEST(FailingSpawn, OutOfMemoryAnywhereChangesNothing) {
+  Twins twins(robots);
   const scene::Entity entity = twins.entity(equipped("second", "0,1,0"));
   twins.step(3);
   std::size_t stages = 0;
@@ -189,8 +178,8 @@ TEST(FailingSpawn, WithoutOpenGlSaysWhatToInstallAndChangesNothing) {
   twins.step(2);
 }
 
-TEST_P(FailingSpawnWith, AResetOutOfMemoryAnywhereChangesNothing) {
-  Twins twins(scene());
+TEST(FailingSpawn, AResetOutOfMemoryAnywhereChangesNothing) {
+  Twins twins(robots);
   twins.step(2);
   const Numbers before = numbers(twins.world);
   std::size_t stages = 0;

@@ -59,7 +59,8 @@ class RandomCommands {
                    world::Commands& commands) {
     for (std::size_t i = 0; i < layout.radios.size(); ++i) {
       if (!layout.radios[i].sends || random.uniform(0, 1) < 0.7) continue;
-      const std::uint8_t bytes[] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(random.uniform(0, 255))};
+      const std::uint8_t bytes[] = {static_cast<std::uint8_t>(i),
+                                    static_cast<std::uint8_t>(random.uniform(0, 255))};
       commands.radio_messages.add(i, bytes);
     }
   }
@@ -99,7 +100,8 @@ void Futures::compare(const scene::Scene& scene, const Extent& extent) const {
   const double latest = extent.latest;
   math::RandomStream random(3, GetParam().filename().string());
   std::map<std::uint64_t, Snapshot> snapshots;
-  while (snapshots.size() < moments) snapshots[static_cast<std::uint64_t>(random.uniform(0, latest))];
+  while (snapshots.size() < moments)
+    snapshots[static_cast<std::uint64_t>(random.uniform(0, latest))];
   const std::uint64_t last = snapshots.rbegin()->first + after;
 
   Simulation simulation(scene, {7});
@@ -150,20 +152,10 @@ TEST_P(Futures, AreThoseOfAWorldThatWasNeverInterrupted) {
   compare(read.scene, long_runs::is_slow ? few : long_runs::takes_all() ? all : some);
 }
 
-/// Bullet's state can't be copied: the run is repeated.
-TEST_P(Futures, AreTheSameWithTheSolverThatSweeps) {
-  scene::ReadOptions options;
-  options.clock = scene::Clock::beta50;
-  const scene::ReadResult read = scene::read_file(GetParam(), options);
-  ASSERT_TRUE(read.ok());
-  ASSERT_EQ(read.scene.physics.solver, scene::Solver::sweeps);
-  const Extent all{3, 10, 40}, some{2, 5, 20}, few{1, 2, 5};
-  compare(read.scene, long_runs::is_slow ? few : long_runs::takes_all() ? all : some);
-}
-
 INSTANTIATE_TEST_SUITE_P(Scenes, Futures, ::testing::ValuesIn(scenes()), [](const auto& scene) {
   std::string name = (scene.param.parent_path().filename() / scene.param.stem()).string();
-  std::ranges::replace_if(name, [](char c) { return c == '-' || c == '.' || c == '/'; }, '_');
+  std::ranges::replace_if(
+      name, [](char c) { return c == '-' || c == '.' || c == '/'; }, '_');
   return name;
 });
 

@@ -183,7 +183,8 @@ TEST(Positioning, IsThePoseOfTheOriginWithNoiseInItsRange) {
 TEST(Positioning, OfATurningRobotIsTheQuaternionThatTurnsByLessThanPi) {
   const std::string turning = R"(<foot-bot id="f"><body/><controller config="c"/></foot-bot>)";
   Simulation simulation =
-      SmallScene{wheels, R"(<positioning implementation="default"/>)", turning, testing::ground}.run();
+      SmallScene{wheels, R"(<positioning implementation="default"/>)", turning, testing::ground}
+          .run();
   simulation.commands().wheels.assign(1, {-0.1, 0.1});  // 0.14 m apart: 1.43 rad/s
   bool is_over_half = false;
   for (int tick = 0; tick < 100; ++tick) {

@@ -19,15 +19,13 @@ struct SmallScene {
   std::string actuators, sensors;  ///< of the controller `c`
   std::string arena;               ///< entities
   std::string engine = {};         ///< in <dynamics3d>
-  std::string solver = {};         ///< empty: the default
 
   std::string str() const {
     return R"(<argos><framework><experiment ticks_per_second="10"/></framework><controllers>)"
            R"(<external_controller id="c"><actuators>)" +
            actuators + "</actuators><sensors>" + sensors +
            R"(</sensors><params/></external_controller></controllers><arena size="9,9,9">)" +
-           arena + R"(</arena><physics_engines><dynamics3d id="d" iterations="2")" +
-           (solver.empty() ? "" : " solver=\"" + solver + "\"") + ">" + engine +
+           arena + R"(</arena><physics_engines><dynamics3d id="d" iterations="2">)" + engine +
            R"(</dynamics3d></physics_engines><media><radio id="air"/><led id="leds"/>)"
            R"(<directional_led id="beams"/><tag id="tags"/><range_and_bearing id="rab"/>)"
            R"(<range_and_bearing id="through" check_occlusions="false"/></media></argos>)";

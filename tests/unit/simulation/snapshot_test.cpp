@@ -22,16 +22,17 @@ std::string loose_box(const std::string& id, const std::string& position) {
 }
 
 struct Case {
-  explicit Case(std::string solver = {})
-      : read(SmallScene{"", "",
-                        loose_box("a", "0,0,.3") + loose_box("b", ".02,0,.5") + robot("r", "1,0,.1", ""),
-                        ground, std::move(solver)}
+  Case()
+      : read(SmallScene{
+            "", "",
+            loose_box("a", "0,0,.3") + loose_box("b", ".02,0,.5") + robot("r", "1,0,.1", ""),
+            ground}
                  .read_all()),
         simulation(read.scene, {1}) {}
 
   scene::Entity entity(const std::string& xml) const {
-    scene::Addition addition = read.additions.read(xml, read.scene, 1 << 20,
-                                                   [](const std::string&) { return false; });
+    scene::Addition addition =
+        read.additions.read(xml, read.scene, 1 << 20, [](const std::string&) { return false; });
     if (!addition.ok()) throw scene::SceneError(std::move(addition.problems));
     return std::move(addition.entity);
   }
@@ -69,24 +70,8 @@ struct Case {
   Simulation simulation;
 };
 
-TEST(Snapshot, ARestoreTellsOfEachTickThatItRepeats) {
-  Case world("sweeps");
-  world.live();
-  const Snapshot snapshot = world.simulation.snapshot();
-  std::uint64_t told = 0;
-  world.simulation.restore(world.read.scene, snapshot, {}, [&] { ++told; });
-  EXPECT_EQ(told, snapshot.tick + 1);
-  const auto expected = world.future(3);
-  const auto give_up = [&] { throw std::runtime_error("enough"); };
-  EXPECT_THROW(world.simulation.restore(world.read.scene, snapshot, {}, give_up), std::runtime_error);
-  world.simulation.restore(world.read.scene, snapshot);
-  EXPECT_EQ(world.future(3), expected);
-}
-
-class Snapshots : public ::testing::TestWithParam<const char*> {};
-
-TEST_P(Snapshots, CarryWhatCameAndWentAndWasMoved) {
-  Case world(GetParam());
+TEST(Snapshot, CarryWhatCameAndWentAndWasMoved) {
+  Case world;
   world.live();
   const Snapshot snapshot = world.simulation.snapshot();
   const auto expected = world.future(30);
@@ -97,8 +82,8 @@ TEST_P(Snapshots, CarryWhatCameAndWentAndWasMoved) {
   EXPECT_EQ(world.future(30), expected);
 }
 
-TEST_P(Snapshots, TakeBackWhatCameAndWentSince) {
-  Case world(GetParam());
+TEST(Snapshot, TakeBackWhatCameAndWentSince) {
+  Case world;
   world.live();
   const Snapshot snapshot = world.simulation.snapshot();
   const auto expected = world.future(30);
@@ -112,13 +97,13 @@ TEST_P(Snapshots, TakeBackWhatCameAndWentSince) {
   EXPECT_EQ(world.future(30), expected);
 }
 
-TEST_P(Snapshots, GoThroughAFile) {
-  Case world(GetParam());
+TEST(Snapshot, GoThroughAFile) {
+  Case world;
   world.live();
   const Snapshot snapshot = world.simulation.snapshot();
   const std::vector<std::byte> bytes = to_bytes(snapshot, {"scene", "build"});
   const auto expected = world.future(30);
-  Case other(GetParam());
+  Case other;
   const auto read = [&](const std::string& xml) { return other.entity(xml); };
   other.simulation.restore(other.read.scene, from_bytes(bytes, {"scene", "build"}, read));
   EXPECT_EQ(other.simulation.hash(), snapshot.hash);
@@ -127,8 +112,8 @@ TEST_P(Snapshots, GoThroughAFile) {
   EXPECT_THROW(from_bytes(bytes, {"scene", "other"}, read), SnapshotError);
 }
 
-TEST_P(Snapshots, OfAFileThatIsDamagedAreRefused) {
-  Case world(GetParam());
+TEST(Snapshot, OfAFileThatIsDamagedAreRefused) {
+  Case world;
   world.live();
   const std::vector<std::byte> bytes = to_bytes(world.simulation.snapshot(), {"scene", "build"});
   const auto read = [&](const std::string& xml) { return world.entity(xml); };
@@ -145,8 +130,8 @@ TEST_P(Snapshots, OfAFileThatIsDamagedAreRefused) {
   }
 }
 
-TEST_P(Snapshots, ListTheContactsOfTheirLastSubstep) {
-  Case world(GetParam()), other(GetParam());
+TEST(Snapshot, ListTheContactsOfTheirLastSubstep) {
+  Case world, other;
   world.simulation.list_contacts(true);
   world.run(20);
   const std::vector<world::Contact> expected = world.simulation.contacts();
@@ -167,8 +152,8 @@ TEST_P(Snapshots, ListTheContactsOfTheirLastSubstep) {
   }
 }
 
-TEST_P(Snapshots, CarryPushesThatAreTheSameAtEachTick) {
-  Case world(GetParam());
+TEST(Snapshot, CarryPushesThatAreTheSameAtEachTick) {
+  Case world;
   const auto push = [&](int ticks) {
     for (int i = 0; i < ticks; ++i) {
       world.simulation.commands().pushes.push_back({0, {3, 0, 1}, {0, 0, 0}});
@@ -183,9 +168,6 @@ TEST_P(Snapshots, CarryPushesThatAreTheSameAtEachTick) {
   world.simulation.restore(world.read.scene, snapshot);
   EXPECT_EQ(push(5), expected);
 }
-
-INSTANTIATE_TEST_SUITE_P(Solvers, Snapshots, ::testing::Values("newton", "sweeps"),
-                         [](const auto& solver) { return std::string(solver.param); });
 
 /// The state's own checks hold past the checksum: with any bytes the world is restored to some
 /// state or stays as it is, and goes on.
@@ -239,18 +221,20 @@ TEST(Snapshot, WithMorePairsThanTheWorldCanHaveIsRefused) {
   world.run(20);
   Snapshot wrong = world.simulation.snapshot();
   wrong.is_checked = false;
-  const std::size_t at = place_of(world.simulation, wrong, "physics/core/newton/contacts/pairs");
+  const std::size_t at = place_of(world.simulation, wrong, "physics/core/contacts/pairs");
   std::uint64_t pairs = 0;
   std::memcpy(&pairs, &wrong.state[at], sizeof pairs);
   constexpr std::uint64_t more = 100;
   pairs += more;
   std::memcpy(&wrong.state[at], &pairs, sizeof pairs);
-  wrong.state.insert(wrong.state.begin() + static_cast<std::ptrdiff_t>(at + sizeof pairs), more, {});
+  wrong.state.insert(wrong.state.begin() + static_cast<std::ptrdiff_t>(at + sizeof pairs), more,
+                     {});
   try {
     world.simulation.restore(world.read.scene, wrong);
     FAIL() << "it was restored";
   } catch (const SnapshotError& error) {
-    EXPECT_NE(std::string(error.what()).find("contacts/pairs' has more elements"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("contacts/pairs' has more elements"),
+              std::string::npos)
         << error.what();
   }
 }
@@ -262,7 +246,8 @@ TEST(Snapshot, TakesNoMemoryForElementsThatAreNotThere) {
     std::memcpy(bytes.data(), &count, sizeof count);
     std::vector<WorldEdit> read;
     auto archive = math::Archive::reader(bytes);
-    EXPECT_THROW(archive.list("acts", read, [&](WorldEdit& each) { archive("xml", each.xml); }), math::ArchiveError);
+    EXPECT_THROW(archive.list("acts", read, [&](WorldEdit& each) { archive("xml", each.xml); }),
+                 math::ArchiveError);
     return read.capacity();
   };
   EXPECT_LE(memory_for(1000), 256u) << "each has eight bytes";
@@ -276,13 +261,6 @@ TEST(Snapshot, NamesTheFieldThatDiffers) {
   EXPECT_EQ(world.simulation.first_difference(snapshot), "");
   world.run(1);
   EXPECT_NE(world.simulation.first_difference(snapshot), "");
-}
-
-TEST(Snapshot, OfAnotherSolverIsRefused) {
-  Case newton("newton"), sweeps("sweeps");
-  const Snapshot one = newton.simulation.snapshot(), other = sweeps.simulation.snapshot();
-  EXPECT_THROW(newton.simulation.restore(newton.read.scene, other), SnapshotError);
-  EXPECT_THROW(sweeps.simulation.restore(sweeps.read.scene, one), SnapshotError);
 }
 
 }  // namespace

@@ -101,7 +101,8 @@ TEST_F(OfSnapshots, ADamagedFileIsRefused) {
 TEST_F(OfSnapshots, LinksInTheFolderAreNotWrittenThrough) {
   const fs::path other = folder / "other";
   std::ofstream(other) << "kept";
-  for (const char* planted : {"here.snapshot", "here.snapshot.part"}) fs::create_symlink(other, folder / planted);
+  for (const char* planted : {"here.snapshot", "here.snapshot.part"})
+    fs::create_symlink(other, folder / planted);
   ASSERT_FALSE(Snapshots(folder, "build").keep("here", *world));
   EXPECT_EQ(fs::file_size(other), 4U);
   EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(folder / "here.snapshot")));

@@ -29,7 +29,7 @@ TEST(PauseTimer, AddsUpThePauses) {
   EXPECT_EQ(timer.total(), 0ns);
   for (int i = 0; i < 2; ++i) {
     timer.update(true);
-    timer.update(true);  // the same pause
+    timer.update(true);                // the same pause
     std::this_thread::sleep_for(2ms);  // elapsed time is the subject
     timer.update(false);
   }

@@ -6,7 +6,8 @@ namespace ziggurat::sweep {
 namespace {
 
 TEST(Csv, HasARowPerRunAndQuotesWhatNeedsIt) {
-  const Experiment experiment{"/s.argos", {{Axis::Kind::setting, "arena/@size", {"1,2,3"}}}, {5}, {}};
+  const Experiment experiment{
+      "/s.argos", {{Axis::Kind::setting, "arena/@size", {"1,2,3"}}}, {5}, {}};
   Result result;
   result.run = 1;
   result.seed = 5;
@@ -18,15 +19,19 @@ TEST(Csv, HasARowPerRunAndQuotesWhatNeedsIt) {
   result.wall_s = 1.23456;
   result.version = "0.1.0";
   const std::vector<Result> results = {result};
-  EXPECT_EQ(to_csv(experiment, results),
-            "run,arena/@size,seed,outcome,exit_code,ending,ticks,simulated_s,robots,failures,dropped,"
-            "solver_not_converged,solver_worst_residual,hash,\"say \"\"x\"\"\",wall_s,version\n"
-            "1,\"1,2,3\",5,finished,0,finished,20,0.1,,,,,,00ff,0.25,1.235,0.1.0\n");
+  EXPECT_EQ(
+      to_csv(experiment, results),
+      "run,arena/@size,seed,outcome,exit_code,ending,ticks,simulated_s,robots,failures,dropped,"
+      "solver_not_converged,solver_worst_residual,hash,\"say \"\"x\"\"\",wall_s,version\n"
+      "1,\"1,2,3\",5,finished,0,finished,20,0.1,,,,,,00ff,0.25,1.235,0.1.0\n");
 }
 
 TEST(Columns, HaveNamesOfTheirOwn) {
   const Experiment experiment{
-      "/s.argos", {{Axis::Kind::parameter, "seed", {"1"}}, {Axis::Kind::parameter, "gain", {"1"}}}, {5}, {}};
+      "/s.argos",
+      {{Axis::Kind::parameter, "seed", {"1"}}, {Axis::Kind::parameter, "gain", {"1"}}},
+      {5},
+      {}};
   Result result;
   result.run = 1;
   result.metrics = {{"gain", 1}, {"ticks", 2}, {"fine", 3}};

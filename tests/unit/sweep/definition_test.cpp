@@ -14,7 +14,7 @@ Definition example() {
           {{"/s.argos", "aa"}, {"/c.lua", "bb"}}};
 }
 
-/// What is said when the sweep has changed.
+/// Sentence when the sweep has changed.
 std::string refusal(const std::function<void(Definition&)>& change) {
   Definition now = example();
   change(now);

@@ -71,7 +71,8 @@ TEST_F(ExperimentFileTest, FaultsNameTheirLine) {
   const auto has = [](const std::string& text, const char* part) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
   };
-  has(refusal("scene = \"s\"\nsedes = \"1..3\""), "e.toml:2:1: unknown key \"sedes\"; did you mean 'seeds'?");
+  has(refusal("scene = \"s\"\nsedes = \"1..3\""),
+      "e.toml:2:1: unknown key \"sedes\"; did you mean 'seeds'?");
   has(refusal("seeds = 1"), "there is no scene");
   has(refusal("scene = \"s\"\nseeds = -1"), "e.toml:2:");
   has(refusal("scene = \"s\"\njobs = 0"), "jobs must be a finite number above 0");

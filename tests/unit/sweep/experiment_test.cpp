@@ -14,7 +14,8 @@ using Texts = std::vector<std::string>;
 
 Experiment grid() {
   return {"/s.argos",
-          {{Axis::Kind::parameter, "gain", {"0.5", "1", "2"}}, {Axis::Kind::setting, "a/@b", {"x", "y"}}},
+          {{Axis::Kind::parameter, "gain", {"0.5", "1", "2"}},
+           {Axis::Kind::setting, "a/@b", {"x", "y"}}},
           {7, 8, 9, 10},
           {}};
 }
@@ -89,9 +90,7 @@ TEST(Experiment, ThatCantBeRunIsRefused) {
   Experiment words = grid();
   words.axes[0].values = {"none", "inf"};
   EXPECT_NO_THROW(check(words));
-  refused([](Experiment& e) {
-    e.seeds = to_seeds("--seeds", "1..5000000");
-  });
+  refused([](Experiment& e) { e.seeds = to_seeds("--seeds", "1..5000000"); });
 }
 
 }  // namespace

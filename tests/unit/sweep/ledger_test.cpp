@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <sqlite3.h>
-
 #include <unistd.h>
 
 #include <filesystem>
@@ -40,7 +39,8 @@ class LedgerTest : public testing::Test {
 TEST(FileOfASweep, IsNotWrittenThroughALinkAtThePlaceOfItsDraft) {
   const TemporaryFolder folder;
   std::ofstream(folder / "precious") << "kept";
-  std::filesystem::create_symlink(folder / "precious", folder / ("job.yaml." + std::to_string(::getpid()) + ".new"));
+  std::filesystem::create_symlink(folder / "precious",
+                                  folder / ("job.yaml." + std::to_string(::getpid()) + ".new"));
   write_file(folder / "job.yaml", "a manifest");
   EXPECT_EQ(read_file(folder / "precious"), "kept");
   EXPECT_EQ(read_file(folder / "job.yaml"), "a manifest");
@@ -71,8 +71,10 @@ TEST_F(LedgerTest, ReadsWhatWasWritten) {
   ASSERT_EQ(results.size(), 1u);
   const Result& r = results[0];
   const Result e = full();
-  EXPECT_EQ(std::tie(r.run, r.seed, r.outcome, r.exit_code, r.ending, r.ticks, r.simulated_s, r.hash, r.robots),
-            std::tie(e.run, e.seed, e.outcome, e.exit_code, e.ending, e.ticks, e.simulated_s, e.hash, e.robots));
+  EXPECT_EQ(std::tie(r.run, r.seed, r.outcome, r.exit_code, r.ending, r.ticks, r.simulated_s,
+                     r.hash, r.robots),
+            std::tie(e.run, e.seed, e.outcome, e.exit_code, e.ending, e.ticks, e.simulated_s,
+                     e.hash, e.robots));
   EXPECT_EQ(std::tie(r.failures, r.worst_residual, r.metrics, r.wall_s, r.version),
             std::tie(e.failures, e.worst_residual, e.metrics, e.wall_s, e.version));
 }
@@ -98,14 +100,16 @@ TEST_F(LedgerTest, TheViewHasAColumnPerAxisAndMetric) {
   ledger.write(first, experiment_);
   ledger.make_view(experiment_);
   ledger.make_view(experiment_);
-  EXPECT_EQ(ask("SELECT gain || ' ' || a || ' ' || ticks FROM results WHERE run = 3"), "it's 0.1 17");
+  EXPECT_EQ(ask("SELECT gain || ' ' || a || ' ' || ticks FROM results WHERE run = 3"),
+            "it's 0.1 17");
   EXPECT_EQ(ask("SELECT typeof(gain) FROM results WHERE run = 1"), "real");
 }
 
 TEST_F(LedgerTest, TheViewHasManyAxesAndAsManyMetricsAsItCan) {
   Experiment experiment{"/s.argos", {}, {1}, {}};
   for (int i = 0; i < 100; ++i) {
-    experiment.axes.push_back({Axis::Kind::parameter, "axis" + std::to_string(i), {std::to_string(i)}});
+    experiment.axes.push_back(
+        {Axis::Kind::parameter, "axis" + std::to_string(i), {std::to_string(i)}});
   }
   Result result;
   result.run = 1;
@@ -115,7 +119,8 @@ TEST_F(LedgerTest, TheViewHasManyAxesAndAsManyMetricsAsItCan) {
   Ledger ledger(path_);
   ledger.write(result, experiment);
   ledger.make_view(experiment);
-  EXPECT_EQ(ask("SELECT (axis0 + axis99 + m1000) || ' ' || hash || ' ' || version FROM results"), "1099.0 00ff 1.0");
+  EXPECT_EQ(ask("SELECT (axis0 + axis99 + m1000) || ' ' || hash || ' ' || version FROM results"),
+            "1099.0 00ff 1.0");
   EXPECT_EQ(ask("SELECT count(*) FROM pragma_table_info('results')"), "2000");
   EXPECT_EQ(ask("SELECT count(*) FROM metrics"), "3000");
 }
@@ -148,15 +153,18 @@ TEST_F(LedgerTest, AFileOrFolderThatIsGoneIsNamed) {
   EXPECT_EQ(complaint([&] { ledger.check_place(); }), "");
   const auto moved = folder_ / "elsewhere";
   std::filesystem::rename(folder, moved);
-  for (const std::string& text : {complaint([&] { ledger.write(full(), experiment_); }), complaint([&] { ledger.check_place(); })}) {
-    EXPECT_TRUE(text.starts_with("'" + folder.string() + "' was removed, moved or replaced")) << text;
+  for (const std::string& text : {complaint([&] { ledger.write(full(), experiment_); }),
+                                  complaint([&] { ledger.check_place(); })}) {
+    EXPECT_TRUE(text.starts_with("'" + folder.string() + "' was removed, moved or replaced"))
+        << text;
     EXPECT_NE(text.find("ziggurat sweep resume"), std::string::npos) << text;
   }
   std::filesystem::rename(moved, folder);
   EXPECT_EQ(complaint([&] { ledger.write(full(), experiment_); }), "");
   std::filesystem::remove(folder / "tasks" / "0001.sqlite");
   const std::string text = complaint([&] { ledger.check_place(); });
-  EXPECT_TRUE(text.starts_with("'" + (folder / "tasks" / "0001.sqlite").string() + "' was")) << text;
+  EXPECT_TRUE(text.starts_with("'" + (folder / "tasks" / "0001.sqlite").string() + "' was"))
+      << text;
 }
 
 TEST_F(LedgerTest, AFileThatIsNoneIsNamed) {

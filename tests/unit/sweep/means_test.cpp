@@ -9,7 +9,7 @@
 namespace ziggurat::sweep {
 namespace {
 
-// Of the tables of Student's t, two-sided 95 %: 12.706 for 1 degree of freedom, 2.776 for 4; 99 %: 4.604.
+// Values of Student's t, two-sided 95 %: 12.706 for 1 degree of freedom, 2.776 for 4; 99 %: 4.604.
 TEST(Estimate, HasTheIntervalOfStudentsT) {
   const std::vector<double> values = {1, 2, 3, 4, 5};  // mean 3, s² = 2.5
   const Estimate e = estimate(values, 0.95);
@@ -45,8 +45,8 @@ Result timed(std::size_t run, double time, Outcome outcome = Outcome::finished) 
 }
 
 TEST(Group, AveragesOverAllThatWasNotAskedFor) {
-  const std::vector<Result> results = {timed(1, 1), timed(2, 3), timed(3, 5), timed(4, 7),
-                                       timed(5, 10), timed(6, 99, Outcome::failed)};
+  const std::vector<Result> results = {timed(1, 1), timed(2, 3),  timed(3, 5),
+                                       timed(4, 7), timed(5, 10), timed(6, 99, Outcome::failed)};
   const std::vector<std::size_t> axes = {0};
   const std::vector<std::string> measures = {"time", "ticks"};
   const auto groups = group(two_axes(), results, axes, measures, 0.95);
@@ -68,7 +68,8 @@ TEST(Axes, HaveShortNames) {
     axis_named(two_axes(), "gian");
     FAIL();
   } catch (const text::UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find("did you mean 'gain'"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("did you mean 'gain'"), std::string::npos)
+        << error.what();
   }
 }
 

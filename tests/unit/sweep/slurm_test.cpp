@@ -9,9 +9,9 @@ namespace {
 
 TEST(SlurmScript, WritesPathsAsSbatchAndTheShellReadThem) {
   const Folder folder("/data/50%a \"x\"");
-  const std::string script =
-      slurm_script(folder, {0, 1, 2, 5}, {"/usr/bin/ziggurat", "sweep", "task", folder.path().string()},
-                   3, {"short", {"--mem=2G"}});
+  const std::string script = slurm_script(
+      folder, {0, 1, 2, 5}, {"/usr/bin/ziggurat", "sweep", "task", folder.path().string()}, 3,
+      {"short", {"--mem=2G"}});
   const auto has = [&](const std::string& part) {
     EXPECT_NE(script.find(part + "\n"), std::string::npos) << part << "\n" << script;
   };

@@ -25,7 +25,8 @@ TEST(Numbers, ListsHaveAsManyNumbersAsPlacesAndNoMore) {
   std::array<double, 3> places{};
   to_numbers("position", "1,-2,.5", "x,y,z", places);
   EXPECT_EQ(places, (std::array{1.0, -2.0, 0.5}));
-  for (const std::string text : {"1,2,3,4", "1,2", "", "1,2,3,", ",1,2,3", "1,2,x", "1 2 3", "1,2,nan", "1,,3"}) {
+  for (const std::string text :
+       {"1,2,3,4", "1,2", "", "1,2,3,", ",1,2,3", "1,2,x", "1 2 3", "1,2,nan", "1,,3"}) {
     EXPECT_THROW(to_numbers("position", text, "x,y,z", places), UsageError) << text;
   }
 }

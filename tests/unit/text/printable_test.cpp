@@ -38,7 +38,8 @@ TEST(Printable, AllCharactersThatAreNotSeenAreWrittenAsNumbers) {
   EXPECT_EQ(printable("a\u00adb\u200bc\u200dd\u2060e\u206ff\ufeffg"),
             "a\\u00adb\\u200bc\\u200dd\\u2060e\\u206ff\\ufeffg");
   EXPECT_EQ(printable("a\U000e0001b\U000e007f"), "a\\ue0001b\\ue007f") << "tags";
-  const std::string neighbours = "\u00ac\u00ae\u061b\u061d\u200a\u2010\u2027\u202f\u205f\u2070\ufefe\U000e0080";
+  const std::string neighbours =
+      "\u00ac\u00ae\u061b\u061d\u200a\u2010\u2027\u202f\u205f\u2070\ufefe\U000e0080";
   EXPECT_EQ(printable(neighbours), neighbours);
 }
 
@@ -56,14 +57,17 @@ TEST(Printable, OfALongerTextThereIsAPart) {
   EXPECT_EQ(printable_part("a\x1b\u202e"), "a\\u001b\\u202e");
   EXPECT_EQ(printable_part("1234567890", 10), "1234567890");
   EXPECT_EQ(printable_part("1234567890a", 10), "1234567\u2026");
-  EXPECT_EQ(printable_part("12345\u00e4\u00e4\u00e4\u00e4", 10), "12345\u00e4\u2026") << "no character is cut";
+  EXPECT_EQ(printable_part("12345\u00e4\u00e4\u00e4\u00e4", 10), "12345\u00e4\u2026")
+      << "no character is cut";
   EXPECT_EQ(printable_part("12345\x1b\x1b", 16), "12345\\u001b\u2026") << "no number is cut";
   EXPECT_EQ(printable_part(std::string(1'000'000, '\x1b')).size(), 4096U - 1);
 }
 
 TEST(IsUtf8, RefusesWhatPrintableReplaces) {
-  for (const char* text : {"", "a\n\x1b", "\u00ac\u2060\U000e0080"}) EXPECT_TRUE(is_utf8(text)) << text;
-  for (const char* text : {"a\x9b", "\xc0\x9b", "\xed\xa0\x80", "b\xf0\x9f"}) EXPECT_FALSE(is_utf8(text)) << text;
+  for (const char* text : {"", "a\n\x1b", "\u00ac\u2060\U000e0080"})
+    EXPECT_TRUE(is_utf8(text)) << text;
+  for (const char* text : {"a\x9b", "\xc0\x9b", "\xed\xa0\x80", "b\xf0\x9f"})
+    EXPECT_FALSE(is_utf8(text)) << text;
 }
 
 }  // namespace

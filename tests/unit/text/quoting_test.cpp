@@ -23,7 +23,8 @@ TEST(CsvField, IsQuotedOnlyIfItMustBe) {
 
 TEST(CsvField, NoTextIsAFormulaOfASpreadsheet) {
   EXPECT_EQ(csv_field("=1+2"), "'=1+2");
-  EXPECT_EQ(csv_field("=HYPERLINK(\"http://x\",\"y\")"), "\"'=HYPERLINK(\"\"http://x\"\",\"\"y\"\")\"");
+  EXPECT_EQ(csv_field("=HYPERLINK(\"http://x\",\"y\")"),
+            "\"'=HYPERLINK(\"\"http://x\"\",\"\"y\"\")\"");
   EXPECT_EQ(csv_field("@SUM(A1)"), "'@SUM(A1)");
   EXPECT_EQ(csv_field("+cmd|' /C calc'!A0"), "'+cmd|' /C calc'!A0");
   EXPECT_EQ(csv_field("-A1"), "'-A1");
@@ -33,7 +34,8 @@ TEST(CsvField, NoTextIsAFormulaOfASpreadsheet) {
 }
 
 TEST(CsvField, NumbersStayNumbers) {
-  for (const char* number : {"-1.5", "+3", "-1e-300", "-inf", "-0", "-", "1", "a-b", "x=1", "-1e999", "-5%", "+-95%"}) {
+  for (const char* number :
+       {"-1.5", "+3", "-1e-300", "-inf", "-0", "-", "1", "a-b", "x=1", "-1e999", "-5%", "+-95%"}) {
     EXPECT_EQ(csv_field(number), number);
   }
   EXPECT_EQ(csv_field("-1,0,0.5"), "\"-1,0,0.5\"");

@@ -14,11 +14,13 @@ TEST(Shortened, KeepsWhatIsShortAndTheBeginningOfTheRest) {
 }
 
 TEST(ShortenedMessage, LosesTheMiddleOfLongWordsAndOfAllThatIsLonger) {
-  const std::string plain = "t:2:6: <b> of\tline 2\n  has a word of 160 bytes " + std::string(160, 'w') + " ";
+  const std::string plain =
+      "t:2:6: <b> of\tline 2\n  has a word of 160 bytes " + std::string(160, 'w') + " ";
   EXPECT_EQ(shortened_message(plain), plain);
   EXPECT_EQ(shortened_message(""), "");
-  EXPECT_EQ(shortened_message("at /" + std::string(3'000'000, 'p') + "/scene.argos:12:3 and more"),
-            "at /" + std::string(99, 'p') + "…" + std::string(23, 'p') + "/scene.argos:12:3 and more");
+  EXPECT_EQ(
+      shortened_message("at /" + std::string(3'000'000, 'p') + "/scene.argos:12:3 and more"),
+      "at /" + std::string(99, 'p') + "…" + std::string(23, 'p') + "/scene.argos:12:3 and more");
   std::string accents;
   for (int i = 0; i < 200; ++i) accents += "é";
   const std::string shorter = shortened_message("x" + accents);

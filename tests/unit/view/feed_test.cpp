@@ -27,7 +27,8 @@ struct Watched {
       entries.push_back({{"id", id}, {"channelId", id}});
     }
     std::ranges::sort(ids);
-    hub.receive(viewer, nlohmann::json{{"op", "subscribe"}, {"subscriptions", entries}}.dump(), true);
+    hub.receive(viewer, nlohmann::json{{"op", "subscribe"}, {"subscriptions", entries}}.dump(),
+                true);
     while (hub.next(viewer)) {
     }
   }
@@ -42,14 +43,15 @@ struct Watched {
   }
   void show_tick() { feed.show(moment(), {ids, {}, false}); }
   void show_all() { feed.show(moment(), {ids, ids, false}); }
-  /// What the viewer gets: topics with their ticks, as "/poses 3".
+  /// Messages that the viewer receives: topics with their ticks, as "/poses 3".
   std::vector<std::string> sent() {
     feed.pass_on(hub);
     std::vector<std::string> all;
     while (auto item = hub.next(viewer)) {
       if (!item->content) continue;
       for (const channels::Channel& channel : world.channels.list()) {
-        if (channel.id == item->channel) all.push_back(channel.topic + " " + tick_in(channel, *item));
+        if (channel.id == item->channel)
+          all.push_back(channel.topic + " " + tick_in(channel, *item));
       }
     }
     return all;
@@ -71,8 +73,8 @@ struct Watched {
   }
 
   ShownWorld world;
-  Desk desk;
-  Hub hub{{"1", "s", "id", false}, {}, desk};
+  ViewerRequests requests;
+  Hub hub{{"1", "s", "id", false}, {}, requests};
   Viewer& viewer = hub.add(false);
   Feed feed;
   std::vector<std::uint32_t> ids;
@@ -114,7 +116,8 @@ TEST(Feed, AnswersGoWithTheirTicks) {
     watched.feed.show_commands(watched.moment(), watched.ids);
     watched.world.simulation.step();
   }
-  EXPECT_EQ(watched.sent(), (Sent{"/poses 2", "/robots/arm/command 2", "/poses 3", "/robots/arm/command 3"}));
+  EXPECT_EQ(watched.sent(),
+            (Sent{"/poses 2", "/robots/arm/command 2", "/poses 3", "/robots/arm/command 3"}));
 }
 
 TEST(Feed, TicksOfAnEarlierPopulationAreNotShown) {

@@ -37,8 +37,9 @@ struct Bench {
     }
     return all;
   }
-  Desk desk;
-  Hub hub{{"1", "s", "id", false}, {{"real_time_factor", 1.0}, {"phase", std::string("x")}}, desk};
+  ViewerRequests requests;
+  Hub hub{
+      {"1", "s", "id", false}, {{"real_time_factor", 1.0}, {"phase", std::string("x")}}, requests};
 };
 
 using Sent = std::vector<std::string>;
@@ -48,9 +49,9 @@ TEST(Hub, IntroducesItselfAndSendsWhatIsSubscribed) {
   Viewer& viewer = bench.hub.add(true);
   EXPECT_EQ(bench.sent(viewer), (Sent{"serverInfo", "advertiseServices", "advertise"}));
   bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":2}]})");
-  const auto news = bench.desk.take();
-  EXPECT_EQ(news.wanted, std::vector<std::uint32_t>{2});
-  EXPECT_EQ(news.fresh, std::vector<std::uint32_t>{2});
+  const auto changes = bench.requests.take();
+  EXPECT_EQ(changes.wanted, std::vector<std::uint32_t>{2});
+  EXPECT_EQ(changes.fresh, std::vector<std::uint32_t>{2});
   bench.hub.show(5, std::vector{message_of(1, "world"), message_of(2, "poses")});
   EXPECT_EQ(bench.sent(viewer), Sent{"poses"});
   Viewer& second = bench.hub.add(false);
@@ -59,7 +60,7 @@ TEST(Hub, IntroducesItselfAndSendsWhatIsSubscribed) {
   EXPECT_EQ(bench.sent(second), Sent{"poses"}) << "the newest at once";
   bench.say(viewer, R"({"op":"unsubscribe","subscriptionIds":[9]})");
   bench.hub.remove(second.id);
-  EXPECT_TRUE(bench.desk.take().wanted.empty());
+  EXPECT_TRUE(bench.requests.take().wanted.empty());
 }
 
 TEST(Hub, NonsenseIsAnsweredAndEndsAtLast) {
@@ -85,7 +86,7 @@ TEST(Hub, NonsenseIsAnsweredAndEndsAtLast) {
     bench.sent(viewer);
   }
   EXPECT_TRUE(viewer.is_over);
-  EXPECT_TRUE(bench.desk.take().calls.empty());
+  EXPECT_TRUE(bench.requests.take().calls.empty());
 }
 
 TEST(Hub, TheHundredthNonsenseInARowIsTheLast) {
@@ -111,7 +112,7 @@ TEST(Hub, CallsNeedTheTokenAndAreAnsweredOnce) {
   EXPECT_EQ(bench.sent(looker), Sent{"serviceCallFailure"});
   Viewer& viewer = bench.hub.add(true);
   bench.hub.receive(viewer, call, false);
-  const auto calls = bench.desk.take().calls;
+  const auto calls = bench.requests.take().calls;
   ASSERT_EQ(calls.size(), 1u);
   EXPECT_EQ(calls[0].request.kind, wire::Request::Kind::move);
   EXPECT_EQ(calls[0].request.text, "b");
@@ -120,7 +121,7 @@ TEST(Hub, CallsNeedTheTokenAndAreAnsweredOnce) {
   bench.hub.answer(calls[0], false, "no");
   EXPECT_EQ(bench.sent(viewer), Sent{"serviceCallFailure"});
   for (int i = 0; i < 100; ++i) bench.hub.receive(viewer, call, false);
-  EXPECT_EQ(bench.desk.take().calls.size(), Hub::most_unanswered);
+  EXPECT_EQ(bench.requests.take().calls.size(), Hub::most_unanswered);
 }
 
 TEST(Hub, ChannelsComeAndGo) {
@@ -131,7 +132,7 @@ TEST(Hub, ChannelsComeAndGo) {
   bench.hub.set_channels(
       {{1, "/world", Kind::world, &schema, 0}, {3, "/tf", Kind::transforms, &schema, 0}});
   EXPECT_EQ(bench.sent(viewer), (Sent{"unadvertise", "advertise"}));
-  EXPECT_TRUE(bench.desk.take().wanted.empty());
+  EXPECT_TRUE(bench.requests.take().wanted.empty());
   bench.hub.show(6, std::vector{message_of(2, "poses")});
   EXPECT_TRUE(bench.sent(viewer).empty());
 }
@@ -140,7 +141,8 @@ TEST(Hub, ChannelsComeAndGo) {
 std::vector<channels::Channel> large_channels(std::uint32_t first, std::uint32_t last) {
   static const channels::Schema large{"ziggurat.v1.Poses", std::string(100'000, 'x')};
   std::vector<channels::Channel> list;
-  for (std::uint32_t id = first; id <= last; ++id) list.push_back({id, "/" + std::to_string(id), Kind::poses, &large, 0});
+  for (std::uint32_t id = first; id <= last; ++id)
+    list.push_back({id, "/" + std::to_string(id), Kind::poses, &large, 0});
   return list;
 }
 
@@ -169,14 +171,18 @@ TEST(Hub, ALongListOfChannelsIsMadeInPartsAsTheViewerReads) {
   list.erase(list.begin() + 4);  // 5, which the viewer does not know yet
   list.erase(list.begin() + 1);  // 2, which it knows
   bench.hub.set_channels(list);
-  EXPECT_EQ(nlohmann::json::parse(bench.hub.next(viewer)->head).at("channelIds"), nlohmann::json({2}));
-  EXPECT_EQ(told(bench, viewer, "advertise"), (std::vector<std::vector<std::uint32_t>>{{4, 6, 7}, {8, 9, 10}, {11, 12}}));
+  EXPECT_EQ(nlohmann::json::parse(bench.hub.next(viewer)->head).at("channelIds"),
+            nlohmann::json({2}));
+  EXPECT_EQ(told(bench, viewer, "advertise"),
+            (std::vector<std::vector<std::uint32_t>>{{4, 6, 7}, {8, 9, 10}, {11, 12}}));
   for (int i = 0; i < 100; ++i) {
     bench.hub.set_channels(large_channels(1, 1));
     bench.hub.set_channels(large_channels(1, 4));
   }
-  EXPECT_LT(idle.output.size(), 1000u) << "nothing but serverInfo waits for one that does not read";
-  EXPECT_EQ(told(bench, idle, "advertise"), (std::vector<std::vector<std::uint32_t>>{{1, 2, 3}, {4}}));
+  EXPECT_LT(idle.send_queue.size(), 1000u)
+      << "nothing but serverInfo waits for one that does not read";
+  EXPECT_EQ(told(bench, idle, "advertise"),
+            (std::vector<std::vector<std::uint32_t>>{{1, 2, 3}, {4}}));
   const auto gone = nlohmann::json::parse(bench.hub.next(viewer)->head).at("channelIds");
   EXPECT_LE(gone.size(), 12u) << "each channel is told to be gone once";
 }
@@ -188,8 +194,10 @@ TEST(Hub, AChannelThatGoesAndComesAgainIsToldAnew) {
   bench.sent(viewer);
   bench.hub.show(6, std::vector{message_of(2, "poses")});
   bench.hub.set_channels({{1, "/world", Kind::world, &schema, 0}});
-  bench.hub.set_channels({{1, "/world", Kind::world, &schema, 0}, {2, "/poses", Kind::poses, &schema, 0}});
-  EXPECT_EQ(bench.sent(viewer), (Sent{"unadvertise", "advertise"})) << "and no message of the old one";
+  bench.hub.set_channels(
+      {{1, "/world", Kind::world, &schema, 0}, {2, "/poses", Kind::poses, &schema, 0}});
+  EXPECT_EQ(bench.sent(viewer), (Sent{"unadvertise", "advertise"}))
+      << "and no message of the old one";
   bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})");
   bench.hub.show(7, std::vector{message_of(2, "poses")});
   EXPECT_EQ(bench.sent(viewer), Sent{"poses"});
@@ -204,13 +212,14 @@ TEST(Hub, TheGraphIsSentOnceForManyQuestions) {
   bench.hub.set_channels({{1, "/world", Kind::world, &schema, 0}});
   EXPECT_EQ(bench.sent(viewer), (Sent{"unadvertise", "connectionGraphUpdate"}));
   bench.say(viewer, R"({"op":"unsubscribeConnectionGraph"})");
-  bench.hub.set_channels({{1, "/world", Kind::world, &schema, 0}, {2, "/poses", Kind::poses, &schema, 0}});
+  bench.hub.set_channels(
+      {{1, "/world", Kind::world, &schema, 0}, {2, "/poses", Kind::poses, &schema, 0}});
   EXPECT_EQ(bench.sent(viewer), Sent{"advertise"});
 }
 
 std::string call_of(std::uint32_t service, const std::string& payload) {
-  return std::string("\x02") + static_cast<char>(service) + std::string(3, '\0') + std::string(4, '\7') +
-         std::string("\4\0\0\0json", 8) + payload;
+  return std::string("\x02") + static_cast<char>(service) + std::string(3, '\0') +
+         std::string(4, '\7') + std::string("\4\0\0\0json", 8) + payload;
 }
 
 /// Clocks as their times [ns], other messages as -1.
@@ -218,7 +227,8 @@ std::vector<std::int64_t> clocks(Bench& bench, Viewer& viewer) {
   std::vector<std::int64_t> all;
   while (auto item = bench.hub.next(viewer)) {
     std::int64_t time_ns = -1;
-    if (item->head.starts_with('\x02')) std::memcpy(&time_ns, item->head.data() + 1, sizeof time_ns);
+    if (item->head.starts_with('\x02'))
+      std::memcpy(&time_ns, item->head.data() + 1, sizeof time_ns);
     all.push_back(time_ns);
   }
   return all;
@@ -234,7 +244,9 @@ TEST(Hub, EachViewerIsToldTheClockBeforeItsFirstMessage) {
   bench.hub.show(5, std::vector{message_of(1, "world")});
   EXPECT_EQ(clocks(bench, first), (std::vector<std::int64_t>{5, -1}));
   EXPECT_TRUE(clocks(bench, second).empty()) << "it has asked for nothing";
-  bench.say(second, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":2}]})");
+  bench.say(
+      second,
+      R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":2}]})");
   EXPECT_EQ(clocks(bench, second), (std::vector<std::int64_t>{5, -1})) << "with the newest message";
   bench.hub.show(5, std::vector{message_of(1, "world"), message_of(2, "poses")});
   EXPECT_EQ(clocks(bench, first), std::vector<std::int64_t>{-1});
@@ -249,14 +261,17 @@ TEST(Hub, AViewerThatComesWithinATimeIsToldTheClockWhichStartsAfterZero) {
     bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})");
     bench.sent(viewer);
     bench.hub.show(time_ns, std::vector{message_of(2, "poses")});
-    EXPECT_EQ(clocks(bench, viewer), (std::vector<std::int64_t>{std::max<std::int64_t>(time_ns, 1), -1}));
+    EXPECT_EQ(clocks(bench, viewer),
+              (std::vector<std::int64_t>{std::max<std::int64_t>(time_ns, 1), -1}));
   }
 }
 
 TEST(Hub, TheClockStaysWithWhatIsKeptOfADroppedTick) {
   Bench bench;
   Viewer& viewer = bench.hub.add(false);
-  bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":2}]})");
+  bench.say(
+      viewer,
+      R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":2}]})");
   bench.sent(viewer);
   bench.hub.show(5, std::vector{message_of(1, "world")});
   for (int i = 0; i < 10; ++i) bench.hub.show(5, std::vector{message_of(2, "poses")});
@@ -273,7 +288,7 @@ TEST(Hub, ALargeCallWaitsForTheAnswersOfOthers) {
   const std::string large = R"({"xml":")" + std::string(Hub::largest_queued, 'x') + "\"}";
   const std::string spawn = call_of(7, large);
   for (int i = 0; i < 3; ++i) bench.hub.receive(viewer, spawn, false);
-  EXPECT_EQ(bench.desk.take().calls.size(), 1U);
+  EXPECT_EQ(bench.requests.take().calls.size(), 1U);
   EXPECT_EQ(bench.sent(viewer), (Sent{"serviceCallFailure", "serviceCallFailure"}));
   EXPECT_FALSE(viewer.is_over);
 }
@@ -289,7 +304,7 @@ TEST(Hub, JsonWithVeryManyValuesIsNotRead) {
   bench.hub.receive(viewer, call_of(6, numbers + "]}"), false);
   const std::string text = R"({"xml":"\",[[[)" + std::string(200'000, ',') + "\"}";
   bench.hub.receive(viewer, call_of(7, text), false);
-  const auto calls = bench.desk.take().calls;
+  const auto calls = bench.requests.take().calls;
   ASSERT_EQ(calls.size(), 1U) << "commas of a text are no values";
   EXPECT_EQ(calls[0].request.text.size(), 200'005U);
 }

@@ -25,7 +25,8 @@ class Folder : public ::testing::Test {
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(path_ / name) << text;
   }
-  const std::filesystem::path path_ = ::testing::TempDir() + "page_test_" + std::to_string(::getpid());
+  const std::filesystem::path path_ =
+      ::testing::TempDir() + "page_test_" + std::to_string(::getpid());
   const Page page_{(path_ / "web").string()};
 };
 

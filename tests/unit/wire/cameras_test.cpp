@@ -1,4 +1,4 @@
-// What cameras see, on its way to a client.
+// Camera readings on their way to a client.
 
 #include "wire/device_wire.h"
 #include "wire/observation.h"
@@ -99,18 +99,20 @@ TEST_F(DeviceWire, PicturesCountToo) {
   EXPECT_FALSE(outbox.observation(roster, often, long_payloads));
 }
 
-/// What is counted of an observation holds for the message that is made of it.
-void expect_counted(const Roster& roster, const world::Observations& seen, const std::vector<std::string>& texts) {
+/// Expects the counted sizes of an observation in the message that is made of it.
+void expect_counted(const Roster& roster, const world::Observations& seen,
+                    const std::vector<std::string>& texts) {
   Outbox outbox;
   ASSERT_TRUE(outbox.observation(roster, seen, texts));
-  const Sensed sensed = sensed_by(roster, seen, texts);
+  const ReadingSize size = size_of_readings(roster, seen, texts);
   const std::string bytes = outbox.message().observation().SerializeAsString();
-  constexpr std::size_t no_bound = v1::most_decoded, other_readings = 4096;
-  EXPECT_LE(v1::decoded_size(bytes, *v1::Observation::descriptor(), no_bound), sensed.memory + other_readings);
-  EXPECT_LT(sensed.memory, no_bound);
+  constexpr std::size_t other_readings = 4096;
+  EXPECT_LE(v1::decoded_size(bytes, *v1::Observation::descriptor(), v1::most_counted),
+            size.memory + other_readings);
+  EXPECT_LT(size.memory, v1::most_counted);
 }
 
-TEST_F(DeviceWire, ClientsDecodeAllThatASessionIsToldOfItsCameras) {
+TEST_F(DeviceWire, AllThatASessionIsToldOfItsCamerasIsCounted) {
   constexpr std::size_t many = 100'000;
   world::Observations seen = run.observations();
   seen.tags.assign(many, {1, 1, {0, 0}, corners(0)});
@@ -121,16 +123,17 @@ TEST_F(DeviceWire, ClientsDecodeAllThatASessionIsToldOfItsCameras) {
   seen.leds.clear();
   seen.directional_leds.assign(many, {2, 0xFFFFFF, {0, 0}});
   expect_counted(roster, seen, payloads);
-  EXPECT_GE(v1::most_counted / v1::counted_led, std::size_t{1} << 24) << "all that cameras may see at a tick";
+  EXPECT_GE(v1::most_counted / v1::counted_led, std::size_t{1} << 24)
+      << "all that cameras may see at a tick";
 }
 
-TEST_F(DeviceWire, ClientsDecodeAllThatASessionHears) {
+TEST_F(DeviceWire, AllThatASessionHearsIsCounted) {
   world::Observations seen = run.observations();
   seen.radio_messages.entries.assign(100'000, {});
   expect_counted(roster, seen, payloads);
   seen.radio_messages.entries.assign(v1::most_counted / v1::counted_radio_message + 1, {});
   Outbox outbox;
-  EXPECT_FALSE(outbox.observation(roster, seen, payloads)) << "clients would refuse it";
+  EXPECT_FALSE(outbox.observation(roster, seen, payloads)) << "it is too much";
   seen.radio_messages.entries.clear();
   seen.range_and_bearing.assign(100'000, {});
   expect_counted(roster, seen, payloads);

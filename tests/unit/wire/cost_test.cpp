@@ -42,7 +42,7 @@ TEST(Cost, AMessageOfEmptyPartsIsNotDecoded) {
   EXPECT_EQ(inbox.parse(json + "\"\"]}}"), Inbox::Kind::malformed);
 }
 
-/// What this process has of the system's memory for objects [bytes].
+/// Memory that this process holds for objects [bytes].
 std::size_t allocated() {
   const struct mallinfo2 info = ::mallinfo2();
   return info.uordblks + info.hblkhd;
@@ -99,7 +99,8 @@ TEST(Cost, TextCountsByItsLength) {
   message.mutable_command()->add_log()->set_text(std::string(16 << 10, 'x'));
   message.mutable_command()->add_tag_payloads(std::string(16 << 10, 'x'));
   EXPECT_EQ(count_fields(message.SerializeAsString()), 4U + (16 << 10) / bytes_per_field);
-  message.mutable_command()->mutable_log(0)->set_text(std::string(most_fields * bytes_per_field, 'x'));
+  message.mutable_command()->mutable_log(0)->set_text(
+      std::string(most_fields * bytes_per_field, 'x'));
   Inbox inbox;
   EXPECT_EQ(inbox.parse(message.SerializeAsString()), Inbox::Kind::malformed);
 }

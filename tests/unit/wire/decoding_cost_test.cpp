@@ -1,4 +1,4 @@
-// What the worst messages cost that are decoded: bench/results/disturbances.md has the figures.
+// Cost of the worst messages that are decoded: bench/results/disturbances.md has the figures.
 
 #include <google/protobuf/util/json_util.h>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace ziggurat::wire {
 namespace {
 
-/// Of this thread [s].
+/// Processor time of this thread [s].
 double processor_time() {
   timespec time{};
   ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -31,7 +31,8 @@ std::string json_of(const CommandLimits& limits, const std::string& begin, const
   const std::size_t per_unit = std::max<std::size_t>(1, count_json_values(unit));
   const bool is_text = begin.back() == '"';
   const std::size_t most = is_text ? limits.bytes : limits.fields / per_unit - 4;
-  for (std::size_t i = 0; i < most && text.size() + unit.size() + end.size() <= limits.bytes; ++i) text += unit;
+  for (std::size_t i = 0; i < most && text.size() + unit.size() + end.size() <= limits.bytes; ++i)
+    text += unit;
   return text + end;
 }
 
@@ -44,7 +45,8 @@ std::string text_in_binary(const CommandLimits& limits) {
 
 std::string many_messages_in_binary(const CommandLimits& limits) {
   v1::ClientMessage message;
-  for (std::size_t i = 0; i + 2 < limits.fields; ++i) message.mutable_command()->add_radio_messages();
+  for (std::size_t i = 0; i + 2 < limits.fields; ++i)
+    message.mutable_command()->add_radio_messages();
   return message.SerializeAsString();
 }
 
@@ -58,7 +60,7 @@ std::string long_messages_in_binary(const CommandLimits& limits) {
   return message.SerializeAsString();
 }
 
-/// Of a robot with every device of which a Command has values, and a radio.
+/// Layout of a robot with a radio and every device that a Command has values for.
 world::Layout equipped() {
   world::Layout layout;
   layout.radios.resize(1);
@@ -88,7 +90,8 @@ TEST(Decoding, ALimitHasPlaceForTheMetricsOfAllRobots) {
     metric.set_name(std::string(64, 'x'));
     metric.set_value(-1.2345678901234567e-100);
   }
-  const CommandLimits binary = limits_of(layout, Encoding::binary), json = limits_of(layout, Encoding::json);
+  const CommandLimits binary = limits_of(layout, Encoding::binary),
+                      json = limits_of(layout, Encoding::json);
   const std::string bytes = message.SerializeAsString();
   EXPECT_LE(bytes.size(), binary.bytes);
   EXPECT_LE(count_fields(bytes), binary.fields);
@@ -124,7 +127,8 @@ TEST(Decoding, ALimitHasPlaceForManyLogLinesAndRadioMessagesOfARobot) {
 
 TEST(Decoding, TheWorstCommandOfARobotTakesAFewMilliseconds) {
   const world::Layout layout = equipped();
-  const CommandLimits binary = limits_of(layout, Encoding::binary), json = limits_of(layout, Encoding::json);
+  const CommandLimits binary = limits_of(layout, Encoding::binary),
+                      json = limits_of(layout, Encoding::json);
   EXPECT_LT(binary.bytes, std::size_t{3} << 20);
   EXPECT_LT(json.bytes, std::size_t{1} << 19);
   const struct {
@@ -135,18 +139,25 @@ TEST(Decoding, TheWorstCommandOfARobotTakesAFewMilliseconds) {
       {"text in binary", text_in_binary(limits_of({}, Encoding::binary)), binary.fields},
       {"radio messages in binary", many_messages_in_binary(binary), binary.fields},
       {"the longest in binary", long_messages_in_binary(binary), binary.fields},
-      {"text in JSON", json_of(json, R"({"command":{"log":[{"text":")", "\xe2\x82\xac", R"("}]}})"), json.fields},
-      {"bytes in JSON", json_of(json, R"({"command":{"tagPayloads":[")", "AAAA", R"("]}})"), json.fields},
-      {"numbers in JSON", json_of(json, R"({"command":{"jointTargets":[0)", ",0.12345678901", "]}}"), json.fields},
-      {"objects in JSON", json_of(json, R"({"command":{"log":[{})", R"(,{"robot":0})", "]}}"), json.fields},
-      {"one number in JSON", json_of(json, R"({"command":{"jointTargets":[0.)", "12345678", "]}}"), json.fields},
+      {"text in JSON", json_of(json, R"({"command":{"log":[{"text":")", "\xe2\x82\xac", R"("}]}})"),
+       json.fields},
+      {"bytes in JSON", json_of(json, R"({"command":{"tagPayloads":[")", "AAAA", R"("]}})"),
+       json.fields},
+      {"numbers in JSON",
+       json_of(json, R"({"command":{"jointTargets":[0)", ",0.12345678901", "]}}"), json.fields},
+      {"objects in JSON", json_of(json, R"({"command":{"log":[{})", R"(,{"robot":0})", "]}}"),
+       json.fields},
+      {"one number in JSON", json_of(json, R"({"command":{"jointTargets":[0.)", "12345678", "]}}"),
+       json.fields},
   };
   for (const auto& [name, bytes, fields] : messages) {
     Inbox inbox;
     const double begin = processor_time();
-    EXPECT_EQ(inbox.parse(bytes, fields), Inbox::Kind::command) << name << ": " << inbox.complaint();
+    EXPECT_EQ(inbox.parse(bytes, fields), Inbox::Kind::command)
+        << name << ": " << inbox.complaint();
     const double used = processor_time() - begin;
-    std::printf("%-26s %4.2f MiB %6.2f ms\n", name, static_cast<double>(bytes.size()) / (1 << 20), 1e3 * used);
+    std::printf("%-26s %4.2f MiB %6.2f ms\n", name, static_cast<double>(bytes.size()) / (1 << 20),
+                1e3 * used);
     EXPECT_LT(used, long_runs::is_slow ? 2 : 0.1) << name;
   }
 }

@@ -1,12 +1,13 @@
 // Devices on the wire: what goes where, and what is refused.
 
+#include "wire/devices.h"
+
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "wire/device_wire.h"
-#include "wire/devices.h"
-#include "wire/zero.h"
+#include "wire/reset_commands.h"
 #include "world/limits.h"
 
 namespace ziggurat::wire {
@@ -105,7 +106,7 @@ TEST_F(DeviceWire, RobotsThatLeftKeepTheirColorsAndAreOtherwiseZero) {
   commands.magnet_currents = {1, 2, 3, 4};
   commands.led_colors = {1, 2, 3, 4};
   commands.range_and_bearing_data.assign(12, 9);
-  zero(run.layout(), 2, commands);
+  reset_commands(run.layout(), 2, commands);
   EXPECT_EQ(commands.magnet_currents, (std::vector<double>{1, 2, 0, 0}));
   EXPECT_EQ(commands.led_colors, (std::vector<world::Color>{1, 2, 3, 4}));
   EXPECT_EQ(commands.range_and_bearing_data,
@@ -250,7 +251,8 @@ TEST_F(DeviceWire, ReceiversKeepTheirPlacesAroundRobotsWithoutDevices) {
   EXPECT_EQ(observation.range_and_bearing(1).robot(), 2U);
 }
 
-// The data of the same sender are copied for each packet, and each message takes memory beside its content.
+// The data of the same sender are copied for each packet, and each message takes memory beside its
+// content.
 TEST_F(DeviceWire, WhatItHearsCountsBeforeAMessageIsMade) {
   world::Observations seen = run.observations();
   seen.range_and_bearing_data.resize(65536);
@@ -263,7 +265,8 @@ TEST_F(DeviceWire, WhatItHearsCountsBeforeAMessageIsMade) {
   seen.radio_messages.add(1, {});
   seen.radio_messages.entries.assign(1000, seen.radio_messages.entries[0]);
   EXPECT_TRUE(outbox.observation(roster, seen, {}, 64'000));
-  EXPECT_FALSE(outbox.observation(roster, seen, {}, 31'999)) << "32 bytes each, though they are 4 bytes in the message";
+  EXPECT_FALSE(outbox.observation(roster, seen, {}, 31'999))
+      << "32 bytes each, though they are 4 bytes in the message";
 }
 
 TEST_F(DeviceWire, ASessionThatHearsTooMuchGetsNoMessage) {

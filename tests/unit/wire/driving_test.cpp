@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "wire/device_wire.h"
-#include "wire/zero.h"
+#include "wire/reset_commands.h"
 
 namespace ziggurat::wire {
 namespace {
@@ -66,7 +66,7 @@ TEST_F(Driving, RobotsThatLeftStand) {
   commands.turret_modes = {world::TurretMode::speed, world::TurretMode::speed};
   commands.turret_rotations = {1, 3};
   commands.turret_speeds = {2, 4};
-  zero(run.layout(), 2, commands);
+  reset_commands(run.layout(), 2, commands);
   EXPECT_EQ(wheels(), (std::vector<double>{1, 2, 3, 4, 0, 0}));
   EXPECT_EQ(commands.turret_speeds[0], 2);
   EXPECT_EQ(commands.turret_speeds[1], 0);

@@ -11,11 +11,12 @@
 
 namespace ziggurat::wire {
 
-/// Robots "a" (everything once, radios twice), "b" (nothing) and "c" (everything twice, one radio
-/// that only sends, one that only receives). Everything of c comes after that of a, and LED,
-/// magnet and tag 1 belong to an entity that is not a robot. a's camera sees LEDs and tags and
-/// takes pictures of 2 x 1 pixels, c's first sees tags and directional LEDs, c's second all but
-/// takes no pictures. a drives wheels and turret and measures neither; c does both.
+/// Robots "a", "b" and "c". a has everything once, and radios twice; b has nothing. c has
+/// everything twice, with one radio that only sends and one that only receives. Everything of c
+/// comes after that of a; LED, magnet and tag 1 belong to an entity that is not a robot. a's camera
+/// sees LEDs and tags and takes pictures of 2 x 1 pixels. c's first camera sees tags and
+/// directional LEDs; its second sees all but takes no pictures. a drives wheels and turret and
+/// measures neither; c does both.
 class EquippedRun {
  public:
   EquippedRun() {

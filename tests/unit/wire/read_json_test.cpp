@@ -48,7 +48,8 @@ TEST(ReadJson, AnUnknownNameOfAnEnumerationIsAsAnUnknownNumber) {
   EXPECT_EQ(read_json(R"({"hello":{"deadlinePolicy":{"action":"STOPP"}}})", message), "");
   EXPECT_EQ(static_cast<int>(message.hello().deadline_policy().action()), -1);
   message.Clear();
-  EXPECT_EQ(read_json(R"({"command":{"turretModes":["TURRET_SPED","TURRET_SPEED"]}})", message), "");
+  EXPECT_EQ(read_json(R"({"command":{"turretModes":["TURRET_SPED","TURRET_SPEED"]}})", message),
+            "");
   ASSERT_EQ(message.command().turret_modes_size(), 2) << "the others keep their places";
   EXPECT_EQ(message.command().turret_modes(0), -1);
 }
@@ -58,17 +59,19 @@ TEST(ReadJson, TellsWhichFieldCannotHaveItsValue) {
     v1::ClientMessage message;
     return read_json(text, message);
   };
-  for (const std::string value : {"-1", "18446744073709551616", "1.5", "1e20", "\"x\"", "\"\"", "\"1.0\"",
-                                  "\" 1\"", "\"-1\"", "\"1e3\"", "\"18446744073709551616\""}) {
+  for (const std::string value :
+       {"-1", "18446744073709551616", "1.5", "1e20", "\"x\"", "\"\"", "\"1.0\"", "\" 1\"", "\"-1\"",
+        "\"1e3\"", "\"18446744073709551616\""}) {
     EXPECT_EQ(complaint("{\"command\":{\"tick\":" + value + "}}"), "'tick' can't have that value")
         << value;
   }
   for (const std::string value : {"-1", "4294967296", "0.5", "\"a\""}) {
-    EXPECT_EQ(complaint("{\"command\":{\"robots\":[" + value + "]}}"), "'robots' can't have that value")
+    EXPECT_EQ(complaint("{\"command\":{\"robots\":[" + value + "]}}"),
+              "'robots' can't have that value")
         << value;
   }
-  for (const std::string value : {"\"\"", "\"1,5\"", "\"inf\"", "\"nan\"", "\"1e999\"", "\"0x10\"", "\" 1\"",
-                                  "\"1 \""}) {
+  for (const std::string value :
+       {"\"\"", "\"1,5\"", "\"inf\"", "\"nan\"", "\"1e999\"", "\"0x10\"", "\" 1\"", "\"1 \""}) {
     EXPECT_EQ(complaint("{\"command\":{\"jointTargets\":[" + value + "]}}"),
               "'joint_targets' can't have that value")
         << value;
@@ -84,7 +87,8 @@ TEST(ReadJson, TellsWhichFieldCannotHaveItsValue) {
   EXPECT_EQ(complaint(R"({"request":{"pause":{},"resume":{}}})"),
             "it has 'resume' beside another kind of request");
   EXPECT_EQ(complaint(R"({"command":)"), "not JSON at byte 12");
-  EXPECT_EQ(complaint(std::string(R"({"leave":{}})") + '\0' + R"({"command":{}})"), "not JSON at byte 13");
+  EXPECT_EQ(complaint(std::string(R"({"leave":{}})") + '\0' + R"({"command":{}})"),
+            "not JSON at byte 13");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What the conformance tests do not see: bytes, packing.
+// Bytes and packing, which the conformance tests do not see.
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include "wire/equipped_run.h"
 #include "wire/inbox.h"
 #include "wire/outbox.h"
+#include "wire/reset_commands.h"
 #include "wire/roster.h"
-#include "wire/zero.h"
 #include "ziggurat/v1/envelope.h"
 #include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
@@ -80,14 +80,17 @@ TEST(Outbox, InvalidTextOfASceneIsMadeValid) {
 
 TEST(RadioMessages, ThoseOfARosterAreForgotten) {
   const EquippedRun run;
-  const auto kept = [&](const std::vector<std::size_t>& robots, std::optional<std::size_t> taken = {}) {
+  const auto kept = [&](const std::vector<std::size_t>& robots,
+                        std::optional<std::size_t> taken = {}) {
     Roster roster = make_roster(run.layout(), robots);
     if (taken) roster.hand_over(*taken);
     world::RadioMessages messages;
-    for (const std::uint8_t radio : {3, 0, 1, 2, 0}) messages.add(radio, std::vector<std::uint8_t>{radio});
+    for (const std::uint8_t radio : {3, 0, 1, 2, 0})
+      messages.add(radio, std::vector<std::uint8_t>{radio});
     forget_radio_messages(roster, messages);
     std::string text;
-    for (const auto& entry : messages.entries) text += static_cast<char>('0' + messages.payload(entry)[0]);
+    for (const auto& entry : messages.entries)
+      text += static_cast<char>('0' + messages.payload(entry)[0]);
     EXPECT_EQ(messages.bytes.size(), text.size());
     return text;
   };

@@ -1,4 +1,5 @@
-// States as bytes, of anyone: what is written to files and sent to viewers has the size that its camera says.
+// States as bytes, of anyone: what is written to files and sent to viewers has the size that its
+// camera says.
 
 #include "world/archive.h"
 
@@ -16,7 +17,7 @@ struct Camera {
     layout.cameras[0].resolution = {4, 2};
     observations.images.push_back({0, {}});
   }
-  /// What is wrong with a picture of so many bytes; empty: nothing.
+  /// Fault of a picture of so many bytes; empty: none.
   std::string fault_of(std::size_t size) {
     observations.images[0].rgb.assign(size, 7);
     std::vector<std::byte> bytes;
@@ -41,7 +42,8 @@ TEST(Archive, TakesPicturesOfTheSizeOfTheirCameraOnly) {
   EXPECT_EQ(camera.fault_of(0), "") << "none was taken yet";
   EXPECT_EQ(camera.fault_of(24), "");
   for (const std::size_t size : {1, 23, 25, 4096}) {
-    EXPECT_NE(camera.fault_of(size).find("another size than its camera"), std::string::npos) << size;
+    EXPECT_NE(camera.fault_of(size).find("another size than its camera"), std::string::npos)
+        << size;
   }
 }
 

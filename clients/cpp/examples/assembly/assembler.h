@@ -83,7 +83,7 @@ struct Viewpoint {
   bool is_reached = false, is_for_parking = false;
 };
 
-/// What the robot is at.
+/// Job of the robot: its state, and the place that it works at.
 struct Job {
   State state = State::start;
   int since = 0;  ///< age of the state [ticks]
@@ -116,7 +116,7 @@ struct Assembler {
   Job job{};
 };
 
-/// Where a free robot and one with a block begin.
+/// State that a robot begins with, free or with a block.
 State decide(const Assembler& self);
 double distance_to(const Assembler& self, const Point& place);
 /// @pre  a column is known, as for all of the following
@@ -128,7 +128,7 @@ double direction_to(const Assembler& self, const Point& place);
 construction::Face face_of(const Assembler& self, const Pose& side);
 /// Whether another robot is within reach of a place and nearer to it than this one.
 bool is_taken(const Assembler& self, const Point& place, double reach);
-/// What the obstacles on the straight way to a side are worth in metres of another way.
+/// Detour that is worth the obstacles on the straight way to a side [m].
 double hindrance(const Pose& side, const std::vector<Point>& obstacles);
 /// Points around the structure, the nearest first and then in one direction.
 std::vector<Viewpoint> ring(Assembler& self, double radius, int count);

@@ -14,11 +14,11 @@ struct Assembler;
 
 /// From the robot's centre to a side when it lets the block go [m].
 double distance_of(const Row& row);
-/// Where to line up with a side.
+/// Point at which a robot lines up with a side.
 Point start_of(const Pose& side, const Row& row);
-/// Whether another robot is at work in the row of columns that leads to a side or lined up with it,
-/// or is on its way to a side and so much nearer than this one that it will be there first, or
-/// stands where that begins.
+/// Whether the corridor to a side, its row of columns, is taken. Another robot works in it, is
+/// lined up with it or stands at its start. A robot on its way to the side counts if it is so much
+/// nearer that it will be there first.
 /// @param own_distance  of this robot from there [m]
 bool is_corridor_taken(const Assembler& self, const Pose& side, const Row& row,
                        double own_distance);

@@ -73,8 +73,8 @@ Next choose_block(Assembler& self, Faces /*faces*/) {
       const double yaw = block->yaw + side * pi / 2;
       const Pose face = {ahead_of({*block, yaw}, construction::block / 2), yaw};
       const auto age = static_cast<double>(self.memory.now - block->seen);
-      // Those that stand in the way of building first; somebody may have taken what was seen long
-      // ago.
+      // Blocks in the way of building come first; old sightings count less, because another robot
+      // may have taken the block.
       const double cost = distance_to(self, run_up_to(face)) + hindrance(face, obstacles) +
                           distance_from_middle(self, *block) + std::min(0.6, 5e-4 * age);
       if (cost >= least) continue;

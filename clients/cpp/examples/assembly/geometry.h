@@ -15,7 +15,7 @@ struct Pose : Point {
   double yaw = 0;  ///< [rad]; of a block's side: its outward normal
 };
 
-/// Of a robot at this pose, or of a side's normal: the point this far ahead [m].
+/// Point this far ahead of a robot at this pose, or along a side's normal [m].
 inline Point ahead_of(const Pose& from, double distance) {
   return {from.x + distance * std::cos(from.yaw), from.y + distance * std::sin(from.yaw)};
 }

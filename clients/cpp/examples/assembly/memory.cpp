@@ -112,8 +112,8 @@ std::optional<Look>& look_of(Column& column, int side) {
   return column.sides[static_cast<std::size_t>(side)];
 }
 
-/// What a column must show by the rule table, if its lowest block has this state and its front is
-/// that side.
+/// Sets the colours that a column shows by the rule table, if its lowest block has this state and
+/// its front is that side.
 void expect(const Memory& memory, const Plan& plan, Column& column, const std::string& state,
             int height, int front) {
   for (int side = 0; side < 4; ++side) {
@@ -177,8 +177,8 @@ bool is_hidden(const Screen& block, const std::vector<Screen>& screens) {
   });
 }
 
-/// Leaves dark blocks alone at which another robot is at work, and forgets those that have not been
-/// where they should be in sight for a second: somebody took them.
+/// Ignores dark blocks at which another robot is at work. Forgets blocks that were missing in sight
+/// for a second: another robot took them.
 void forget_taken(Memory& memory, const Pose& pose, const Traffic& traffic) {
   constexpr double block_width = 0.05, robot_width = 0.17;
   for (const Neighbour& other : traffic.neighbours) {
@@ -208,8 +208,8 @@ void forget_taken(Memory& memory, const Pose& pose, const Traffic& traffic) {
   });
 }
 
-/// What a column showed last that it shows on all of its sides. What stands beside it tells it,
-/// too: it has been attached by what the column showed.
+/// Last colour that a column showed on all of its sides. Its neighbours tell it, too: they were
+/// attached by the colour that it showed.
 std::optional<Look> shown_all_around(const Memory& memory, const Plan& plan, const Column& column) {
   std::optional<Look> latest;
   for (const std::optional<Look>& look : column.sides) {
@@ -244,7 +244,7 @@ bool is_old(const Memory& memory, const Column& column, int side, const Look& lo
   });
 }
 
-/// What a side shows, as far as is known; nothing if nothing may be attached there.
+/// Colour of a side, as far as it is known; nothing if nothing may be attached there.
 /// @param latest  of shown_all_around()
 std::optional<Look> look_at(const Memory& memory, const Column& column, int side,
                             const std::optional<Look>& latest) {

@@ -1,7 +1,7 @@
 #pragma once
-// What a robot remembers of what it saw, in a frame of its own: where the structure's columns are,
-// what their sides showed, where material lies. Columns stand on a square lattice; so every lit
-// side that the camera sees corrects the odometry.
+// Memory of a robot, in a frame of its own: the structure's columns, the colours of their sides,
+// and material. Columns stand on a square lattice; so every lit side that the camera sees corrects
+// the odometry.
 
 #include <array>
 #include <cstdint>
@@ -34,7 +34,7 @@ struct Block : Pose {
   int missed = 0;          ///< ticks for which it was not where it should be in sight
 };
 
-/// What a side showed.
+/// Colour that a side showed, and its time.
 struct Look {
   const Row* row = nullptr;  ///< null: nothing that the table has
   std::int64_t seen = 0;     ///< [ticks]
@@ -47,7 +47,7 @@ struct Column : Point {
   std::array<std::optional<Look>, 4> sides;
 };
 
-/// Those who got a block or a column keep it when the memory has replaced it.
+/// Memory of blocks and columns. A holder of one keeps it when the memory has replaced it.
 struct Memory {
   std::optional<Pose> anchor;  ///< the first column that was seen
   std::map<std::string, std::shared_ptr<Column>>

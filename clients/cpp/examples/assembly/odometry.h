@@ -21,9 +21,9 @@ struct Odometry {
 /// Updates the pose; call it first in every step.
 void reckon(Odometry& odometry, const construction::Builder& builder, const ziggurat::Imu& imu);
 
-/// How far in front of the robot's centre the point is about which it turns [m].
+/// Distance of the point about which the robot turns, in front of its centre [m].
 double pivot_ahead(const Odometry& odometry, bool loaded);
-/// That point, and the robot's direction: a turn on the spot does not move it.
+/// Pose at that point, with the robot's direction: a turn on the spot does not move it.
 Pose pivot_of(const Odometry& odometry, bool loaded);
 
 /// Something that stands still was seen this far from its place of the tick before [m].

@@ -24,7 +24,7 @@ bool is_inside(Cell at) { return std::max(std::abs(at.i), std::abs(at.j)) <= far
 int key_of(Cell at) { return (at.i + farthest) * width + at.j + farthest; }
 Cell cell_of(int key) { return {key / width - farthest, key % width - farthest}; }
 
-/// What a cell costs to cross: 1, more near an obstacle, much more within its radius. No cell is
+/// Cost of crossing a cell: 1, more near an obstacle, much more within its radius. No cell is
 /// forbidden, so there is a way from any place.
 double cost_at(const Point& at, std::span<const Obstacle> obstacles) {
   double cost = 1;
@@ -80,7 +80,7 @@ int pop(std::vector<Entry>& heap) {
   return top;
 }
 
-/// What is known of a cell.
+/// Node of the search: the state of a cell.
 struct Node {
   double cost = -1;                                        // below 0: not computed yet
   double value = std::numeric_limits<double>::infinity();  // of the way to it

@@ -14,10 +14,10 @@ namespace {
 
 constexpr int no_more_tries = 1'000'000;
 
-/// Of the carried block above the floor, when it is placed by this row [m].
+/// Height of the carried block above the floor, when it is placed by this row [m].
 double height_of(const Row& row) { return row.above ? row.height * construction::block : 0; }
 
-/// Of the lift on the way to the side; while it lines up, also if the colour changes.
+/// Height of the lift on the way to the side; while it lines up, also if the colour changes.
 double height_to_carry(const Row& row) {
   return carrying + (row.above ? row.height - 1 : 0) * construction::block;
 }
@@ -44,7 +44,7 @@ std::optional<Place> nearest_side(const Assembler& self) {
 
 double direction_to_middle(const Assembler& self) { return direction_to(self, middle(self)); }
 
-/// What the side shows does not count until it is seen again.
+/// Forgets the colour of the side until it is seen again.
 void forget_color(const Assembler& self) {
   const Place& place = self.job.place;
   if (!place.column) return;
@@ -57,8 +57,8 @@ Next give_up_side(Assembler& self) {
   return State::choose_side;
 }
 
-/// What the side shows: its place becomes where the camera sees it. Nearer than 13 cm the LEDs are
-/// out of the image.
+/// Colour of the side, whose pose is corrected by the camera. Nearer than 13 cm the LEDs are out of
+/// the image.
 /// @return nothing if it is not in sight; null if nothing may be attached there
 std::optional<const Row*> look_at_side(Assembler& self, Faces faces) {
   Place& place = self.job.place;

@@ -12,7 +12,7 @@
 
 namespace assembly {
 
-/// What the colour of a column's side says. Sides count from that which looked at the robot that
+/// Rule for the colour of a column's side. Sides count from the one that faced the robot that
 /// placed the column's lowest block.
 struct Row {
   std::uint8_t index = 0;       ///< its place in the table, from 1; 0: of no table

@@ -18,7 +18,7 @@ Next start(Assembler& self, Faces /*faces*/) {
 
 namespace {
 
-/// What the held block says the robot was at.
+/// State that the held block remembers of the robot.
 Next recall(Assembler& self, ziggurat::Bytes message) {
   const double height = self.builder.lift_height();
   if (message.empty()) return {};

@@ -1,7 +1,7 @@
 #pragma once
-// How robots keep clear of each other. Each tells the others within 2 m by range and bearing what
-// it does, in the same three bytes as the Lua script: flags, claim, a random number. None knows
-// another's plan.
+// Traffic rules that keep robots clear of each other. Each robot tells the others within 2 m by
+// range and bearing what it does. The three bytes are those of the Lua script: flags, claim, a
+// random number. No robot knows another's plan.
 
 #include <ziggurat/ziggurat.h>
 
@@ -58,7 +58,7 @@ void leave_structure(Traffic& traffic);
 bool is_blocked(const Traffic& traffic, double direction, double reach = 0.245);
 /// Null if there is none.
 const Neighbour* nearest(const Traffic& traffic);
-/// Where another robot stands, in the frame of the pose.
+/// Position of another robot, in the frame of the pose.
 Point place_of(const Neighbour& other, const Pose& pose);
 /// Adds the others to a list, in the frame of the pose. Those that are far away and not at work
 /// will be somewhere else when this robot comes there.

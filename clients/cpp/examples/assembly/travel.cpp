@@ -92,7 +92,7 @@ bool evades(Assembler& self) {
   return true;
 }
 
-/// How far a column is in front that the robot would touch when it turns [m].
+/// Distance to a column in front that the robot would touch when it turns [m].
 std::optional<double> column_beside(const Assembler& self) {
   const Pose& here = pose_of(self);
   for (const auto& [key, column] : self.memory.columns) {
@@ -102,7 +102,7 @@ std::optional<double> column_beside(const Assembler& self) {
   return std::nullopt;
 }
 
-/// How far a dark block is in front that the robot would touch when it turns on the spot [m].
+/// Distance to a dark block in front that the robot would touch when it turns on the spot [m].
 std::optional<double> block_beside(const Assembler& self) {
   const Pose pivot = pivot_of(self.odometry, self.builder.loaded);
   for (const auto& block : self.memory.material) {

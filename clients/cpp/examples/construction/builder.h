@@ -76,9 +76,9 @@ class Builder {
   std::vector<Face> faces() const;
   /// At floor level, facing the robot; none if the camera sees none.
   std::optional<Face> nearest_face() const;
-  /// Drives to the nearest face; call it in every step. `askew` if the robot came close but is not
-  /// on the line or too far aside for the way that is left, or if the face left the image and the
-  /// camera sees another; `lost` if it sees none.
+  /// Drives to the nearest face; call it in every step. `askew`: the robot came close but is not on
+  /// the line, or is too far aside for the way that is left. The same holds if the face left the
+  /// image and the camera sees another. `lost`: it sees none.
   Docking dock(double fastest);
   /// Drives to this face, until it is at this distance from the robot's centre [m]; call it in
   /// every step. `askew` if the robot came close but is not on the line.

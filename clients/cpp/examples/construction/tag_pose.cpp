@@ -15,8 +15,8 @@ double length(const Vector& a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[
 }  // namespace
 
 // A plane is seen through a homography. For a square that fills 0 <= u, v <= 1 of its plane it has
-// a closed form (Heckbert 1989), and its columns are, up to one scale, the square's two edges and
-// its first corner in the camera's frame (Zhang 2000).
+// a closed form (Heckbert 1989). Its columns are the square's two edges and its first corner in the
+// camera's frame, up to one scale (Zhang 2000).
 std::optional<TagPose> tag_pose(const std::array<ziggurat::Camera::Pixel, 4>& corners,
                                 const ziggurat::Camera& camera, double side) {
   std::array<double, 4> x{}, y{};

@@ -28,7 +28,7 @@ class Camera {
   struct TagReading {
     std::string_view payload;  ///< any bytes
     Pixel center{};
-    /// Of (-,-), (-,+), (+,+), (+,-) half a side in the tag's frame.
+    /// Corners (-,-), (-,+), (+,+), (+,-) half a side in the tag's frame.
     std::array<Pixel, 4> corners{};
   };
 

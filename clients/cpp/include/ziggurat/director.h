@@ -19,16 +19,16 @@
 
 namespace ziggurat {
 
-/// Of a director: what it is told.
+/// Options of a director: the parts of the world that it is sent.
 struct DirectorOptions : SessionOptions {
-  /// What a director can be told of entities; the numbers are the protocol's.
+  /// Properties of entities that a director can be sent; the numbers are the protocol's.
   enum class Group { poses = 1, links, joints, leds, tags, magnets, radio_messages, contacts };
-  static constexpr std::array all_groups = {Group::poses,   Group::links,          Group::joints,
-                                            Group::leds,    Group::tags,           Group::magnets,
+  static constexpr std::array all_groups = {Group::poses,          Group::links,   Group::joints,
+                                            Group::leds,           Group::tags,    Group::magnets,
                                             Group::radio_messages, Group::contacts};
 
-  std::string director;  ///< its id in the scene, or with --allow-director any other; required
-  bool takeover = false;                       ///< also if another session is this director
+  std::string director;   ///< its id in the scene, or with --allow-director any other; required
+  bool takeover = false;  ///< also if another session is this director
   std::vector<std::string> entities;           ///< ids or globs, also of later ones; none: all
   std::vector<Group> groups = {Group::poses};  ///< fewer cost less
 
@@ -36,11 +36,11 @@ struct DirectorOptions : SessionOptions {
   static DirectorOptions from_environment();
 };
 
-/// Directs a world in lock-step: the world waits for it, as for a controller. What it does takes effect
-/// between this tick and the next, in the order of the calls. The server checks it whole: if anything is
-/// wrong with it, as an entity that is not there, nothing of it is done and next() throws ProtocolError.
-/// Leaves the run when destroyed: as failed if an exception is the cause, otherwise as done. Not
-/// thread-safe.
+/// Directs a world in lock-step: the world waits for it, as for a controller. What it does takes
+/// effect between this tick and the next, in the order of the calls. The server checks it whole: if
+/// anything is wrong with it, as an entity that is not there, nothing of it is done and next()
+/// throws ProtocolError. Leaves the run when destroyed: as failed if an exception is the cause,
+/// otherwise as done. Not thread-safe.
 class Director {
  public:
   /// Connects and waits for the server's welcome.
@@ -50,9 +50,9 @@ class Director {
   Director(const Director&) = delete;
   Director& operator=(const Director&) = delete;
 
-  /// Sends what was asked for since the last call, and waits for the next tick. False after the last one.
-  /// The first call delivers Event::init, at tick 0 before any physics. If the connection is lost meanwhile, the
-  /// session is resumed (SessionOptions::resume_timeout).
+  /// Sends what was asked for since the last call, and waits for the next tick. False after the
+  /// last one. The first call delivers Event::init, at tick 0 before any physics. If the connection
+  /// is lost meanwhile, the session is resumed (SessionOptions::resume_timeout).
   /// @throws ConnectionError, ProtocolError
   bool next();
 
@@ -64,8 +64,8 @@ class Director {
   std::uint64_t missed() const noexcept;   ///< ticks that did not wait for this director's answer
   std::uint64_t resumes() const noexcept;  ///< how often a lost connection was replaced
 
-  /// What could not be done since the last call, as an entity that was spawned where another one stands: the
-  /// rest was done.
+  /// Acts since the last call that failed, such as a spawn at a place that is taken; all other acts
+  /// were done.
   std::vector<std::string> take_warnings();
 
   const std::string& id() const noexcept;  ///< in the scene
@@ -78,7 +78,7 @@ class Director {
 
   // --- The world after the tick ---
 
-  /// Those that are in the world, in scene order; spawned ones behind.
+  /// Entities that are in the world, in scene order; spawned ones behind.
   std::span<Entity* const> entities() const noexcept;
   /// Whether that list is not what it was at the tick before.
   bool entities_have_changed() const noexcept;
@@ -89,24 +89,33 @@ class Director {
   std::span<const Contact> contacts() const noexcept;
   std::span<const RadioMessage> radio_messages() const noexcept;
 
-  // --- What is done before the next tick: at most 10 000 acts, with texts of 2 MiB together, else std::length_error.
+  // --- Acts before the next tick: at most 10 000, with texts of 2 MiB together, else
+  // std::length_error.
   // --- Numbers that are not finite are std::invalid_argument.
 
-  /// The entity is at rest at the pose, its joints in their initial positions; no orientation = the present one. Where
-  /// others are then it is left out (take_warnings), unless it may overlap them: they are pushed apart.
+  /// The entity is at rest at the pose, its joints in their initial positions; no orientation = the
+  /// present one. Where others are then it is left out (take_warnings), unless it may overlap them:
+  /// they are pushed apart.
   void move(std::string_view entity, const std::array<double, 3>& position,
-            const std::optional<std::array<double, 4>>& orientation = std::nullopt, Onto onto = Onto::free_place);
-  /// A revolute or prismatic joint is put to a position [m, rad] from the assembled pose, within its limits, and a velocity
-  /// [m/s, rad/s]. What hangs on it follows; other joints and the root of the entity stay, and motors keep their targets.
-  void set_joint(std::string_view entity, std::string_view joint, double position, double velocity = 0);
-  /// The overlap of an entity, or an element as in <arena>, now at a pose of its origin: the first other entity's id, or
-  /// nothing where the place is free. Asks the server and waits for its answer; acts that were asked for since the last
-  /// next() are not done yet. The floor does not count, nor does the entity itself.
-  /// @param what  an id, or an element, which begins with '<': of a single body its extents are enough, as in
+            const std::optional<std::array<double, 4>>& orientation = std::nullopt,
+            Onto onto = Onto::free_place);
+  /// A revolute or prismatic joint is put to a position [m, rad] from the assembled pose, within
+  /// its limits, and a velocity [m/s, rad/s]. What hangs on it follows; other joints and the root
+  /// of the entity stay, and motors keep their targets.
+  void set_joint(std::string_view entity, std::string_view joint, double position,
+                 double velocity = 0);
+  /// The overlap of an entity, or an element as in <arena>, now at a pose of its origin: the first
+  /// other entity's id, or nothing where the place is free. Asks the server and waits for its
+  /// answer; acts that were asked for since the last next() are not done yet. The floor does not
+  /// count, nor does the entity itself.
+  /// @param what  an id, or an element, which begins with '<': of a single body its extents are
+  /// enough, as in
   ///              <box size="1,1,1"/>
-  /// @throws ConnectionError, ProtocolError for what the server refuses; std::logic_error between two ticks
-  std::optional<std::string> overlapped(std::string_view what, const std::array<double, 3>& position,
-                                        const std::optional<std::array<double, 4>>& orientation = std::nullopt);
+  /// @throws ConnectionError, ProtocolError for what the server refuses; std::logic_error between
+  /// two ticks
+  std::optional<std::string> overlapped(
+      std::string_view what, const std::array<double, 3>& position,
+      const std::optional<std::array<double, 4>>& orientation = std::nullopt);
   /// Whether that is nothing.
   bool is_free(std::string_view what, const std::array<double, 3>& position,
                const std::optional<std::array<double, 4>>& orientation = std::nullopt) {
@@ -115,7 +124,8 @@ class Director {
   /// @param xml  one element, as in <arena>
   void spawn(std::string_view xml);
   void remove(std::string_view entity);
-  /// A force at the centre of mass of a link and a torque, in the world's axes, during the next tick only.
+  /// A force at the centre of mass of a link and a torque, in the world's axes, during the next
+  /// tick only.
   /// @param force   [N]
   /// @param torque  [N m]
   /// @param link    its id; empty: the entity's first

@@ -20,7 +20,7 @@ struct Pose {
   std::array<double, 4> orientation;  ///< unit quaternion w, x, y, z
 };
 
-/// Of a link's frame, in the world's.
+/// State of a link's frame, in the world's.
 struct LinkState {
   std::array<double, 3> position;          ///< [m]
   std::array<double, 4> orientation;       ///< unit quaternion w, x, y, z
@@ -33,9 +33,10 @@ struct JointState {
   double velocity;  ///< [m/s] or [rad/s]
 };
 
-/// A handle into its director. When the world begins anew with other entities (Event::reset, Event::restored, or a
-/// session that was resumed), earlier handles are of removed entities: look them up again. Lists of states are
-/// as long as those of ids, and empty if the director did not ask for them (DirectorOptions::groups).
+/// A handle into its director. When the world begins anew with other entities (Event::reset,
+/// Event::restored, or a session that was resumed), earlier handles are of removed entities: look
+/// them up again. Lists of states are as long as those of ids, and empty if the director did not
+/// ask for them (DirectorOptions::groups).
 class Entity {
  public:
   const std::string& id() const noexcept { return id_; }
@@ -45,10 +46,12 @@ class Entity {
   /// It is not in the world any more: its states mean nothing.
   bool is_removed() const noexcept { return is_removed_; }
 
-  /// Of its origin. @throws std::logic_error if the director did not ask for poses
+  /// Pose of its origin. @throws std::logic_error if the director did not ask for poses
   const Pose& pose() const;
 
-  std::span<const std::string> link_ids() const noexcept { return links_.ids; }  ///< of one body: ""
+  std::span<const std::string> link_ids() const noexcept {
+    return links_.ids;
+  }  ///< of one body: ""
   std::span<const LinkState> links() const noexcept;
   std::span<const std::string> joint_ids() const noexcept { return joints_.ids; }
   std::span<const JointState> joints() const noexcept;
@@ -61,7 +64,7 @@ class Entity {
 
  private:
   friend class World;
-  struct Part {               // of a flat array
+  struct Part {  // of a flat array
     std::size_t first = 0;
     std::vector<std::string> ids;
   };

@@ -1,7 +1,7 @@
 #pragma once
 // Errors between a controller and the server. Besides, unknown ids are std::out_of_range and
-// invalid values std::invalid_argument; their messages name what is allowed. Texts of a server are printable in
-// all of them, and have 4096 bytes at most.
+// invalid values std::invalid_argument; their messages name what is allowed. Texts of a server are
+// printable in all of them, and have 4096 bytes at most.
 
 #include <cstdint>
 #include <stdexcept>

@@ -5,7 +5,7 @@
 
 namespace ziggurat {
 
-/// What an encoder measures or a motor controls.
+/// Quantity that an encoder measures or a motor controls.
 enum class JointMode {
   disabled,  ///< the encoder is 0; targets have no effect
   position,  ///< [m] (prismatic) or [rad] (revolute), from the assembled pose
@@ -21,16 +21,20 @@ class Joint {
   bool has_encoder() const noexcept { return has_encoder_; }
   /// The mode of the sensor that the scene lists first.
   JointMode encoder_mode() const noexcept { return encoder_mode_; }
-  /// The reading of that sensor at the session's tick, in the unit of encoder_mode(); 0 at tick 0 and without an
-  /// encoder.
+  /// The reading of that sensor at the session's tick, in the unit of encoder_mode(); 0 at tick 0
+  /// and without an encoder.
   double encoder() const noexcept {
-    return encoder_mode_ == JointMode::velocity ? velocity_ : encoder_mode_ == JointMode::position ? position_ : other_;
+    return encoder_mode_ == JointMode::velocity   ? velocity_
+           : encoder_mode_ == JointMode::position ? position_
+                                                  : other_;
   }
 
-  /// Whether the scene's controller has a sensor of this joint in mode position, velocity. A joint may have both.
+  /// Whether the scene's controller has a sensor of this joint in mode position, velocity. A joint
+  /// may have both.
   bool has_position() const noexcept { return has_position_; }
   bool has_velocity() const noexcept { return has_velocity_; }
-  /// Their readings [m or rad], [m/s or rad/s]; 0 at tick 0. @throws std::logic_error without that sensor
+  /// Their readings [m or rad], [m/s or rad/s]; 0 at tick 0. @throws std::logic_error without that
+  /// sensor
   double position() const;
   double velocity() const;
 
@@ -54,8 +58,8 @@ class Joint {
   bool has_encoder_ = false, has_position_ = false, has_velocity_ = false;
   double position_ = 0, velocity_ = 0;  // readings
   double other_ = 0;                    // the reading of a sensor that is disabled
-  double* target_ = nullptr;  // into the session's packed command
-  bool* changed_ = nullptr;   // the session's: some target was set after the last answer
+  double* target_ = nullptr;            // into the session's packed command
+  bool* changed_ = nullptr;             // the session's: some target was set after the last answer
 };
 
 }  // namespace ziggurat

@@ -24,7 +24,7 @@ class RangeAndBearing {
   };
 
   double range() const noexcept { return range_; }  ///< of sending [m]
-  /// Of each packet sent and received [bytes].
+  /// Size of each packet sent and received [bytes].
   std::size_t data_size() const noexcept { return data_size_; }
 
   /// The controller has a sensor for it.

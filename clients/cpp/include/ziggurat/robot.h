@@ -75,9 +75,10 @@ class Robot : public Sensors {
   void log(std::string_view text);
   void log_error(std::string_view text);
 
-  /// Sets a figure of the run, which the server keeps for each tick, with the last value as the final one:
-  /// in `--summary` under `ROBOT/name`, in readings, recordings and `--metrics`. Sent with the answer to
-  /// this tick; of two values for one tick the last counts. Servers before protocol version 1.3 ignore it.
+  /// Sets a figure of the run, which the server keeps for each tick, with the last value as the
+  /// final one: in `--summary` under `ROBOT/name`, in readings, recordings and `--metrics`. Sent
+  /// with the answer to this tick; of two values for one tick the last counts. Servers before
+  /// protocol version 1.3 ignore it.
   /// @param name  1 to 64 letters, digits, `_`, `-`, `.`; at most 100 names a robot
   /// @throws std::invalid_argument if the name has something else or the value is not finite
   /// @throws std::length_error if the robot would have more names
@@ -87,9 +88,9 @@ class Robot : public Sensors {
   /// leaves the run forever and its commands become zero. The session's other robots continue.
   void fail(std::string_view message);
   bool failed() const noexcept { return failed_; }
-  /// The robot has left the run, or this session: answers were missing (Deadline), it was removed from the world, or
-  /// another client has taken it over. Its values have no effect any more. A server of protocol version 1.0 does not
-  /// tell the first.
+  /// The robot has left the run, or this session: answers were missing (Deadline), it was removed
+  /// from the world, or another client has taken it over. Its values have no effect any more. A
+  /// server of protocol version 1.0 does not tell the first.
   bool gone() const noexcept { return is_gone_; }
 
  private:
@@ -104,7 +105,8 @@ class Robot : public Sensors {
     std::vector<Line> lines;
     std::size_t bytes = 0;
     std::size_t max_bytes = 0;
-    std::map<std::pair<std::uint32_t, std::string>, double> metrics;  // by position in the session and name
+    std::map<std::pair<std::uint32_t, std::string>, double>
+        metrics;  // by position in the session and name
   };
   void add_line(bool error, std::string_view text);
 
@@ -126,8 +128,8 @@ class Robot : public Sensors {
   std::uint32_t position_ = 0;  // in the session
   bool failed_ = false;
   bool is_gone_ = false;
-  std::string failure_;  // not yet sent; empty if none
-  Log* log_ = nullptr;   // the session's
+  std::string failure_;                              // not yet sent; empty if none
+  Log* log_ = nullptr;                               // the session's
   std::set<std::string, std::less<>> metric_names_;  // used so far
 };
 

@@ -19,7 +19,7 @@ class ProximitySensor {
   const std::string& anchor() const noexcept { return anchor_; }
   /// Start of the ray in the anchor's frame: x, y, z [m].
   const std::array<double, 3>& position() const noexcept { return position_; }
-  /// Of the ray in the anchor's frame: x, y, z, of length 1.
+  /// Direction of the ray in the anchor's frame: x, y, z, of length 1.
   const std::array<double, 3>& direction() const noexcept { return direction_; }
   double range() const noexcept { return range_; }  ///< length of the ray [m]
   /// Direction of the ray about the robot's +z from +x, in (-pi, pi] [rad]. Only the foot-bot's own
@@ -40,7 +40,8 @@ class ProximitySensor {
   double reading_ = 0;
 };
 
-/// The heading of a body: from the world's x axis to the body's, seen from above, in (-pi, pi] [rad].
+/// The heading of a body: from the world's x axis to the body's, seen from above, in (-pi, pi]
+/// [rad].
 /// @param orientation  unit quaternion w, x, y, z, body to world
 inline double yaw_of(const std::array<double, 4>& orientation) {
   const auto [w, x, y, z] = orientation;
@@ -49,8 +50,9 @@ inline double yaw_of(const std::array<double, 4>& orientation) {
 
 /// The pose of the robot's origin in the world.
 struct Positioning {
-  std::array<double, 3> position{};               ///< x, y, z [m]
-  std::array<double, 4> orientation{1, 0, 0, 0};  ///< unit quaternion w, x, y, z, robot to world; w >= 0
+  std::array<double, 3> position{};  ///< x, y, z [m]
+  std::array<double, 4> orientation{1, 0, 0,
+                                    0};  ///< unit quaternion w, x, y, z, robot to world; w >= 0
   double yaw() const { return yaw_of(orientation); }  ///< (-pi, pi] [rad]
 };
 
@@ -63,7 +65,7 @@ struct Battery {
 class Imu {
  public:
   const std::string& id() const noexcept { return id_; }
-  /// Where it is fixed: id of a link, or `origin`.
+  /// Anchor that it is fixed to: id of a link, or `origin`.
   const std::string& anchor() const noexcept { return anchor_; }
   /// In the anchor's frame: x, y, z [m].
   const std::array<double, 3>& position() const noexcept { return position_; }

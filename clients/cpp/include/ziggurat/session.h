@@ -15,7 +15,7 @@
 
 namespace ziggurat {
 
-/// What happens if the session has not answered an observation within a wall time.
+/// Deadline for the answer to an observation, and the consequence of a miss; wall time.
 struct Deadline {
   enum class Action {
     wait = 1,  ///< the world waits forever
@@ -38,25 +38,26 @@ struct SessionOptions {
   std::string server_key;    ///< the server's public key, Z85: 40 characters
   std::string curve_secret;  ///< path of a file with this client's secret key, Z85
 
-  /// token() of an earlier session: resumes it at the present tick. What it asks for otherwise is ignored
-  /// then. The values of a controller's last commands stay, and the handles of the new session begin with them;
-  /// a server of protocol version 1.0 does not send them, and the handles begin with the scene's values: set all
-  /// values again then.
+  /// token() of an earlier session: resumes it at the present tick. What it asks for otherwise is
+  /// ignored then. The values of a controller's last commands stay, and the handles of the new
+  /// session begin with them; a server of protocol version 1.0 does not send them, and the handles
+  /// begin with the scene's values: set all values again then.
   std::string session_token;
   /// Whether this client can go back: at Event::restored it takes the state that it had at the tick
   /// of the snapshot. Without, the server refuses to restore the world while this session is there.
   bool can_restore = false;
   std::optional<Deadline> deadline;  ///< a wish; none = as the scene or the server's options say
 
-  std::string name;  ///< of this program, for the server's messages; empty: the controller, or `director`
-  std::string version;              ///< of this program, for the server's messages
+  std::string
+      name;  ///< of this program, for the server's messages; empty: the controller, or `director`
+  std::string version;  ///< of this program, for the server's messages
 
   std::chrono::milliseconds connect_timeout{10'000};  ///< wall time until the server's welcome
-  /// Wall time for which next() tries to resume the session after a lost connection: it connects again, says
-  /// who it is by the session's token, and goes on as if nothing had happened. None = as long as the server
-  /// reserves the robots (`ziggurat serve --lease`), at least 10 s; 0 = never. A server that accepts the
-  /// connection and is slow to answer is waited for. Over tcp a connection is lost, too, if the server is
-  /// silent for three times its heartbeat (3 s).
+  /// Wall time for which next() tries to resume the session after a lost connection: it connects
+  /// again, says who it is by the session's token, and goes on as if nothing had happened. None =
+  /// as long as the server reserves the robots (`ziggurat serve --lease`), at least 10 s; 0 =
+  /// never. A server that accepts the connection and is slow to answer is waited for. Over tcp a
+  /// connection is lost, too, if the server is silent for three times its heartbeat (3 s).
   std::optional<std::chrono::milliseconds> resume_timeout;
   /// Wall time that next() waits for the next tick; none = forever, as other sessions may be slow.
   std::optional<std::chrono::milliseconds> wait_timeout;
@@ -65,19 +66,21 @@ struct SessionOptions {
   /// constructor throws ConnectionError. None = no interruption.
   std::function<bool()> is_interrupted;
 
-  /// The endpoint, if there is none yet, is ZIGGURAT_ENDPOINT, otherwise that of find_server(). Keys are
-  /// ZIGGURAT_SERVER_KEY and ZIGGURAT_CURVE_SECRET; the token is that of take_session_token(), unless the endpoint is
-  /// another than ZIGGURAT_ENDPOINT. `ziggurat run` sets them for the programs that it starts. @throws std::invalid_argument, see find_server() and take_session_token()
+  /// The endpoint, if there is none yet, is ZIGGURAT_ENDPOINT, otherwise that of find_server().
+  /// Keys are ZIGGURAT_SERVER_KEY and ZIGGURAT_CURVE_SECRET; the token is that of
+  /// take_session_token(), unless the endpoint is another than ZIGGURAT_ENDPOINT. `ziggurat run`
+  /// sets them for the programs that it starts. @throws std::invalid_argument, see find_server()
+  /// and take_session_token()
   void read_environment();
 };
 
-/// Of a controller: the robots.
+/// Options of a controller: its robots.
 struct Options : SessionOptions {
   // The robots that match all of these; if none is set, all robots of the scene.
   std::string controller;           ///< robots of this controller of the scene
   std::vector<std::string> robots;  ///< ids or globs (`*`, `?`, `[a-z]`)
   bool lua_only = false;            ///< only robots with a Lua script as controller
-  bool takeover = false;             ///< also robots of other sessions, which keep the rest
+  bool takeover = false;            ///< also robots of other sessions, which keep the rest
 
   /// As read_environment(); the controller is ZIGGURAT_CONTROLLER.
   static Options from_environment();
@@ -87,16 +90,16 @@ struct Options : SessionOptions {
 /// without --endpoint. @throws std::invalid_argument if there is none, or more than one
 std::string find_server();
 
-/// The token of the session that a program is started to resume: ZIGGURAT_SESSION_TOKEN, two hexadecimal digits
-/// for each byte. Removed from the environment, because it is a secret and for one session only. Empty if
-/// there is none. @throws std::invalid_argument if it is not hexadecimal
+/// The token of the session that a program is started to resume: ZIGGURAT_SESSION_TOKEN, two
+/// hexadecimal digits for each byte. Removed from the environment, because it is a secret and for
+/// one session only. Empty if there is none. @throws std::invalid_argument if it is not hexadecimal
 std::string take_session_token();
 
-/// What an observation is for.
+/// Purpose of an observation.
 enum class Event {
-  init,   ///< the first of the session; at tick 0, before any physics, readings are 0
-  step,   ///< a tick passed
-  reset,  ///< the world went back to tick 0
+  init,      ///< the first of the session; at tick 0, before any physics, readings are 0
+  step,      ///< a tick passed
+  reset,     ///< the world went back to tick 0
   restored,  ///< the world went back to a snapshot, see Session::snapshot()
 };
 
@@ -132,8 +135,9 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   /// Answers the current observation with all values that were set, and waits for the next. False
-  /// after the last tick. The first call delivers Event::init. If the connection is lost meanwhile, the session
-  /// is resumed (Options::resume_timeout): no tick is delivered twice, and an answer that was lost is sent again.
+  /// after the last tick. The first call delivers Event::init. If the connection is lost meanwhile,
+  /// the session is resumed (Options::resume_timeout): no tick is delivered twice, and an answer
+  /// that was lost is sent again.
   /// @throws ConnectionError; after a time-out, another call waits again
   /// @throws ProtocolError, also if the server does not resume the session
   bool next();

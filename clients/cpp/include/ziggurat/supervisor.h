@@ -62,8 +62,8 @@ struct ServerStatus {
   std::string scene, scene_hash;
   std::uint64_t last_tick = 0;  ///< 0: no last tick
   std::vector<SessionStatus> sessions;
-  std::vector<std::string> free_robots;  ///< ids: without a session; the world waits for them
-  std::vector<std::string> gone_robots;  ///< ids: they left the run forever
+  std::vector<std::string> free_robots;     ///< ids: without a session; the world waits for them
+  std::vector<std::string> gone_robots;     ///< ids: they left the run forever
   std::vector<std::string> free_directors;  ///< ids: likewise without a session
   struct Phase {
     std::string name;  ///< "exchange", "physics", "recording" or "pacing"
@@ -71,7 +71,7 @@ struct ServerStatus {
   };
   std::vector<Phase> budget;  ///< where the wall time of a tick goes
   double uptime = 0;          ///< [s, wall]
-  /// How well contacts were solved since the world began; without islands: not known.
+  /// Convergence of the contact solver since the world began; without islands: not known.
   struct Solver {
     std::uint64_t islands = 0;        ///< of bodies that touch, solved over all substeps
     std::uint64_t not_converged = 0;  ///< of them
@@ -132,19 +132,25 @@ class Supervisor {
   std::uint64_t spawn(std::string_view xml);
   std::uint64_t remove(std::string_view entity);
   /// The entity is at rest at the pose, its joints in their initial positions; no orientation = the
-  /// present one. Where others are that is refused, unless it may overlap them: they are pushed apart.
+  /// present one. Where others are that is refused, unless it may overlap them: they are pushed
+  /// apart.
   std::uint64_t move(std::string_view entity, const std::array<double, 3>& position,
                      const std::optional<std::array<double, 4>>& orientation = std::nullopt,
                      Onto onto = Onto::free_place);
-  /// A revolute or prismatic joint is put to a position [m, rad] from the assembled pose, within its limits, and a velocity
-  /// [m/s, rad/s]. What hangs on it follows; other joints and the root of the entity stay, and motors keep their targets.
-  std::uint64_t set_joint(std::string_view entity, std::string_view joint, double position, double velocity = 0);
-  /// The overlap of an entity, or an element as in <arena>, at a pose of its origin: the first other entity's id, or
-  /// nothing where the place is free. The floor does not count, nor does the entity itself.
-  /// @param what  an id, or an element, which begins with '<': of a single body its extents are enough, as in
+  /// A revolute or prismatic joint is put to a position [m, rad] from the assembled pose, within
+  /// its limits, and a velocity [m/s, rad/s]. What hangs on it follows; other joints and the root
+  /// of the entity stay, and motors keep their targets.
+  std::uint64_t set_joint(std::string_view entity, std::string_view joint, double position,
+                          double velocity = 0);
+  /// The overlap of an entity, or an element as in <arena>, at a pose of its origin: the first
+  /// other entity's id, or nothing where the place is free. The floor does not count, nor does the
+  /// entity itself.
+  /// @param what  an id, or an element, which begins with '<': of a single body its extents are
+  /// enough, as in
   ///              <box size="1,1,1"/>
-  std::optional<std::string> overlapped(std::string_view what, const std::array<double, 3>& position,
-                                        const std::optional<std::array<double, 4>>& orientation = std::nullopt);
+  std::optional<std::string> overlapped(
+      std::string_view what, const std::array<double, 3>& position,
+      const std::optional<std::array<double, 4>>& orientation = std::nullopt);
   /// Whether that is nothing.
   bool is_free(std::string_view what, const std::array<double, 3>& position,
                const std::optional<std::array<double, 4>>& orientation = std::nullopt) {

@@ -13,7 +13,8 @@ class Tag {
   static constexpr std::size_t max_payload_bytes = std::size_t{64} << 10;
 
   const std::string& id() const noexcept { return id_; }
-  /// What cameras detect, any bytes. Sent with the answer to this tick; stays until changed.
+  /// Sets the payload that cameras detect, any bytes. Sent with the answer to this tick; stays
+  /// until changed.
   /// @throws std::length_error beyond max_payload_bytes
   void set_payload(std::string_view payload);
   /// The last payload set; before that, the scene's.

@@ -5,7 +5,7 @@
 
 namespace ziggurat {
 
-/// How a turret rotates.
+/// Control mode of a turret.
 enum class TurretMode : std::uint8_t {
   passive,   ///< with the robot; the initial mode
   position,  ///< to set_rotation()

@@ -1,5 +1,6 @@
 #pragma once
-// The C++ client library: all headers that a controller or a director needs. See docs/cpp-client.md.
+// The C++ client library: all headers that a controller or a director needs. See
+// docs/cpp-client.md.
 
 #include "ziggurat/camera.h"
 #include "ziggurat/director.h"

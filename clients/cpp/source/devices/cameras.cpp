@@ -31,7 +31,7 @@ void read_leds(const std::vector<std::vector<Camera::LedReading>*>& cameras, con
 
 }  // namespace
 
-/// What the cameras of a session see. Each list holds the cameras that have the detector, or take
+/// Readings of a session's cameras. Each list holds the cameras that have the detector, or take
 /// pictures, in Welcome's order.
 struct CameraChannel final : Channel {
   struct Image {

@@ -3,7 +3,7 @@
 
 namespace ziggurat {
 
-/// What the robots of a session receive and send by radio.
+/// Radio messages that the robots of a session receive and send.
 class RadioTraffic final : public Channel {
  public:
   /// @param max_bytes  that the session may send at one tick
@@ -43,8 +43,8 @@ namespace {
 void check_limit(std::size_t value, std::size_t max, const std::string& radio, const char* who,
                  const char* unit) {
   if (value <= max) return;
-  throw std::length_error("radio '" + text::printable_part(radio) + "': " + std::string(who) + " sends " +
-                          std::to_string(value) + unit + " at this tick; at most " +
+  throw std::length_error("radio '" + text::printable_part(radio) + "': " + std::string(who) +
+                          " sends " + std::to_string(value) + unit + " at this tick; at most " +
                           std::to_string(max) + " are allowed");
 }
 
@@ -52,7 +52,8 @@ void check_limit(std::size_t value, std::size_t max, const std::string& radio, c
 
 void RadioTraffic::send(const std::string& radio, std::uint32_t index, std::uint32_t robot,
                         Bytes message) {
-  constexpr std::size_t overhead = 96;  // of a message besides its payload: its fields count, too [bytes]
+  constexpr std::size_t overhead =
+      96;  // of a message besides its payload: its fields count, too [bytes]
   if (message.size() > Radio::max_message_bytes) {
     throw std::length_error("radio '" + text::printable_part(radio) + "': a message of " +
                             std::to_string(message.size()) + " bytes; at most " +

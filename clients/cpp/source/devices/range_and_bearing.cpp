@@ -8,7 +8,7 @@ class PacketChannel final : public Channel {
  public:
   using Packets = std::vector<RangeAndBearing::Packet>;
 
-  /// Of the next robot; null if it receives none.
+  /// Adds the packets of the next robot; null if it receives none.
   void add(Packets* packets) { packets_.push_back(packets); }
 
   void check(const v1::Observation& from) const override {

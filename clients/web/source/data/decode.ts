@@ -8,17 +8,15 @@ import {
 } from "@bufbuild/protobuf";
 import { BinaryReader, WireType } from "@bufbuild/protobuf/wire";
 import { FileDescriptorSetSchema } from "@bufbuild/protobuf/wkt";
-import { boundOf, fieldsOf, fits, isPacked, ofSchemas, weigh, wireOf } from "./extent";
 import type { Value } from "./source";
 
-/** What a message says. @throws Error that is the end of a sentence which begins with the message */
-export interface Decoder {
-  (bytes: Uint8Array): Value;
-  /** The memory that it will take [bytes]. @throws Unreadable if that is too much, or the message is damaged */
-  weigh(bytes: Uint8Array): number;
-  /** The same of a message that was weighed. */
-  decode(bytes: Uint8Array): Value;
-}
+const mostBytes = 128 * 1024 * 1024; // of a message
+
+/** What is wrong with a message, as the end of a sentence that begins with it. */
+export class Unreadable extends Error {}
+
+/** What a message says. @throws Unreadable if it is too long, or damaged */
+export type Decoder = (bytes: Uint8Array) => Value;
 
 /**
  * @param schema  a FileDescriptorSet
@@ -26,16 +24,45 @@ export interface Decoder {
  * @throws Error if the schema does not have the type
  */
 export function makeDecoder(schema: Uint8Array, name: string): Decoder {
-  weigh(schema, FileDescriptorSetSchema, ofSchemas);
   const registry: Registry = createFileRegistry(fromBinary(FileDescriptorSetSchema, schema));
   const type = registry.getMessage(name);
   if (!type) throw new Error(`the schema has no type ${name}`);
-  const decode = (bytes: Uint8Array): Value => decodeMessage(type, new BinaryReader(bytes), bytes.length);
-  const weighed = (bytes: Uint8Array): number => weigh(bytes, type, boundOf(name));
-  return Object.assign((bytes: Uint8Array) => {
-    weighed(bytes);
-    return decode(bytes);
-  }, { weigh: weighed, decode });
+  return (bytes) => {
+    if (bytes.length > mostBytes) throw new Unreadable(`has ${bytes.length} bytes; at most ${mostBytes} are read`);
+    try {
+      return decodeMessage(type, new BinaryReader(bytes), bytes.length);
+    } catch {
+      throw new Unreadable("is damaged");
+    }
+  };
+}
+
+/** As a value stands in a message by itself. */
+function wireOf(scalar: ScalarType): WireType {
+  switch (scalar) {
+    case ScalarType.DOUBLE: case ScalarType.FIXED64: case ScalarType.SFIXED64: return WireType.Bit64;
+    case ScalarType.FLOAT: case ScalarType.FIXED32: case ScalarType.SFIXED32: return WireType.Bit32;
+    case ScalarType.STRING: case ScalarType.BYTES: return WireType.LengthDelimited;
+    default: return WireType.Varint;
+  }
+}
+
+/** The same of a field. Whether its numbers stand in a row: isPacked(). Others are unknown, and skipped. */
+function fits(field: DescField, wire: WireType): boolean {
+  if (field.message || field.fieldKind === "map") return wire === WireType.LengthDelimited;
+  return wire === wireOf(field.scalar ?? ScalarType.INT32) || isPacked(field, wire);
+}
+
+function isPacked(field: DescField, wire: WireType): boolean {
+  return field.fieldKind === "list" && !field.message && wire === WireType.LengthDelimited
+      && wireOf(field.scalar ?? ScalarType.INT32) !== WireType.LengthDelimited;
+}
+
+const fieldsByType = new WeakMap<DescMessage, Map<number, DescField>>();
+function fieldsOf(type: DescMessage): Map<number, DescField> {
+  let fields = fieldsByType.get(type);
+  if (!fields) fieldsByType.set(type, fields = new Map(type.fields.map((field) => [field.number, field])));
+  return fields;
 }
 
 type Empty = [string, () => unknown][]; // what absent fields without presence are
@@ -82,6 +109,7 @@ function decodeMessage(type: DescMessage, reader: BinaryReader, end: number): Va
     else if (field.fieldKind === "map") readEntry(field, reader, value[name] as Value);
     else value[name] = readOne(field, reader);
   }
+  if (reader.pos > end) throw new RangeError("a part is longer than what it is in");
   return value;
 }
 

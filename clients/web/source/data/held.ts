@@ -3,27 +3,25 @@ import type { Decoder } from "./decode";
 import type { Message, Value } from "./source";
 
 const mostDecoded = 24; // messages
-const mostMemory = 512 * 1024 * 1024; // of them, as it is counted [bytes]
+const mostBytes = 128 * 1024 * 1024; // of them, encoded
 const decoded = new Map<Held, Value>(); // the newest: what is drawn is read at each frame of the screen
-let memory = 0;
+let bytes = 0;
 
 export class Held implements Message {
-  private readonly memory: number;
-
-  /** @throws Unreadable if it would take too much memory, or is damaged */
+  /** @throws Unreadable if it is too long, or damaged */
   constructor(readonly topic: string, readonly timeNs: bigint, private readonly data: Uint8Array,
-              private readonly decoder: Decoder) { this.memory = decoder.weigh(data); }
+              private readonly decoder: Decoder) { this.read(); }
   get bytes(): number { return this.data.byteLength; }
   read<T = Value>(): T {
     let value = decoded.get(this);
     if (!value) {
-      value = this.decoder.decode(this.data);
+      value = this.decoder(this.data);
       decoded.set(this, value);
-      memory += this.memory;
+      bytes += this.bytes;
       for (const old of decoded.keys()) {
-        if (old === this || (decoded.size <= mostDecoded && memory <= mostMemory)) break;
+        if (old === this || (decoded.size <= mostDecoded && bytes <= mostBytes)) break;
         decoded.delete(old);
-        memory -= old.memory;
+        bytes -= old.bytes;
       }
     }
     return value as T;

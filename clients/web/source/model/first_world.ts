@@ -1,7 +1,6 @@
 // What a recording must have: a type of its messages, and a world that can be read.
 import type { Container } from "../data/container";
-import { makeDecoder, type Decoder } from "../data/decode";
-import { Unreadable } from "../data/extent";
+import { makeDecoder, Unreadable, type Decoder } from "../data/decode";
 import { checkWorld } from "./check";
 import type { World } from "./messages";
 
@@ -19,25 +18,24 @@ export function decoderIn(container: Container, id: number): Decoder | null {
   }
 }
 
-/** The first world of the file that can be read, and what it takes [bytes]. */
-export async function findWorld(container: Container): Promise<{ world: World; memory: number }> {
+/** The first world of the file that can be read. */
+export async function findWorld(container: Container): Promise<World> {
   let fault = "";
   for (const chunk of container.chunks.slice(0, 20)) {
     for (const message of await container.read(chunk)) {
       if (container.channels.get(message.channel)?.topic !== "/world") continue;
       const decoder = decoderIn(container, message.channel);
       if (!decoder) throw new Error("the type of its topic /world is unknown or damaged");
-      let memory = 0;
+      let world: World;
       try {
-        memory = decoder.weigh(message.data);
+        world = decoder(message.data) as unknown as World;
       } catch (error) {
         fault ||= `/world at ${(Number(message.timeNs - container.chunks[0].startNs) * 1e-9).toFixed(2)} s ${endOf(error)}`;
         continue;
       }
-      const world = decoder.decode(message.data) as unknown as World;
       if (!(world.tickNs > 0)) throw new Error("its world has no tick");
       checkWorld(world);
-      return { world, memory };
+      return world;
     }
   }
   if (fault) throw new Error(`its ${fault}`);

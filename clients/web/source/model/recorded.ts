@@ -4,7 +4,6 @@
 import type { IReadable } from "@mcap/core";
 import { Container, type Chunk, type RawMessage } from "../data/container";
 import type { Decoder } from "../data/decode";
-import { ofAllWorlds } from "../data/extent";
 import { Held } from "../data/held";
 import type { Listener, Message, Source, Value } from "../data/source";
 import { areWhole, checkWorld } from "./check";
@@ -48,7 +47,6 @@ export class Recorded implements Source, Frames {
   private readonly bySchema = new Map<number, Decoder | null>();
   private readonly startNs: bigint;
   private tickNs: number;
-  private worldMemory = 0;
   private readonly missing = new Set<number>(); // generations without a world that can be read
   private readonly leftOut = new Set<string>();
   private bytes = 0;
@@ -59,14 +57,13 @@ export class Recorded implements Source, Frames {
   private hasRead = false; // log and collisions
   private isClosed = false;
 
-  private constructor(readonly name: string, readonly container: Container, first: World, memory: number) {
+  private constructor(readonly name: string, readonly container: Container, first: World) {
     this.startNs = container.chunks[0].startNs;
     const endNs = container.chunks.reduce((end, chunk) => (chunk.endNs > end ? chunk.endNs : end), this.startNs);
     const length = Number(endNs - this.startNs);
     this.tickNs = Math.max(first.tickNs, length / mostFrames);
     this.last = Math.round(length / this.tickNs);
     this.worlds.set(first.generation, first);
-    this.worldMemory = memory;
     for (const chunk of container.chunks) {
       this.parts.push({ chunk, first: this.sequenceOf(chunk.startNs), last: this.sequenceOf(chunk.endNs),
                         state: "away", frames: [], bytes: 0, used: 0 });
@@ -77,8 +74,7 @@ export class Recorded implements Source, Frames {
   static async open(file: IReadable, name: string): Promise<Recorded> {
     try {
       const container = await Container.open(file);
-      const { world, memory } = await findWorld(container);
-      return new Recorded(name, container, world, memory);
+      return new Recorded(name, container, await findWorld(container));
     } catch (error) {
       const text = (error as Error).message;
       throw new Error(/^(is|has) /.test(text) ? `${name} ${text}.` : `${name} can't be read: ${text}.`);
@@ -209,9 +205,6 @@ export class Recorded implements Source, Frames {
     const world = this.decode<World>(message);
     if (!world || this.worlds.has(world.generation)) return;
     checkWorld(world);
-    const memory = this.decoderOf(message.channel)?.weigh(message.data) ?? 0;
-    if (this.worldMemory + memory > ofAllWorlds) return this.leaveOut(message, "has no place in memory beside the worlds before it");
-    this.worldMemory += memory;
     this.worlds.set(world.generation, world);
   }
 

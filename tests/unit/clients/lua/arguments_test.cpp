@@ -58,7 +58,8 @@ TEST_F(Arguments, AColonInsteadOfADotIsNamed) {
     log(message))";
   const auto lines = logged(script);
   ASSERT_EQ(lines.size(), 3u) << lines[0];
-  EXPECT_NE(lines[0].find("expected, got 2; write a dot, not a colon"), std::string::npos) << lines[0];
+  EXPECT_NE(lines[0].find("expected, got 2; write a dot, not a colon"), std::string::npos)
+      << lines[0];
   EXPECT_NE(lines[1].find("got table; write a dot, not a colon"), std::string::npos) << lines[1];
   EXPECT_EQ(lines[2].find("colon"), std::string::npos) << lines[2];
 }

@@ -69,7 +69,7 @@ Directed run(const std::string& script, std::uint64_t ticks = 1,
   return directed;
 }
 
-/// What a script of one line in init() logs; its failure if it fails.
+/// Log of a script of one line in init(); its failure if it fails.
 std::string logged(const std::string& line) {
   const Directed directed = run("function init() " + line + " end");
   if (!directed.is_well) return directed.leave.message();
@@ -85,11 +85,12 @@ TEST(DirectorScript, IsCalledInItsOrder) {
     function post_step(tick) log("post ", tick, " ", world.tick, " ", world.time) end
     function is_finished() log("finished?") return world.tick == 2 end
     function destroy() log("destroy") end
-  )", 10);
+  )",
+                                10);
   EXPECT_TRUE(directed.is_well);
   EXPECT_EQ(directed.log(),
-            (std::vector<std::string>{"init 0 0 judge 3", "pre 1", "post 1 1 0.05", "finished?", "pre 2",
-                                      "post 2 2 0.1", "finished?", "destroy"}));
+            (std::vector<std::string>{"init 0 0 judge 3", "pre 1", "post 1 1 0.05", "finished?",
+                                      "pre 2", "post 2 2 0.1", "finished?", "destroy"}));
   ASSERT_EQ(directed.directions.size(), 3U);
   EXPECT_TRUE(directed.directions[2].has_finish());
   EXPECT_EQ(directed.leave.reason(), v1::Leave::DONE);
@@ -98,7 +99,8 @@ TEST(DirectorScript, IsCalledInItsOrder) {
 TEST(DirectorScript, TellsOfNamesThatNothingCalls) {
   EXPECT_EQ(run("function init() end function poststep() end").log(),
             std::vector<std::string>{"nothing calls poststep(); did you mean post_step()?"});
-  EXPECT_TRUE(run("function post_step() end function poststep() end").log().empty()) << "its own function";
+  EXPECT_TRUE(run("function post_step() end function poststep() end").log().empty())
+      << "its own function";
 }
 
 TEST(DirectorScript, BeginsAnewAfterAReset) {
@@ -112,27 +114,36 @@ TEST(DirectorScript, BeginsAnewAfterAReset) {
     function init() log(world.random.uniform()) end
     function reset() log(world.random.uniform()) end
     function post_step() log("post") end
-  )", 1, reset);
+  )",
+                                1, reset);
   ASSERT_EQ(directed.log().size(), 2U);
   EXPECT_EQ(directed.log()[0], directed.log()[1]) << "the same seed gives the same numbers";
 }
 
 TEST(DirectorScript, SeesEntitiesAsTheyAre) {
-  EXPECT_EQ(logged("for id, e in pairs(world.entities) do log(id, ' ', e.id, ' ', e.kind, ' ', e.controller) end"),
+  EXPECT_EQ(logged("for id, e in pairs(world.entities) do log(id, ' ', e.id, ' ', e.kind, ' ', "
+                   "e.controller) end"),
             "arm arm prototype swing|box box box ");
   EXPECT_EQ(logged("log(world.entities.box.position.z)"), "9");
-  EXPECT_EQ(logged("local o = world.entities.arm.orientation log(type(o.angle), ' ', type(o.axis.x))"),
-            "number number");
-  EXPECT_EQ(logged("local arm = world.entities.arm log(arm.links.tip.position.x, ' ', #arm.links, ' ', "
-                   "arm.links[1].velocity.y)"),
-            "13 2 8");
-  EXPECT_EQ(logged("local box = world.entities.box log(box.velocity.x, ' ', box.angular_velocity.z, ' ', box.removed)"),
+  EXPECT_EQ(
+      logged("local o = world.entities.arm.orientation log(type(o.angle), ' ', type(o.axis.x))"),
+      "number number");
+  EXPECT_EQ(
+      logged("local arm = world.entities.arm log(arm.links.tip.position.x, ' ', #arm.links, ' ', "
+             "arm.links[1].velocity.y)"),
+      "13 2 8");
+  EXPECT_EQ(logged("local box = world.entities.box log(box.velocity.x, ' ', "
+                   "box.angular_velocity.z, ' ', box.removed)"),
             "33 38 0");
-  EXPECT_EQ(logged("log(world.entities.arm.joints.hinge.velocity, ' ', world.entities.arm.leds[1].red)"), "-2 255");
-  EXPECT_EQ(logged("local c = world.contacts() log(#c, ' ', c[1].first, ' ', c[1].first_link, ' ', c[1].second, ' ', "
+  EXPECT_EQ(
+      logged("log(world.entities.arm.joints.hinge.velocity, ' ', world.entities.arm.leds[1].red)"),
+      "-2 255");
+  EXPECT_EQ(logged("local c = world.contacts() log(#c, ' ', c[1].first, ' ', c[1].first_link, ' ', "
+                   "c[1].second, ' ', "
                    "c[1].force.z, ' ', c[2].with_floor)"),
             "2 arm tip box 8 1");
-  EXPECT_EQ(logged("local m = world.messages()[1] log(m.receiver, m.radio, m.sender, m.data[2])"), "arm1arm105");
+  EXPECT_EQ(logged("local m = world.messages()[1] log(m.receiver, m.radio, m.sender, m.data[2])"),
+            "arm1arm105");
 }
 
 TEST(DirectorScript, KeepsWhatItWritesIntoEntities) {
@@ -159,7 +170,8 @@ TEST(DirectorScript, ActsInTheOrderOfItsCalls) {
       world.metric("height", 0.5)
       metric("width", 2)
     end
-  )", 0);
+  )",
+                                0);
   ASSERT_EQ(directed.directions.size(), 1U) << directed.leave.message();
   const v1::Direction& all = directed.directions[0];
   ASSERT_EQ(all.acts_size(), 9);
@@ -191,7 +203,8 @@ TEST(DirectorScript, SaysWhatIsWrong) {
   has("world.move('box', {x = 1, y = 2})", "finite numbers {x =, y =, z =} expected");
   has("world.move('box', {x = 0/0, y = 2, z = 3})", "finite numbers");
   has("world.move(nil, {x = 1, y = 2, z = 3})", "an entity or its id expected");
-  has("world.move('box', {x = 1, y = 2, z = 3}, {angle = 1, axis = {x = 0, y = 0, z = 0}})", "must have a length");
+  has("world.move('box', {x = 1, y = 2, z = 3}, {angle = 1, axis = {x = 0, y = 0, z = 0}})",
+      "must have a length");
   has("world.set_joint('arm', 'hinge')", "world.set_joint(entity, joint, position [, velocity])");
   has("world.set_joint('arm', 'hinge', 0/0)", "finite number expected");
   has("world.set_joint('arm', 7, 0)", "string expected");
@@ -210,10 +223,13 @@ TEST(DirectorScript, ThatFailsLeavesTheRun) {
   const Directed directed = run("function post_step() error('no food') end");
   EXPECT_FALSE(directed.is_well);
   EXPECT_EQ(directed.leave.reason(), v1::Leave::FAILED);
-  EXPECT_NE(directed.leave.message().find("main.lua:1: no food (in post_step 1)"), std::string::npos)
+  EXPECT_NE(directed.leave.message().find("main.lua:1: no food (in post_step 1)"),
+            std::string::npos)
       << directed.leave.message();
-  EXPECT_NE(run("x = 1").leave.message().find("none of the functions init(), pre_step(tick)"), std::string::npos);
-  EXPECT_NE(run("function init() os.execute('ls') end").leave.message().find("not allowed"), std::string::npos);
+  EXPECT_NE(run("x = 1").leave.message().find("none of the functions init(), pre_step(tick)"),
+            std::string::npos);
+  EXPECT_NE(run("function init() os.execute('ls') end").leave.message().find("not allowed"),
+            std::string::npos);
 }
 
 TEST(DirectorScript, EntitiesThatAreGoneAreNoMoreInTheList) {
@@ -230,10 +246,12 @@ TEST(DirectorScript, EntitiesThatAreGoneAreNoMoreInTheList) {
       log(world.entities.box == nil, " ", box.removed, " ", box.id)
       log(select(2, pcall(function() return box.position end)))
     end
-  )", 1, remove_box);
+  )",
+                                1, remove_box);
   ASSERT_EQ(directed.log().size(), 2U) << directed.leave.message();
   EXPECT_EQ(directed.log()[0], "1 1 box");
-  EXPECT_NE(directed.log()[1].find("entity 'box' is not in the world any more: it has no position"), std::string::npos);
+  EXPECT_NE(directed.log()[1].find("entity 'box' is not in the world any more: it has no position"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -74,29 +74,37 @@ TEST_F(Errors, OtherThanStringsNameTheScriptToo) {
 }
 
 TEST_F(Errors, OfWhatTheRobotLacksNameItAndWhatItHas) {
-  ASSERT_EQ(start("local absent = robot.radios == nil and not robot.joints.nothing\n"
-                  "function step() if not robot.radios and absent then robot.radios.r.send({}) end end"),
-            std::nullopt);
+  ASSERT_EQ(
+      start("local absent = robot.radios == nil and not robot.joints.nothing\n"
+            "function step() if not robot.radios and absent then robot.radios.r.send({}) end end"),
+      std::nullopt);
   const Failure failure = controller().step(1);
   expect_contains(failure, "main.lua:2: attempt to index a nil value (field 'radios'): robot '");
   expect_contains(failure, " has no robot.radios; robot has: ");
-  expect_contains(start("local x = {}; local y = robot.nothing; x.other.z = 1"), "(field 'other') (in its chunk");
-  expect_contains(start("robot.params.gain.x = 1"), " has no robot.params.gain; robot.params has: script, speed (in its chunk");
+  expect_contains(start("local x = {}; local y = robot.nothing; x.other.z = 1"),
+                  "(field 'other') (in its chunk");
+  expect_contains(start("robot.params.gain.x = 1"),
+                  " has no robot.params.gain; robot.params has: script, speed (in its chunk");
 }
 
 TEST_F(Errors, OfAComparisonNameTheGlobalThatIsNil) {
   expect_contains(start("if count > 3 then log('many') end"),
-                  "attempt to compare number with nil: the last global that was read, 'count', is nil (in its chunk");
+                  "attempt to compare number with nil: the last global that was read, 'count', is "
+                  "nil (in its chunk");
   expect_contains(start("for i = 1, most do end"), "the last global that was read, 'most', is nil");
-  expect_contains(start("robot.joints.both.set_target(speed)"), "the last global that was read, 'speed', is nil");
+  expect_contains(start("robot.joints.both.set_target(speed)"),
+                  "the last global that was read, 'speed', is nil");
   const Failure named = start("local x = absent; missing()");
   expect_contains(named, "attempt to call a nil value (global 'missing') (in its chunk");
-  ASSERT_EQ(start("local absent = earlier function step() local a, b = nil, 1 return a < b end"), std::nullopt);
+  ASSERT_EQ(start("local absent = earlier function step() local a, b = nil, 1 return a < b end"),
+            std::nullopt);
   const Failure other = controller().step(1);
-  EXPECT_EQ(other->find("earlier"), std::string::npos) << *other << ": that was read by another call";
+  EXPECT_EQ(other->find("earlier"), std::string::npos)
+      << *other << ": that was read by another call";
 }
 
-// It ended the process, and with it the scripts of all its robots, as a library function that does not end.
+// It ended the process, and with it the scripts of all its robots, as a library function that does
+// not end.
 TEST_F(Errors, OfAScriptWithHugeTablesComeAtOnce) {
   const std::string huge =
       "local rows = {} for i = 1, 30000 do rows['row' .. i] = {} end "
@@ -106,7 +114,8 @@ TEST_F(Errors, OfAScriptWithHugeTablesComeAtOnce) {
 
 TEST_F(Errors, OfWhatIsNoFunctionSayIt) {
   ASSERT_EQ(start("function init() end step = 5"), std::nullopt);
-  expect_contains(controller().step(1), "main.lua: step is a number, not a function; write: function step()");
+  expect_contains(controller().step(1),
+                  "main.lua: step is a number, not a function; write: function step()");
 }
 
 TEST_F(Errors, InTheErrorItself) {
@@ -182,7 +191,9 @@ TEST_F(Errors, OfOneRobotDoNotAffectAnother) {
 /// Interrupts scripts from a signal handler.
 class Interrupts : public Errors {
  protected:
-  Interrupts() { std::signal(SIGUSR1, [](int) { interrupt_scripts(); }); }
+  Interrupts() {
+    std::signal(SIGUSR1, [](int) { interrupt_scripts(); });
+  }
   /// In 20 ms, while a script runs or before: either way it ends.
   void interrupt_soon() {
     const auto script = ::pthread_self();

@@ -24,17 +24,22 @@ TEST_F(Globals, LogConcatenatesWithoutSeparator) {
 }
 
 TEST_F(Globals, LogPrintsWhatTablesHold) {
-  EXPECT_EQ(logged("log({1, 2.5, 'x'}) log('p = ', {z = 3, x = true, y = {a = {b = {c = 1}}}}) log({1, nil, 3, [true] = 2})"),
+  EXPECT_EQ(logged("log({1, 2.5, 'x'}) log('p = ', {z = 3, x = true, y = {a = {b = {c = 1}}}}) "
+                   "log({1, nil, 3, [true] = 2})"),
             (Lines{"{1, 2.5, \"x\"}", "p = {x = 1, y = {a = {b = {…}}}, z = 3}", "{1, …}"}));
   EXPECT_EQ(logged("local t = {} t.t = t log(t)"), (Lines{"{t = {t = {t = {…}}}}"}));
   EXPECT_EQ(logged("local t = {} for i = 1, 200 do t[('k%03d'):format(i)] = i end "
-                   "log(t)")[0].substr(0, 22),
+                   "log(t)")[0]
+                .substr(0, 22),
             "{k001 = 1, k002 = 2, k");
-  EXPECT_TRUE(logged("local t = {} for i = 1, 200 do t['k' .. i] = i end log(t)")[0].ends_with(", …}"));
+  EXPECT_TRUE(
+      logged("local t = {} for i = 1, 200 do t['k' .. i] = i end log(t)")[0].ends_with(", …}"));
 }
 
 TEST_F(Globals, LogOfHugeTablesIsBounded) {
-  const auto lines = logged("local s = ('x'):rep(1e6) local t = {} for i = 1, 1e5 do t[i] = {s, s, a = {b = s}} end log(t)");
+  const auto lines = logged(
+      "local s = ('x'):rep(1e6) local t = {} for i = 1, 1e5 do t[i] = {s, s, a = {b = s}} end "
+      "log(t)");
   ASSERT_FALSE(lines.empty());
   EXPECT_LE(lines[0].size(), LogLines::max_bytes + 100);
 }

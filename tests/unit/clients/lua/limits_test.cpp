@@ -5,14 +5,14 @@
 #include "script/interrupt.h"
 #include "script_fixture.h"
 
-// Of the leak sanitizer; null without it.
+// Functions of the leak sanitizer; null without it.
 extern "C" void __lsan_disable() __attribute__((weak));
 extern "C" void __lsan_enable() __attribute__((weak));
 
 namespace ziggurat::lua {
 namespace {
 
-/// What is allocated meanwhile is no leak: the state of a call that is left is never freed.
+/// Memory that is allocated meanwhile is no leak: the state of a call that is left is never freed.
 struct LeavesState {
   LeavesState() {
     if (__lsan_disable) __lsan_disable();
@@ -48,7 +48,8 @@ class Limits : public ScriptTest {
 TEST_F(Limits, EndALoopWithItsLine) { expect_ended("\n\nwhile true do\nend", "3"); }
 
 TEST_F(Limits, NameThePlaceOnce) {
-  const Failure failure = start("local function loop()\nwhile true do end end\nlocal function outer() loop() end\nouter()");
+  const Failure failure = start(
+      "local function loop()\nwhile true do end end\nlocal function outer() loop() end\nouter()");
   ASSERT_TRUE(failure);
   EXPECT_EQ(failure->find("main.lua"), failure->find("main.lua:2: runs more than")) << *failure;
 }
@@ -106,20 +107,24 @@ TEST_F(Limits, OfOneRobotDoNotAffectAnother) {
 // Each call of the library is short, and little Lua runs between them.
 TEST_F(Limits, EndCallsThatComputeForLongInTheLibrary) {
   options_.max_computing = 1;
-  const std::string slow_find = "local s, p = ('a'):rep(15), ('a?'):rep(15) .. ('a'):rep(15) .. 'b' ";
+  const std::string slow_find =
+      "local s, p = ('a'):rep(15), ('a?'):rep(15) .. ('a'):rep(15) .. 'b' ";
   for (const char* loop :
        {"while true do s:find(p) end", "while true do pcall(string.find, s, p) end",
         "coroutine.wrap(function() while true do pcall(s.find, s, p) end end)()",
         "while true do coroutine.wrap(function() s:find(p) end)() end",
         "while true do pcall(function() while true do s:find(p) end end) end",
-        "local t = {} for i = 1, 3e5 do t[i] = 'twenty bytes of text' end while true do table.concat(t) end",
+        "local t = {} for i = 1, 3e5 do t[i] = 'twenty bytes of text' end while true do "
+        "table.concat(t) end",
         "while true do io.open('main.lua') end"}) {
     const Failure failure = start("\n" + slow_find + "\n" + loop);
     ASSERT_TRUE(failure) << loop;
-    EXPECT_NE(failure->find("main.lua:3: computes for more than 1 s in one call"), std::string::npos)
+    EXPECT_NE(failure->find("main.lua:3: computes for more than 1 s in one call"),
+              std::string::npos)
         << loop << "\n"
         << *failure;
-    EXPECT_EQ(failure->find("main.lua"), failure->find("main.lua:3: computes")) << *failure;  // the place stands once
+    EXPECT_EQ(failure->find("main.lua"), failure->find("main.lua:3: computes"))
+        << *failure;  // the place stands once
   }
 }
 
@@ -134,16 +139,19 @@ TEST_F(Limits, EndAScriptThatStaysAtTheLimitOfItsMemory) {
       "local function deep(n) while true do pcall(n < 50 and deep or fill, n + 1) end end\n"
       "deep(1)");
   ASSERT_TRUE(failure);
-  EXPECT_NE(failure->find(": computes for more than 1 s in one call"), std::string::npos) << *failure;
+  EXPECT_NE(failure->find(": computes for more than 1 s in one call"), std::string::npos)
+      << *failure;
   EXPECT_LT(std::clock() - begin, 15 * CLOCKS_PER_SEC);  // of processor time
 }
 
 TEST_F(Limits, OfTimeHoldForEachCall) {
   options_.max_computing = 1;
-  ASSERT_EQ(start("local s, p = ('a'):rep(15), ('a?'):rep(15) .. ('a'):rep(15) .. 'b' "
-                  "function step() local t = os.clock() while os.clock() - t < 0.6 do s:find(p) end end"),
-            std::nullopt);
-  for (std::uint64_t tick = 1; tick <= 4; ++tick) ASSERT_EQ(controller().step(tick), std::nullopt) << tick;
+  ASSERT_EQ(
+      start("local s, p = ('a'):rep(15), ('a?'):rep(15) .. ('a'):rep(15) .. 'b' "
+            "function step() local t = os.clock() while os.clock() - t < 0.6 do s:find(p) end end"),
+      std::nullopt);
+  for (std::uint64_t tick = 1; tick <= 4; ++tick)
+    ASSERT_EQ(controller().step(tick), std::nullopt) << tick;
 }
 
 TEST_F(Limits, CoroutinesWorkAsInLua) {
@@ -172,7 +180,8 @@ TEST_F(Limits, WhatCannotBeLeftEndsTheProcessAndNamesTheRobotAndItsLine) {
       testing::ExitedWithCode(3), "'r0': .*main.lua:2: calls a library function");
 }
 
-// Also while Lua allocates memory, in coroutines, in metamethods and between calls of functions of C.
+// Also while Lua allocates memory, in coroutines, in metamethods and between calls of functions of
+// C.
 TEST_F(Limits, ALibraryFunctionThatDoesNotEndIsLeft) {
   const LeavesState in_this_test;
   options_.max_in_library = 1;
@@ -184,7 +193,8 @@ TEST_F(Limits, ALibraryFunctionThatDoesNotEndIsLeft) {
            {"table.move({}, 1, math.maxinteger - 9, 2, {})", "table.move"}}) {
     const Failure failure = start(pattern + "\n" + script);
     ASSERT_TRUE(failure) << script;
-    EXPECT_NE(failure->find("main.lua:2: " + function + " computes for more than 1 s in one call (in its chunk, tick 0)"),
+    EXPECT_NE(failure->find("main.lua:2: " + function +
+                            " computes for more than 1 s in one call (in its chunk, tick 0)"),
               std::string::npos)
         << script << "\n"
         << *failure;
@@ -196,15 +206,20 @@ TEST_F(Limits, ALibraryFunctionThatIsACoroutineIsLeftWithoutLine) {
   options_.max_in_library = 1;
   const Failure failure = start("coroutine.wrap(table.move)({}, 1, math.maxinteger - 9, 2, {})");
   ASSERT_TRUE(failure);
-  EXPECT_NE(failure->find("main.lua: table.move computes for more than 1 s in one call"), std::string::npos) << *failure;
+  EXPECT_NE(failure->find("main.lua: table.move computes for more than 1 s in one call"),
+            std::string::npos)
+      << *failure;
 }
 
 TEST_F(Limits, ALibraryFunctionThatAllocatesIsLeftAndOtherScriptsGoOn) {
   const LeavesState in_this_test;
-  ASSERT_EQ(start("function step() local t = {} for i = 1, 1e4 do t[i] = {i} end log(#t) end"), std::nullopt);
+  ASSERT_EQ(start("function step() local t = {} for i = 1, 1e4 do t[i] = {i} end log(#t) end"),
+            std::nullopt);
   options_.max_in_library = 1;
-  write("stuck.lua", "function init() end\n"
-                     "function step() table.move({}, 1, 1 << 60, 2, setmetatable({}, {__newindex = table.pack})) end");
+  write("stuck.lua",
+        "function init() end\n"
+        "function step() table.move({}, 1, 1 << 60, 2, setmetatable({}, {__newindex = "
+        "table.pack})) end");
   OneRobot another(robot_);
   ScriptOptions options = options_;
   options.script = folder() / "stuck.lua";
@@ -212,8 +227,10 @@ TEST_F(Limits, ALibraryFunctionThatAllocatesIsLeftAndOtherScriptsGoOn) {
   ASSERT_EQ(stuck.start(), std::nullopt);
   const Failure failure = stuck.step(1);
   ASSERT_TRUE(failure);
-  EXPECT_NE(failure->find("computes for more than 1 s in one call (in step 1)"), std::string::npos) << *failure;
-  for (std::uint64_t tick = 1; tick <= 100; ++tick) ASSERT_EQ(controller().step(tick), std::nullopt) << tick;
+  EXPECT_NE(failure->find("computes for more than 1 s in one call (in step 1)"), std::string::npos)
+      << *failure;
+  for (std::uint64_t tick = 1; tick <= 100; ++tick)
+    ASSERT_EQ(controller().step(tick), std::nullopt) << tick;
   EXPECT_EQ(controller().log().lines.at(99).text, "10000");
   const Failure again = start("while true do end");  // the signal still arrives
   ASSERT_TRUE(again);

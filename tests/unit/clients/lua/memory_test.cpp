@@ -1,4 +1,5 @@
-// The memory of Lua states: blocks side by side in a region, the others by malloc(), all of them counted.
+// The memory of Lua states: blocks side by side in a region, the others by malloc(), all of them
+// counted.
 
 #include "script/memory.h"
 
@@ -51,7 +52,7 @@ TEST(BlockPool, WithoutMemoryHasNoBlock) {
   EXPECT_FALSE(pool.owns(&pool));
 }
 
-/// What a program gives back, where its blocks grow, shrink and end by turns.
+/// Memory that a program gives back, where its blocks grow, shrink and end by turns.
 std::string run(const BoundedState& state) {
   luaL_openlibs(state.get());
   constexpr char program[] =

@@ -137,7 +137,8 @@ TEST_F(Program, TellsAServerNotWhetherAFileExists) {
 }
 
 TEST_F(Program, TellsPeopleHereAndNotAServerWhereItLooked) {
-  const FoundScript found = find_script("/elsewhere/main.lua", {{"script", "no/main.lua"}}, {below(folder())});
+  const FoundScript found =
+      find_script("/elsewhere/main.lua", {{"script", "no/main.lua"}}, {below(folder())});
   const std::string looked_below = std::filesystem::canonical(folder()).string();
   EXPECT_EQ(found.fault.find(looked_below), std::string::npos) << found.fault;
   EXPECT_NE(found.where.find(looked_below), std::string::npos) << found.where;
@@ -159,7 +160,8 @@ TEST_F(Program, AllowsItsWorkingDirectoryAndTheFolderOfItsScript) {
   EXPECT_EQ(read({"--connect", "x", "--script", "/a/b.lua"}).options.folders, (Paths{".", "/a"}));
   EXPECT_EQ(read({"--connect", "x", "--script-folder", "/c"}).options.folders, (Paths{"/c"}));
   const Exceptions exceptions =
-      read({"--connect", "x", "--read-only-file", "a", "--hidden-file", "b", "--curve-secret", "c"}).options.exceptions;
+      read({"--connect", "x", "--read-only-file", "a", "--hidden-file", "b", "--curve-secret", "c"})
+          .options.exceptions;
   EXPECT_EQ(exceptions.read_only, (Paths{"a"}));
   EXPECT_EQ(exceptions.hidden, (Paths{"b", "c"}));
   EXPECT_THROW(below(folder() / "none"), std::runtime_error);
@@ -176,7 +178,8 @@ TEST_F(Program, LimitsInstructionsUnlessScriptsAreTrusted) {
 TEST_F(Program, LimitsProcessorTimeUnlessScriptsAreTrusted) {
   EXPECT_EQ(read({"--connect", "x"}).options.max_computing, 20u);
   EXPECT_EQ(read({"--connect", "x", "--trust-scripts"}).options.max_computing, 0u);
-  EXPECT_EQ(read({"--connect", "x", "--trust-scripts", "--max-time", "3"}).options.max_computing, 3u);
+  EXPECT_EQ(read({"--connect", "x", "--trust-scripts", "--max-time", "3"}).options.max_computing,
+            3u);
 }
 
 TEST_F(Program, FindsTheScriptFromTheWorkingDirectory) {

@@ -86,7 +86,8 @@ class RunnerTest : public ScriptTest {
     return runner.has_failures();
   }
 
-  /// Goes on when a signal woke the server: those that watch scripts are for the whole process, which has the server here, too.
+  /// Goes on when a signal woke the server: those that watch scripts are for the whole process,
+  /// which has the server here, too.
   template <class Wait>
   static Outcome undisturbed(Wait wait) {
     Outcome outcome = wait();
@@ -101,7 +102,8 @@ class RunnerTest : public ScriptTest {
       const world::Observations seen = small_.observations(tick);
       server_.publish(seen, network::no_tags);
       ++published_;
-      ASSERT_EQ(undisturbed([&] { return server_.collect(commands_, patience); }), Outcome::complete);
+      ASSERT_EQ(undisturbed([&] { return server_.collect(commands_, patience); }),
+                Outcome::complete);
       reports_.push_back(server_.take_report());
     }
     server_.finish({wire::EndReason::finished, "", 4});
@@ -188,7 +190,8 @@ TEST_F(RunnerTest, TheScriptOfARobotThatHasLeftEndsAndItsFilesAreClosed) {
     if (tick == 4) open_at_the_end = open_files(folder());
   };
   const std::string own = "'" + folder().string() + "/' .. robot.id .. '.txt'";
-  run("local file = io.open(" + own + ", 'w')\n"
+  run("local file = io.open(" + own +
+      ", 'w')\n"
       "function init() end\n"
       "function step() if robot.id == 'robot2' then nothing.x = 1 end end\n"
       "function destroy() file:write('end') log('destroy') end");
@@ -213,7 +216,8 @@ TEST_F(RunnerTest, AnInterruptLeavesWithoutFailure) {
   std::thread interrupter([this] {
     // At tick 1 the script of robot1 loops.
     EXPECT_TRUE(comes_true([this] { return published_ >= 2; }));
-    std::this_thread::sleep_for(milliseconds(20));  // no event tells that it loops; it ends before, too
+    std::this_thread::sleep_for(
+        milliseconds(20));             // no event tells that it loops; it ends before, too
     ::pthread_kill(client_, SIGUSR1);  // as a signal: where the script runs
   });
   run("function init() end function step() while robot.id == 'robot1' do end end");
@@ -237,7 +241,9 @@ TEST_F(RunnerTest, AnInterruptLeavesBeforeStatesAreFreed) {
   run("local until_then = setmetatable({}, {__gc = function()\n"
       "  local begin = os.clock()\n"
       "  while robot.id == 'robot2' and os.clock() < begin + 2 do end\n"
-      "  if robot.id == 'robot2' then io.open('" + (folder() / "freed").string() + "', 'w'):close() end end})\n"
+      "  if robot.id == 'robot2' then io.open('" +
+      (folder() / "freed").string() +
+      "', 'w'):close() end end})\n"
       "function init() end function step() return until_then end");
   EXPECT_FALSE(are_freed);
   EXPECT_TRUE(std::filesystem::exists(folder() / "freed"));

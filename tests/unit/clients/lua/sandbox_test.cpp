@@ -1,4 +1,4 @@
-// What a script that is not trusted cannot do.
+// Limits of a script that is not trusted.
 
 #include <sys/resource.h>
 
@@ -36,7 +36,7 @@ class Sandbox : public ScriptTest {
     options_.folders = &*folders_;
   }
 
-  /// What an expression with IN and OUT, the folder and the one above, is worth in a script.
+  /// Value of an expression in a script, with IN and OUT: the folder and the one above.
   std::string value(const std::string& expression) {
     const auto lines = logged("local OUT = '" + folder().string() +
                               "/' local IN = OUT .. 'inside/' log((" + expression + "))");
@@ -88,11 +88,13 @@ TEST_F(Sandbox, LoadsNoByteCode) {
   EXPECT_EQ(value("select('#', load('return 7', 'c', 'bt'))"), "1");
 }
 
-// Lua's own functions, which those of the sandbox call, are on the stack while scripts are called back.
+// Lua's own functions, which those of the sandbox call, are on the stack while scripts are called
+// back.
 TEST_F(Sandbox, TakesNoFunctionFromTheStack) {
-  EXPECT_EQ(value("(function() local own load(function() own = own or debug.getinfo(2, 'f').func end) "
-                  "return tostring(own) end)()"),
-            "nil");
+  EXPECT_EQ(
+      value("(function() local own load(function() own = own or debug.getinfo(2, 'f').func end) "
+            "return tostring(own) end)()"),
+      "nil");
   expect_refused(
       "local own "
       "xpcall(function() io.open(IN .. 'data.txt', 'no mode') end, function() "
@@ -126,11 +128,16 @@ TEST_F(Sandbox, AnErrorAboutTheNilOfIoOpenSaysWhyThereIsNone) {
   const std::string opens = "local f = io.open('" + (folder() / "secret.txt").string() + "') ";
   const Failure failure = start(opens + "f:read('a')");
   ASSERT_TRUE(failure);
-  EXPECT_NE(failure->find("attempt to index a nil value (local 'f'): io.open has returned nil: '"), std::string::npos) << *failure;
-  EXPECT_NE(failure->find("is not a file that scripts may use this way"), std::string::npos) << *failure;
-  const Failure missing = start("local f = io.open('" + (folder() / "inside/none.txt").string() + "') f:read('a')");
+  EXPECT_NE(failure->find("attempt to index a nil value (local 'f'): io.open has returned nil: '"),
+            std::string::npos)
+      << *failure;
+  EXPECT_NE(failure->find("is not a file that scripts may use this way"), std::string::npos)
+      << *failure;
+  const Failure missing =
+      start("local f = io.open('" + (folder() / "inside/none.txt").string() + "') f:read('a')");
   EXPECT_NE(missing->find("none.txt: No such file or directory"), std::string::npos) << *missing;
-  const Failure other = start(opens + "f = io.open('" + (folder() / "inside/data.txt").string() + "') local x x.y = 1");
+  const Failure other = start(opens + "f = io.open('" + (folder() / "inside/data.txt").string() +
+                              "') local x x.y = 1");
   EXPECT_EQ(other->find("io.open"), std::string::npos) << *other;
 }
 
@@ -174,8 +181,8 @@ TEST_F(Sandbox, LongNamesTakeLittleMemory) {
   expect_refused("package.path = ('?'):rep(1 << 20) require(('q'):rep(1000))");
   expect_refused("package.path = ('x'):rep(1 << 20) require 'q'");
   expect_refused("assert(package.searchpath(('.'):rep(4000), '?', '.', ('x'):rep(1 << 20)))");
-  for (const char* call : {"assert(io.open(long))", "assert(io.open(long, 'w'))", "io.lines(long)", "dofile(long)",
-                           "assert(os.remove(long))"}) {
+  for (const char* call : {"assert(io.open(long))", "assert(io.open(long, 'w'))", "io.lines(long)",
+                           "dofile(long)", "assert(os.remove(long))"}) {
     expect_refused(std::string("local long = IN .. ('a/'):rep(1 << 22) ") + call);
   }
   EXPECT_LT(peak_rss() - before, std::size_t{200} << 20);
@@ -202,7 +209,8 @@ TEST_F(Sandbox, ChangesNoProgramsAndScripts) {
   fs::permissions(folder() / "inside/drive", fs::perms::owner_all);
   write("inside/drive.txt", "#!/bin/sh");
   fs::permissions(folder() / "inside/drive.txt", fs::perms::owner_all);
-  for (const char* name : {"drive", "drive.txt", "part.lua", "new.lua", "scene.argos", "drive.js", "part.pyc", "sweep.toml", "new.LUA", "scene.Argos"}) {
+  for (const char* name : {"drive", "drive.txt", "part.lua", "new.lua", "scene.argos", "drive.js",
+                           "part.pyc", "sweep.toml", "new.LUA", "scene.Argos"}) {
     expect_refused("assert(io.open(IN .. '" + std::string(name) + "', 'a'))");
     expect_refused("assert(os.rename(IN .. 'data.txt', IN .. '" + std::string(name) + "'))");
   }
@@ -213,12 +221,47 @@ TEST_F(Sandbox, ChangesNoProgramsAndScripts) {
 TEST_F(Sandbox, WritesNothingThatOtherProgramsTakeForInstructions) {
   write("inside/Makefile", "all:");
   fs::create_symlink(folder() / "inside/Makefile", folder() / "inside/make.txt");
-  for (const char* name :
-       {"Makefile", "make.txt", "Dockerfile", "x.pth", "a.desktop", "x.ps1", "x.bat", "x.R", "x.el", "x.service", "x.mk",
-        "x.cmake", "x.yaml", "x.ini", "x.html", "x.svg", "new", "x.csv.", "x.csv ", "x. ", "CMakeLists.txt", "CMakeCache.txt",
-        "cmakelists.TXT", "CMakePresets.json", "package.json", "package-lock.json", "tsconfig.json", "babel.config.json",
-        "requirements.txt", "requirements-dev.txt", "compile_commands.json", "settings.json", "kernel.json", "composer.json",
-        "cdk.json", "npm-shrinkwrap.json", "wrangler.json", "tauri.conf.json", "app.json", "results.json", "X.JSON"}) {
+  for (const char* name : {"Makefile",
+                           "make.txt",
+                           "Dockerfile",
+                           "x.pth",
+                           "a.desktop",
+                           "x.ps1",
+                           "x.bat",
+                           "x.R",
+                           "x.el",
+                           "x.service",
+                           "x.mk",
+                           "x.cmake",
+                           "x.yaml",
+                           "x.ini",
+                           "x.html",
+                           "x.svg",
+                           "new",
+                           "x.csv.",
+                           "x.csv ",
+                           "x. ",
+                           "CMakeLists.txt",
+                           "CMakeCache.txt",
+                           "cmakelists.TXT",
+                           "CMakePresets.json",
+                           "package.json",
+                           "package-lock.json",
+                           "tsconfig.json",
+                           "babel.config.json",
+                           "requirements.txt",
+                           "requirements-dev.txt",
+                           "compile_commands.json",
+                           "settings.json",
+                           "kernel.json",
+                           "composer.json",
+                           "cdk.json",
+                           "npm-shrinkwrap.json",
+                           "wrangler.json",
+                           "tauri.conf.json",
+                           "app.json",
+                           "results.json",
+                           "X.JSON"}) {
     const std::string file = "IN .. '" + std::string(name) + "'";
     expect_refused("assert(io.open(" + file + ", 'w'))");
     expect_refused("io.output(" + file + ")");
@@ -232,8 +275,9 @@ TEST_F(Sandbox, WritesNothingThatOtherProgramsTakeForInstructions) {
 }
 
 TEST_F(Sandbox, WritesData) {
-  for (const char* name : {"a.csv", "A.CSV", "b.tsv", "c.txt", "d.log", "e.dat", "results.jsonl", "f.jsonl", "g.bin", "h.data",
-                           "picture.ppm", "i.csv.tmp", "robot.1.csv"}) {
+  for (const char* name :
+       {"a.csv", "A.CSV", "b.tsv", "c.txt", "d.log", "e.dat", "results.jsonl", "f.jsonl", "g.bin",
+        "h.data", "picture.ppm", "i.csv.tmp", "robot.1.csv"}) {
     EXPECT_EQ(value("io.type(io.open(IN .. '" + std::string(name) + "', 'w'))"), "file") << name;
   }
 }
@@ -243,8 +287,9 @@ TEST_F(Sandbox, ChangesNoFilesThatAreReadOnlyAndUsesNoneThatAreHidden) {
   write("inside/key.txt", "key");
   fs::create_hard_link(folder() / "inside/arms.txt", folder() / "inside/other.txt");
   fs::create_symlink(folder() / "inside/key.txt", folder() / "inside/other_key.txt");
-  folders_.emplace(std::vector<fs::path>{folder() / "inside"},
-                   Exceptions{{folder() / "inside/../inside/arms.txt"}, {folder() / "inside/key.txt"}});
+  folders_.emplace(
+      std::vector<fs::path>{folder() / "inside"},
+      Exceptions{{folder() / "inside/../inside/arms.txt"}, {folder() / "inside/key.txt"}});
   EXPECT_EQ(value("io.open(IN .. 'arms.txt'):read('a')"), "<scene/>");
   for (const char* name : {"arms.txt", "other.txt"}) {
     expect_refused("assert(io.open(IN .. '" + std::string(name) + "', 'r+'))");
@@ -280,20 +325,29 @@ TEST_F(Sandbox, TrustedScriptsHaveAllOfLua) {
 }
 
 TEST_F(Sandbox, HasABoundedNumberOfOpenFiles) {
-  EXPECT_EQ(value("(function() local n, file, why = 0 OPEN = {} repeat file, why = io.open(IN .. 'data.txt') n = n + 1 "
-                  "OPEN[n] = file until not file return n .. ' ' .. why end)()")
-                .substr(0, 60),
-            ("33 '" + folder().string() + "/inside/data.txt' is not opened: this script has 32 files").substr(0, 60));
-  EXPECT_NE(value("(function() OPEN = {} for i = 1, 40 do OPEN[i] = io.lines(IN .. 'data.txt') end end)()")
-                .find("has 32 files open"), std::string::npos);
-  EXPECT_NE(value("(function() OPEN = {} for i = 1, 40 do io.input(IN .. 'data.txt') OPEN[i] = io.input() end end)()")
-                .find("has 32 files open"), std::string::npos);
+  EXPECT_EQ(
+      value("(function() local n, file, why = 0 OPEN = {} repeat file, why = io.open(IN .. "
+            "'data.txt') n = n + 1 "
+            "OPEN[n] = file until not file return n .. ' ' .. why end)()")
+          .substr(0, 60),
+      ("33 '" + folder().string() + "/inside/data.txt' is not opened: this script has 32 files")
+          .substr(0, 60));
+  EXPECT_NE(
+      value(
+          "(function() OPEN = {} for i = 1, 40 do OPEN[i] = io.lines(IN .. 'data.txt') end end)()")
+          .find("has 32 files open"),
+      std::string::npos);
+  EXPECT_NE(value("(function() OPEN = {} for i = 1, 40 do io.input(IN .. 'data.txt') OPEN[i] = "
+                  "io.input() end end)()")
+                .find("has 32 files open"),
+            std::string::npos);
 }
 
 TEST_F(Sandbox, OpensMoreFilesAfterItClosedOrForgotOthers) {
   EXPECT_EQ(value("(function() for i = 1, 1000 do assert(io.open(IN .. 'data.txt')):close() end "
                   "for i = 1, 1000 do assert(io.open(IN .. 'data.txt')) end "
-                  "for i = 1, 1000 do for line in io.lines(IN .. 'data.txt') do end end return 'all' end)()"),
+                  "for i = 1, 1000 do for line in io.lines(IN .. 'data.txt') do end end return "
+                  "'all' end)()"),
             "all");
 }
 

@@ -42,7 +42,7 @@ class ScriptTest : public ::testing::Test {
     return controller_->start();
   }
 
-  /// What the script of one line logs at its beginning; the failure's text if it fails.
+  /// Log of a script of one line at its beginning; the failure's text if it fails.
   std::vector<std::string> logged(const std::string& script) {
     if (const Failure failure = start(script)) return {*failure};
     std::vector<std::string> lines;

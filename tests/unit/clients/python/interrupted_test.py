@@ -1,21 +1,16 @@
 """Ctrl-C: a session leaves, and its program ends soon, whatever the server has sent. Against a fake server."""
 
 import gc
-import random
 import resource
 import signal
-import socket
 import subprocess
 import sys
-import threading
-import time
 import unittest
 import unittest.mock
 import weakref
 
 import ziggurat
 from ziggurat import protocol_pb2 as v1
-from ziggurat.plain_stream import _GREETING, _READY, PlainStream, address_of
 
 from session_case import SessionCase, open_with
 
@@ -94,45 +89,11 @@ class Interrupted(SessionCase):
     def test_a_server_that_reads_nothing_does_not_hold_up_the_end(self):
         def client():
             session = self.connect()
-            while session._connection.transport.send(bytes(1 << 20)):
+            while session._connection.transport.send(bytes(1 << 16)):
                 pass  # until all queues are full for half a second
             session.close("KeyboardInterrupt: ")
 
         self.play(open_with, client)
-
-
-class Stream(unittest.TestCase):
-    def test_what_was_sent_before_an_interruption_is_not_sent_again(self):
-        """Interruptions come at random, many of them while something is being sent."""
-        listener = socket.create_server(("127.0.0.1", 0))
-        stream = PlainStream(address_of("tcp://127.0.0.1:%d" % listener.getsockname()[1]))
-        theirs, _ = listener.accept()
-        self.addCleanup(theirs.close)
-        self.addCleanup(listener.close)
-        theirs.sendall(_GREETING + b"\x04" + bytes([len(_READY) + 6]) + _READY + b"ROUTER")
-        heard = bytearray()
-        reader = threading.Thread(target=lambda: heard.extend(b"".join(iter(lambda: theirs.recv(1 << 20), b""))))
-        reader.start()
-        previous = signal.signal(signal.SIGALRM, signal.default_int_handler)
-        self.addCleanup(signal.signal, signal.SIGALRM, previous)
-        stream.receive(0.1)
-        sent = interruptions = 0
-        end = time.monotonic() + 2.0
-        while time.monotonic() < end:
-            try:
-                signal.setitimer(signal.ITIMER_REAL, random.uniform(1e-5, 3e-4))
-                while True:
-                    sent += 1
-                    stream.send(b"%8d" % sent)
-            except KeyboardInterrupt:
-                interruptions += 1
-        stream.close(5.0)
-        reader.join()
-        heard = heard[64 + 2 + len(_READY) + 6:]
-        self.assertEqual({b"\0\x08"}, {bytes(heard[i:i + 2]) for i in range(0, len(heard), 10)})
-        numbers = [int(heard[i + 2:i + 10]) for i in range(0, len(heard), 10)]
-        self.assertEqual(numbers, sorted(set(numbers)))
-        self.assertGreaterEqual(len(numbers), sent - interruptions)
 
 
 if __name__ == "__main__":

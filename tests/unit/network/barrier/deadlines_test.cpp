@@ -47,7 +47,7 @@ TEST_F(Three, TicksAreCountedOncePerController) {
   EXPECT_EQ(deadlines.missed_ticks()[0], 3U) << "that is another tick 5";
 }
 
-/// What the policy asks for after one miss, two, three.
+/// Consequences after one miss, two and three.
 std::vector<Consequence> consequences(DeadlineAction action, std::uint32_t budget) {
   Deadlines deadlines({{{action, 50, budget}, false}}, 1);
   deadlines.add(0);

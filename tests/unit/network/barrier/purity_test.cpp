@@ -17,7 +17,8 @@ TEST(Purity, NoSocketNoClockNoFacade) {
   const std::regex impure(
       R"(zmq|_clock::now|Clock::now|\bsleep|"network/(server|socket|gatekeeper|endpoint)\.h")");
   std::size_t files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(checkout() / "server/network/barrier")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(checkout() / "server/network/barrier")) {
     std::ostringstream text;
     text << std::ifstream(entry.path()).rdbuf();
     EXPECT_FALSE(std::regex_search(text.str(), impure)) << entry.path();

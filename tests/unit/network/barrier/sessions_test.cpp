@@ -54,7 +54,7 @@ TEST(Sessions, ATokenFindsTheOneThatMayGoOn) {
 TEST(Sessions, LostOnesAreNotConnected) {
   Sessions sessions;
   sessions.add().state = SessionState::lost;
-  sessions.add().application.hello = "hello";
+  sessions.add().waiting_hello.hello = "hello";
   EXPECT_EQ(sessions.connected(wire::Role::controller), 1U);
   EXPECT_EQ(sessions.waiting_bytes(), 5U);
 }

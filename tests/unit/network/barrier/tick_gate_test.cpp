@@ -15,10 +15,10 @@ struct Gate : ::testing::Test {
     gate.await(second, now);
   }
   Time now{};
-  Seats seats;
-  Seats directors;
-  TickGate gate{seats, directors};
-  Turn first, second;
+  Ownership ownership;
+  Ownership directors;
+  TickGate gate{ownership, directors};
+  PendingAnswer first, second;
 };
 
 TEST_F(Gate, OpensWhenAllHaveAnswered) {
@@ -51,9 +51,9 @@ TEST_F(Gate, AwaitingTwiceOwesOnce) {
 TEST_F(Gate, WaitsForFreeRobots) {
   gate.settle(first, now);
   gate.settle(second, now);
-  seats.add(now, false);
+  ownership.add(now, false);
   EXPECT_FALSE(gate.is_complete());
-  seats.skip(0, now);
+  ownership.skip(0, now);
   EXPECT_TRUE(gate.is_complete());
 }
 
@@ -70,9 +70,9 @@ TEST_F(Gate, StaysClosedWhilePausedOrStopped) {
 }
 
 TEST_F(Gate, ATickEndsThatTheWorldStands) {
-  gate.set_standing(true);
+  gate.set_halted(true);
   gate.begin(8);
-  EXPECT_FALSE(gate.is_standing());
+  EXPECT_FALSE(gate.is_halted());
   gate.clear();
   EXPECT_FALSE(gate.tick());
 }

@@ -1,0 +1,169 @@
+#pragma once
+// Contact cache: contact points of a substep for dynamics/, with the impulses of the last substep.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "physics/bodies/link_contact.h"
+#include "physics/collision/colliders.h"
+#include "physics/collision/pair_lists.h"
+#include "physics/solver/constraint.h"
+
+namespace ziggurat::physics {
+
+/// Key of a pair of colliders.
+inline std::uint64_t key_of(std::size_t a, std::size_t b) { return std::uint64_t{a} << 32 | b; }
+
+/// Common data of all contacts of a pair, at the present poses.
+/// @param count  of its points
+dynamics::ContactPoint contact_of(const Collider& a, const Collider& b, const math::Vector3& normal,
+                                  int count);
+
+class ContactCache {
+ public:
+  explicit ContactCache(Colliders& colliders) : colliders_(colliders) {}
+
+  /// Trees of the last find_contacts() that rotate far until their impact.
+  std::vector<dynamics::RotationUntilImpact> rotations_until_impact;
+
+  /// Finds contacts of the coming substep, with the impulses of the last one. Static pairs are left
+  /// out, because they do nothing while both sides rest.
+  std::span<dynamics::ContactPoint> find_contacts(double time_step);
+  /// Adds the contacts of static pairs: for substeps in which something wakes.
+  std::span<dynamics::ContactPoint> add_resting_contacts();
+  /// Finds contacts for a part of the substep in which only some trees move, all of them awake:
+  /// among them, and with what stands.
+  /// @param force_share  of the substep's forces that act in the part
+  std::span<dynamics::ContactPoint> find_contacts(double time_step, const TreeSet& active,
+                                                  double force_share);
+  /// Begins the parts of a set of trees; to be called before the first one.
+  void begin_parts(const TreeSet& active);
+  /// Keeps the contacts of a set of trees only, until the next find_contacts().
+  std::span<dynamics::ContactPoint> keep_contacts(const TreeSet& active);
+  /// Pairs of the last find_contacts().
+  std::span<const ColliderPair> near_pairs() const { return near_pairs_; }
+  /// Stores the impulses that dynamics/ has written.
+  /// @param more  parts of the substep are still to come
+  void store_impulses(bool more = false);
+  /// Stores the impulses of an impact that dynamics/ has written: for list_contacts(), not for the
+  /// next solution.
+  void add_impact_impulses();
+  /// Finds new overlaps with static colliders: of bodies that rotated far in the substep, or are
+  /// off their predicted positions.
+  std::span<dynamics::ContactPoint> find_new_overlaps(const dynamics::System& system);
+  /// Forgets an entity's pairs, before it is removed or moved; wakes bodies that touched it.
+  void forget(std::size_t entity, dynamics::System& system);
+
+  /// Lists all touching pairs, in ascending order.
+  void list_contacts(std::vector<LinkContact>& out) const;
+
+  /// Archives the cache. @pre the colliders have been read
+  friend void archive_fields(math::Archive& archive, ContactCache& contacts);
+
+ private:
+  static constexpr int most_points = 8;    // of a pair; 4 unless it tumbles
+  static constexpr std::size_t ahead = 8;  // contacts whose memory is asked for
+  struct CachedPoint {
+    math::Vector3 on_a{0, 0, 0}, on_b{0, 0, 0};  // in the colliders' frames [m]
+    math::Vector3 point{0, 0, 0};
+    math::Vector3 impulse{0, 0, 0}, angular_impulse{0, 0, 0};  // for all forces of a substep
+    double gap = 0;
+    void archive(math::Archive& archive);
+  };
+  // Begins a line of the cache.
+  struct alignas(64) CachedPair {
+    static constexpr std::size_t prefetched_bytes = 384;  // with two points [bytes]
+    std::uint32_t a = 0, b = 0;                           // colliders
+    bool live = false;
+    bool covers_internal_edge = false;  // it covers internal edges, so its contacts are kept
+    bool is_static = false;             // both sides rested when it was seen last
+    unsigned last_substep = 0;          // the substep in which it was near last
+    unsigned last_part = 0;             // likewise, counting parts as substeps
+    int count = 0;
+    math::Vector3 normal{0, 0, 1};
+    math::Vector3 earlier_impulse{0, 0, 0};  // impulse in earlier parts of the substep [N s]
+    double force_share = 1;                  // of the substep's forces, that acted in its last part
+    std::array<CachedPoint, most_points> points;
+    void archive(math::Archive& archive);
+  };
+
+  CachedPair& pair_of(std::size_t a, std::size_t b, int& place);
+  void collide_pairs(double time_step);
+  void collide_pair(CachedPair& pair, double time_step);
+  void match_points(const contact::Manifold& found, CachedPair& pair, double time_step);
+  void append_contacts(const CachedPair& pair);
+  bool is_inside_neighbour(const Collider& cover, const CachedPair& hidden, std::size_t mover,
+                           const btVector3& up, btScalar height, const btVector3& point);
+  bool drops_internal_edge(CachedPair& seen, CachedPair& hidden, std::size_t mover);
+  void list_supports(const CachedPair& pair);
+  void drop_internal_edges();
+  template <class IsKept>
+  void keep_if(IsKept is_kept);
+  void drop_pair(std::size_t number);
+  void drop_separated_pairs();
+  void check_pairs(const math::Archive& archive) const;
+
+  Colliders& colliders_;
+  std::vector<CachedPair> pairs_;  // [0] is none
+  std::vector<int> unused_;
+  std::size_t live_ = 0, resting_ = 0;  // pairs
+  std::size_t awake_ = 0;               // that the last collide_pairs() saw
+  std::unordered_map<std::uint64_t, int>
+      places_;               // of pairs by their colliders; not with the floor
+  double together_gap_ = 0;  // gap above which touching surfaces meet later in the substep [m]
+  double time_step_ = 0;     // of the coming substep or part [s]
+  double force_share_ = 1;   // of a substep's forces, that acts in the coming one
+  unsigned substep_ = 0, part_ = 0;  // how many there were; part_: of both
+  std::vector<int> pairs_of_part_,
+      pairs_of_previous_part_;  // pairs, by the last find_contacts() and the one before
+  std::vector<ColliderPair> near_pairs_;
+  std::vector<int> floor_pairs_;       // of each collider
+  PairLists pairs_of_collider_;        // of all colliders but the floor
+  std::vector<int> forgotten_;         // pairs, in forget()
+  std::vector<int> neighbours_;        // of a collider, in is_inside_neighbour()
+  std::vector<CachedPair*> carriers_;  // of the contacts that drops_internal_edge() looks at
+  std::vector<dynamics::ContactPoint> contacts_;
+  /// Index of a contact's point in the cache.
+  struct CacheIndex {
+    int pair = 0, point = 0;
+  };
+  std::vector<CacheIndex> cache_indices_;                 // of each contact
+  std::array<CachedPoint, most_points> previous_points_;  // of the present pair, a substep ago
+  /// A pair with a static side whose other side rotates far in the substep, or may do so after an
+  /// impact.
+  struct OverlapCandidate {
+    std::size_t pair = 0;
+    bool has_no_contact = false;  // no contact was found
+    bool rotates_far = false;     // without being struck
+  };
+  std::vector<OverlapCandidate> overlap_candidates_;
+  std::vector<dynamics::ContactPoint> overlaps_;  // of these
+  /// A moving collider on a base, a body that may have several colliders beside each other.
+  struct Support {
+    std::size_t mover = 0;   // a collider
+    std::size_t entity = 0;  // of the base; Collider::floor: all that stands
+    std::size_t part = 0;    // of it
+    std::size_t base = 0;    // its collider: pair numbers depend on the history
+    int pair = 0;
+    auto operator<=>(const Support&) const = default;
+  };
+  std::vector<Support> supports_;
+};
+
+/// Keeps the contacts of some pairs.
+template <class IsKept>
+void ContactCache::keep_if(IsKept is_kept) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < cache_indices_.size(); ++i) {
+    if (!is_kept(pairs_[cache_indices_[i].pair])) continue;
+    contacts_[kept] = contacts_[i];
+    cache_indices_[kept++] = cache_indices_[i];
+  }
+  contacts_.resize(kept);
+  cache_indices_.resize(kept);
+}
+
+}  // namespace ziggurat::physics

@@ -1,0 +1,70 @@
+// Overlap recovery. Contacts are linear in the displacement. A body that rotates far in a substep,
+// as at an impact of a corner, may penetrate with other corners at its end. So may a body that an
+// impact or a push-out moves off its predicted path.
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/bodies/convert.h"
+#include "physics/collision/contact_cache.h"
+
+namespace ziggurat::physics {
+namespace {
+
+constexpr btScalar most_gap = btScalar(1e-3);  // gap below which points are checked for overlap [m]
+constexpr double least_overlap = 2e-5;         // [m]
+
+bool overlaps_deeply(const contact::Manifold& found) {
+  return std::any_of(
+      found.points.begin(), found.points.begin() + found.count,
+      [](const contact::ManifoldPoint& point) { return point.distance < -least_overlap; });
+}
+
+/// Bound of the distance of a collider's points from their predicted positions [m].
+/// @param now     its pose after the substep
+/// @param time_step  of the substep [s]
+double predicted_pose_error(const Collider& moving, const btTransform& now, double time_step) {
+  const btVector3 way = now.getOrigin() - moving.pose.getOrigin() - time_step * moving.velocity;
+  double turn = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const btVector3 before = moving.pose.getBasis().getColumn(axis);
+    turn += (now.getBasis().getColumn(axis) - before -
+             time_step * moving.angular_velocity.cross(before))
+                .length2();
+  }
+  return way.length() + moving.radius * std::sqrt(turn / 2);
+}
+
+}  // namespace
+
+std::span<dynamics::ContactPoint> ContactCache::find_new_overlaps(const dynamics::System& system) {
+  const double known =
+      speculative_margin(colliders_, time_step_);  // the margin with which contacts were found
+  overlaps_.clear();
+  for (const OverlapCandidate& turned : overlap_candidates_) {
+    const CachedPair& pair = pairs_[turned.pair];
+    if (pair.count == 0 && !turned.has_no_contact) continue;  // hidden
+    const Collider& a = colliders_.all[pair.a];
+    const Collider& b = colliders_.all[pair.b];
+    const btTransform of_a = a.moves ? colliders_.pose(a, system) : a.pose;
+    const btTransform of_b = b.moves ? colliders_.pose(b, system) : b.pose;
+    if (!turned.rotates_far &&
+        predicted_pose_error(a.moves ? a : b, a.moves ? of_a : of_b, time_step_) <= known)
+      continue;
+    const contact::Manifold found =
+        contact::find(a.shape, of_a, b.shape, of_b, most_gap, contact::Support::all);
+    if (!overlaps_deeply(found)) continue;
+    const dynamics::ContactPoint law =
+        contact_of(a, b, turned.has_no_contact ? from_bullet(found.normal) : pair.normal,
+                   std::max(pair.count, 1));
+    for (int i = 0; i < found.count; ++i) {
+      dynamics::ContactPoint& contact = overlaps_.emplace_back(law);
+      contact.normal = from_bullet(found.normal);
+      contact.point = from_bullet(found.points[i].on_b);
+      contact.gap = found.points[i].distance;
+    }
+  }
+  return overlaps_;
+}
+
+}  // namespace ziggurat::physics

@@ -1,0 +1,213 @@
+#include "physics/multibody/equations.h"
+
+#include <algorithm>
+
+namespace ziggurat::dynamics {
+namespace {
+
+/// Inertia of one link about the tree's origin.
+Inertia link_inertia(const Tree& tree, int i) {
+  const Link& link = tree.links[i];
+  const Matrix3& r = tree.rotation[i];
+  const Vector3 arm = tree.position[i] - tree.origin;
+  Inertia out;
+  out.mass = link.mass;
+  out.first_moment = link.mass * arm;
+  const double square = link.mass * arm.squaredNorm();
+  for (int a = 0; a < 3; ++a) {
+    for (int b = a; b < 3; ++b) {
+      double sum = 0;
+      for (int k = 0; k < 3; ++k) sum += r(a, k) * link.inertia[k] * r(b, k);
+      sum -= link.mass * arm[a] * arm[b];
+      if (a == b) sum += square;
+      out.second_moment(a, b) = out.second_moment(b, a) = sum;
+    }
+  }
+  return out;
+}
+
+/// Projects the wrenches on all links on each dof. Each link's wrench becomes the sum over its
+/// subtree.
+void project_wrenches(const Tree& tree, Workspace& work, std::span<double> out) {
+  for (int i = static_cast<int>(tree.links.size()) - 1; i >= 0; --i) {
+    const int first = tree.first_dof[i];
+    for (int k = first; k < first + tree.dof_count[i]; ++k) {
+      out[k] = dot(tree.motion_subspace[k], work.wrench[i]);
+    }
+    if (i > 0) {
+      Wrench& parent = work.wrench[tree.links[i].parent];
+      parent = parent + work.wrench[i];
+    }
+  }
+}
+
+/// Sets the mass matrix of a floating base with a composite inertia.
+void set_root_mass(const Inertia& inertia, double* mass, int n) {
+  const Vector3& h = inertia.first_moment;
+  const double coupling[3][3] = {{0, -h.z(), h.y()}, {h.z(), 0, -h.x()}, {-h.y(), h.x(), 0}};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      mass[i * n + j] = inertia.second_moment(i, j);
+      mass[i * n + 3 + j] = mass[(3 + j) * n + i] = coupling[i][j];
+      mass[(3 + i) * n + 3 + j] = i == j ? inertia.mass : 0;
+    }
+  }
+}
+
+}  // namespace
+
+void compute_mass_matrix(const Tree& tree, Workspace& work) {
+  const int size = static_cast<int>(tree.links.size()), n = tree.dofs;
+  work.link_inertia.resize(size);
+  work.composite_inertia.resize(size);
+  work.wrench.resize(size);
+  work.acceleration.resize(size);
+  work.scratch.resize(n);
+  work.mass.resize(n * n);
+  for (int i = 0; i < size; ++i) {
+    work.link_inertia[i] =
+        tree.links[i].joint == JointType::fixed ? Inertia{} : link_inertia(tree, i);
+    work.composite_inertia[i] = work.link_inertia[i];
+  }
+  if (size > 1) work.mass.assign(work.mass.size(), 0);  // dofs on different branches do not couple
+  const int root = tree.has_floating_base ? 6 : 0;      // dofs along the world's axes
+  for (int i = size - 1; i >= 0; --i) {
+    const int first = tree.first_dof[i];
+    for (int k = std::max(first, root); k < first + tree.dof_count[i]; ++k) {
+      const Wrench momentum = work.composite_inertia[i] * tree.motion_subspace[k];
+      for (int j = k; j >= root; j = tree.parent_dof[j]) {
+        work.mass[k * n + j] = work.mass[j * n + k] = dot(tree.motion_subspace[j], momentum);
+      }
+      for (int j = 0; j < root; ++j) {
+        const double part = j < 3 ? momentum.moment[j] : momentum.force[j - 3];
+        work.mass[k * n + j] = work.mass[j * n + k] = part;
+      }
+    }
+    if (i > 0) work.composite_inertia[tree.links[i].parent] += work.composite_inertia[i];
+  }
+  if (tree.has_floating_base) set_root_mass(work.composite_inertia[0], work.mass.data(), n);
+}
+
+void bias_accelerations(const Tree& tree, Workspace& work) {
+  work.acceleration.resize(tree.links.size());
+  for (int i = 0; i < static_cast<int>(tree.links.size()); ++i) {
+    const Link& link = tree.links[i];
+    const Motion& motion = tree.spatial_velocity[i];
+    Motion& acceleration = work.acceleration[i];
+    if (i == 0) {
+      // The root's coordinates are of its centre of mass, which moves away from O.
+      acceleration = {Vector3::Zero(), -motion.angular.cross(motion.linear)};
+    } else {
+      acceleration = work.acceleration[link.parent];
+      Motion relative;
+      const int first = tree.first_dof[i];
+      for (int k = first; k < first + tree.dof_count[i]; ++k) {
+        relative = relative + tree.motion_subspace[k] * tree.v[k];
+      }
+      acceleration = acceleration + cross(tree.spatial_velocity[link.parent], relative);
+    }
+  }
+}
+
+void bias_forces(const Tree& tree, Workspace& work, std::span<double> out) {
+  bias_accelerations(tree, work);
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    if (tree.links[i].joint == JointType::fixed) {
+      work.wrench[i] = Wrench{};
+      continue;
+    }
+    const Inertia& inertia = work.link_inertia[i];
+    const Motion& motion = tree.spatial_velocity[i];
+    work.wrench[i] = inertia * work.acceleration[i] + cross(motion, inertia * motion);
+  }
+  project_wrenches(tree, work, out);
+}
+
+void external_forces(const Tree& tree, Workspace& work, std::span<double> out, bool fields,
+                     bool gravity) {
+  work.wrench.resize(tree.links.size());  // the workspace may have served a smaller tree since
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    const Vector3 arm = tree.position[i] - tree.origin;
+    Vector3 force = Vector3::Zero();
+    if (fields) force += tree.external[i].force;
+    if (gravity) force += tree.gravity * tree.links[i].mass;
+    work.wrench[i] = {arm.cross(force), force};
+    if (fields) work.wrench[i].moment += tree.external[i].moment;
+  }
+  project_wrenches(tree, work, out);
+}
+
+void factor_mass_matrix(const Tree& tree, Workspace& work, double time_step) {
+  const int n = tree.dofs;
+  work.factor.resize(n * n);
+  const int* parent = tree.parent_dof.data();
+  double* m = work.factor.data();
+  std::copy(work.mass.begin(), work.mass.end(), m);
+  for (int k = 0; k < n; ++k) m[k * n + k] += time_step * tree.damping[k];
+  for (int k = n - 1; k >= 0; --k) {
+    const double inverse = 1 / m[k * n + k];
+    for (int i = parent[k]; i >= 0; i = parent[i]) {
+      const double ratio = m[k * n + i] * inverse;
+      for (int j = i; j >= 0; j = parent[j]) m[i * n + j] -= ratio * m[k * n + j];
+    }
+    for (int i = parent[k]; i >= 0; i = parent[i]) m[k * n + i] *= inverse;
+    m[k * n + k] = inverse;
+  }
+}
+
+void solve_mass_matrix(const Tree& tree, const Workspace& work, double* x) {
+  const int n = tree.dofs;
+  const int* parent = tree.parent_dof.data();
+  const double* m = work.factor.data();
+  for (int i = n - 1; i >= 0; --i) {
+    for (int j = parent[i]; j >= 0; j = parent[j]) x[j] -= m[i * n + j] * x[i];
+  }
+  for (int i = 0; i < n; ++i) {
+    x[i] *= m[i * n + i];
+    for (int j = parent[i]; j >= 0; j = parent[j]) x[i] -= m[i * n + j] * x[j];
+  }
+}
+
+double mobility(const Tree& tree, Workspace& work, int dof) {
+  // x = L^-T e has entries on the way from the dof to the root only.
+  const int n = tree.dofs;
+  const double* m = work.factor.data();
+  double* x = work.scratch.data();
+  for (int j = dof; j >= 0; j = tree.parent_dof[j]) x[j] = j == dof ? 1 : 0;
+  double sum = 0;
+  for (int i = dof; i >= 0; i = tree.parent_dof[i]) {
+    for (int j = tree.parent_dof[i]; j >= 0; j = tree.parent_dof[j]) x[j] -= m[i * n + j] * x[i];
+    sum += x[i] * x[i] * m[i * n + i];
+  }
+  return sum;
+}
+
+void solve_prescribed(const Tree& tree, Workspace& work, const PrescribedJoints& drive,
+                      std::span<double> x) {
+  const int n = tree.dofs;
+  for (std::size_t k = 0; k < drive.prescribed.size(); ++k) {
+    if (!drive.prescribed[k]) continue;
+    for (int i = 0; i < n; ++i) {
+      if (!drive.prescribed[i]) x[i] -= work.mass[i * n + k] * x[k];
+      work.mass[i * n + k] = work.mass[k * n + i] = 0;
+    }
+    work.mass[k * n + k] = 1;
+  }
+  factor_mass_matrix(tree, work, 0);
+  solve_mass_matrix(tree, work, x.data());
+}
+
+void forward_dynamics(Tree& tree, Workspace& work, const PrescribedJoints& drive,
+                      std::span<double> out) {
+  forward_kinematics(tree);
+  velocity_kinematics(tree);
+  compute_mass_matrix(tree, work);
+  external_forces(tree, work, out, false, true);
+  bias_forces(tree, work, work.scratch);
+  for (int k = 0; k < tree.dofs; ++k) out[k] -= work.scratch[k] + tree.damping[k] * tree.v[k];
+  for (std::size_t k = 0; k < drive.prescribed.size(); ++k)
+    out[k] = drive.prescribed[k] ? 0 : out[k] + drive.force[k];
+  solve_prescribed(tree, work, drive, out);
+}
+
+}  // namespace ziggurat::dynamics

@@ -1,0 +1,122 @@
+// Choice of the methods: which one an island gets, and what follows where it fails.
+
+#include "physics/solver/newton.h"
+
+namespace ziggurat::dynamics {
+
+SolverResult VelocitySolver::solve(Problem& problem) {
+  SolverResult outcome;
+  if (is_warm_start_solved(problem, outcome)) return outcome;
+  const double work = analyse(problem);
+  if (work > options.most_factorisation_work) {
+    problem.make_rigid();
+    gauss_seidel(problem, outcome, options.most_passes);
+    return outcome;
+  }
+  if (options.suits_newton(problem.trees.size(), work)) {
+    if (newton(problem, outcome, options.most_stalled_iterations)) return outcome;
+    start_.restore(problem);
+    continuation(problem, outcome);
+    outcome.converged = damped_augmented_lagrangian(problem, outcome);
+    if (!outcome.converged) {
+      start_.restore(problem);
+      augmented_lagrangian_after_gauss_seidel(problem, outcome);
+    }
+    if (outcome.converged) {
+      polish(problem, outcome);
+      return outcome;
+    }
+    start_.restore(problem);
+    problem.make_rigid();
+  } else {
+    problem.make_rigid();
+    if (augmented_lagrangian(problem, outcome)) return outcome;
+  }
+  start_.restore(problem);
+  const bool found = interior_point(problem, outcome);
+  outcome.converged = augmented_lagrangian(problem, outcome);
+  if (outcome.converged && found) return outcome;
+  const SolverResult before = outcome;  // large impulses of redundant contacts hide a residual
+  start_.save(problem);
+  augmented_lagrangian_after_gauss_seidel(problem, outcome);
+  if (outcome.residual > before.residual) {
+    start_.restore(problem);
+    outcome.residual = before.residual;
+    outcome.converged = before.converged;
+  }
+  return outcome;
+}
+
+bool VelocitySolver::gauss_seidel(Problem& problem, SolverResult& outcome, int most) {
+  constexpr int between = 10;  // passes between two evaluations of the residual
+  gauss_seidel_.start(problem);
+  for (int pass = 1; pass <= most; ++pass) {
+    ++outcome.passes;
+    gauss_seidel_.pass();
+    if (pass % between != 0 && pass < most) {
+      gauss_seidel_.accelerate();
+      continue;
+    }
+    gauss_seidel_.finish(problem);
+    double scale = 0;
+    compute_constraint_velocities(problem);
+    outcome.residual = current_residual(problem, scale);
+    outcome.converged = outcome.residual <= options.tolerance_of_regularised(initial_, scale);
+    if (outcome.converged) return true;
+    gauss_seidel_.accelerate();
+  }
+  return false;
+}
+
+/// Polishes a solution of the regularised problem by Newton's method. Its residual exceeds the
+/// contacts' compliance, and would share loads at random.
+void VelocitySolver::polish(Problem& problem, SolverResult& outcome) {
+  const double before = outcome.residual;
+  start_.save(problem);
+  compute_constraint_velocities(problem);
+  if (newton(problem, outcome, options.most_stalled_iterations)) return;
+  start_.restore(problem);
+  outcome.residual = before;
+}
+
+/// Passes, then the augmented Lagrangian from their result. Passes find which contacts hold, stick
+/// and slide. Where these conflict, as rolling friction and the two ends of a line do, only the
+/// augmented Lagrangian converges.
+bool VelocitySolver::augmented_lagrangian_after_gauss_seidel(Problem& problem,
+                                                             SolverResult& outcome) {
+  gauss_seidel_.start(problem);
+  for (int pass = 1; pass <= options.passes_before_augmented_lagrangian; ++pass) {
+    gauss_seidel_.pass();
+    if (pass < options.passes_before_augmented_lagrangian) gauss_seidel_.accelerate();
+  }
+  gauss_seidel_.finish(problem);
+  outcome.passes += options.passes_before_augmented_lagrangian;
+  return outcome.converged = damped_augmented_lagrangian(problem, outcome);
+}
+
+void VelocitySolver::solve_displacement(Problem& problem) {
+  SolverResult outcome;
+  const double work = analyse(problem);
+  if (options.suits_newton(problem.trees.size(), work)) {
+    compute_constraint_velocities(problem);
+    if (newton(problem, outcome, options.most_iterations)) return;
+    start_.restore(problem);
+  }
+  gauss_seidel(problem, outcome, options.displacement_passes);
+  if (outcome.residual > options.displacement_residual && work <= options.most_factorisation_work)
+    damped_augmented_lagrangian(problem, outcome);
+}
+
+SolverResult solve_velocities(Problem& problem, VelocitySolver& solver) {
+  constexpr int most_switches = 3;
+  problem.bound_penetration();
+  SolverResult outcome = solver.solve(problem);
+  for (int i = 0; i < most_switches && problem.switch_limits(); ++i) {
+    const int iterations = outcome.iterations;
+    outcome = solver.solve(problem);
+    outcome.iterations += iterations;
+  }
+  return outcome;
+}
+
+}  // namespace ziggurat::dynamics

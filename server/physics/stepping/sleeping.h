@@ -1,0 +1,85 @@
+#pragma once
+// Sleep of islands at rest, and events that wake them: an approaching contact, changed wrenches or
+// servos.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "physics/multibody/tree.h"
+#include "physics/solver/constraint.h"
+
+namespace ziggurat::dynamics {
+
+/// Conditions of sleep. An island sleeps if it touches the world and all its coordinates stay below
+/// these velocities for this time. A body that starts to slide on a slope is faster by then.
+struct SleepOptions {
+  bool enabled = true;
+  double linear_velocity = 5e-5;   ///< of what moves [m/s]
+  double angular_velocity = 5e-4;  ///< of rotation, and of joints [rad/s] or [m/s]
+  double time = 0.3;               ///< [s]
+  double force_change = 1e-3;      ///< change that wakes, over weight and force when it fell asleep
+  // Conditions for a heap that was solved by passes only, in whose residual slow motion is lost.
+  double heap_velocity = 1e-3;  ///< root mean square of all its mass [m/s]
+  double heap_fastest = 5e-3;   ///< of a tree [m/s]
+  double heap_time = 0.5;       ///< [s]
+};
+
+/// Sleep state of a tree.
+struct SleepState {
+  double time_at_rest = 0;    ///< time below the bounds of sleep [s]
+  std::uint64_t command = 0;  ///< hash of its servos' commands
+  std::uint64_t command_asleep = 0;
+  double force_bound =
+      0;                 ///< of changes on a link that do not wake it [N], [N m] per radius of 1 m
+  int first_servo = -1;  ///< that it had last, see Sleep::next_servo
+  void archive(math::Archive& archive);
+};
+
+/// Sleep of all trees.
+struct Sleep {
+  std::vector<SleepState> states;
+  std::vector<int>
+      ring;  ///< of each tree: the next in the ring of those that sleep with it; -1: awake
+  /// Flags of each tree: its servos have commands, it had wrenches when it fell asleep, or has them
+  /// now.
+  enum Flag : unsigned char { commanded = 1, loaded_asleep = 2, loaded = 4, subdivided = 8 };
+  std::vector<unsigned char> flags;
+  std::vector<int> next_servo;  ///< of each servo: the next of its tree; -1: none
+
+  bool is_asleep(int tree) const {
+    return static_cast<std::size_t>(tree) < ring.size() && ring[tree] >= 0;
+  }
+};
+
+/// Wakes a tree and its island.
+void wake(Sleep& sleep, int tree);
+
+/// Wakes all of so many trees.
+void wake_all(Sleep& sleep, std::size_t trees);
+
+/// Wakes the sleepers that constraints, wrenches or commands disturb.
+/// @param active     trees that take part, ascending; none: all
+/// @param time_step  within which a contact may touch [s]
+/// @return           whether a tree woke
+bool wake_disturbed(Sleep& sleep, const std::vector<Tree>& trees, std::span<const int> active,
+                    const ConstraintLists& constraints, double time_step);
+
+/// Lets an island sleep that has been below the bounds for long enough.
+/// @param is_carried     whether the world supports it
+/// @param heap_residual  residual of its solution if it was solved by passes only [m/s]; else 0
+void update_sleep(Sleep& sleep, const SleepOptions& options, std::vector<Tree>& trees,
+                  std::span<const int> island, double time_step, bool is_carried,
+                  double heap_residual);
+
+/// Calls visit(tree) for the active trees, ascending; none: all.
+template <class Visit>
+void for_each_active(std::span<const int> active, std::size_t trees, Visit visit) {
+  if (!active.empty()) {
+    for (const int tree : active) visit(tree);
+  } else {
+    for (int tree = 0; tree < static_cast<int>(trees); ++tree) visit(tree);
+  }
+}
+
+}  // namespace ziggurat::dynamics

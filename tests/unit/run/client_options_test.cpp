@@ -1,0 +1,86 @@
+#include "run/client_options.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "text/numbers.h"
+
+namespace ziggurat::run {
+namespace {
+
+struct ClientOptionsTest : testing::Test {
+  ClientOptionsTest() {
+    scene.controllers.emplace_back().lua = true;
+    config.deadlines.resize(1);
+  }
+  std::string refused() const {
+    try {
+      check_client_options(options, expected_clients(options, scene, is_serve, with_controllers),
+                           config);
+    } catch (const text::UsageError& error) {
+      return std::string(error.what()).substr(0, std::string(error.what()).find(' '));
+    }
+    return "";
+  }
+
+  Options options;
+  scene::Scene scene;
+  network::Config config;
+  bool is_serve = false, with_controllers = true;
+};
+
+TEST_F(ClientOptionsTest, WhatOnlyClientsAskForIsRefusedWithoutAny) {
+  for (const bool is_of_directors : {false, true}) {
+    options = {};
+    options.snapshot_folder = is_of_directors ? "" : "x";
+    options.allows_directors = is_of_directors;
+    EXPECT_EQ(refused(), is_of_directors ? "--allow-director" : "--snapshot-folder");
+    options.view = "";
+    EXPECT_NE(refused(), "") << "no viewer asks for that";
+    options.endpoints = {"ipc://x"};
+    EXPECT_EQ(refused(), "");
+    options.endpoints = {};
+    is_serve = true;
+    EXPECT_EQ(refused(), "");
+    is_serve = false;
+    options.lua_arguments = {"--trust-scripts"};
+    EXPECT_EQ(refused(), "") << "they may start a program that connects";
+    options.lua_arguments = {};
+    scene.controllers[0].command = "./drive";
+    EXPECT_EQ(refused(), "") << "it may connect as a supervisor, too";
+    with_controllers = false;
+    EXPECT_NE(refused(), "") << "it is not started";
+    with_controllers = true;
+    scene.controllers[0].command.clear();
+  }
+}
+
+TEST_F(ClientOptionsTest, RobotsAreSpawnedByDirectorsAndViewersToo) {
+  options.spawned_script_folders = {"x"};
+  EXPECT_EQ(refused(), "--allow-spawned-scripts");
+  options.view = "";
+  EXPECT_EQ(refused(), "");
+  options.view.reset();
+  scene.directors.emplace_back().script = "judge.lua";
+  EXPECT_EQ(refused(), "");
+}
+
+TEST_F(ClientOptionsTest, DropsAreAllowedWhereADeadlineDrops) {
+  options.allow_drops = true;
+  EXPECT_EQ(refused(), "--allow-drops");
+  config.deadlines[0].policy = {scene::DeadlineAction::hold, 50, 0};
+  EXPECT_EQ(refused(), "--allow-drops") << "it holds without end";
+  config.deadlines[0].policy.miss_budget = 3;
+  EXPECT_EQ(refused(), "");
+  config.deadlines[0].policy = {scene::DeadlineAction::stop, 50, 3};
+  EXPECT_EQ(refused(), "--allow-drops") << "it ends the run";
+  config.deadlines[0].policy = {scene::DeadlineAction::drop, 50, 0};
+  EXPECT_EQ(refused(), "");
+  config.deadlines[0].policy = {};
+  options.endpoints = {"ipc://x"};
+  EXPECT_EQ(refused(), "") << "a client may ask for a deadline";
+}
+
+}  // namespace
+}  // namespace ziggurat::run
