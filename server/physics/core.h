@@ -1,5 +1,5 @@
 #pragma once
-// The mechanical core: joints, motors, contacts, and the equations of motion, on dynamics/, with a
+// The mechanical core: joints, motors, contacts, and the equations of motion, on stepping/, with a
 // tree per entity. World adds bodies to it, plug-ins push them, and it moves them on by a substep.
 
 #include <array>

@@ -1,5 +1,5 @@
 #pragma once
-// A body as a tree of dynamics/: part i is link i of the tree.
+// A body as a tree of the system: part i is link i of the tree.
 
 #include <LinearMath/btTransform.h>
 #include <LinearMath/btVector3.h>

@@ -11,7 +11,7 @@
 namespace ziggurat::physics {
 namespace {
 
-/// Link of a collider in dynamics/. All links of an entity that stands are parts of the world.
+/// Link of a collider in its tree. All links of an entity that stands are parts of the world.
 dynamics::LinkIndex link_of(const Collider& collider) {
   if (collider.entity == Collider::floor) return {};
   return {static_cast<int>(collider.entity), static_cast<int>(collider.part)};

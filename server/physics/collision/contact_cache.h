@@ -1,5 +1,5 @@
 #pragma once
-// Contact cache: contact points of a substep for dynamics/, with the impulses of the last substep.
+// Contact cache: contact points of a substep, with the impulses of the last substep.
 
 #include <array>
 #include <cstdint>
@@ -45,10 +45,10 @@ class ContactCache {
   std::span<dynamics::ContactPoint> keep_contacts(const TreeSet& active);
   /// Pairs of the last find_contacts().
   std::span<const ColliderPair> near_pairs() const { return near_pairs_; }
-  /// Stores the impulses that dynamics/ has written.
+  /// Stores the impulses that the solver has written.
   /// @param more  parts of the substep are still to come
   void store_impulses(bool more = false);
-  /// Stores the impulses of an impact that dynamics/ has written: for list_contacts(), not for the
+  /// Stores the impulses of an impact that the solver has written: for list_contacts(), not for the
   /// next solution.
   void add_impact_impulses();
   /// Finds new overlaps with static colliders: of bodies that rotated far in the substep, or are

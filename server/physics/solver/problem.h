@@ -17,7 +17,7 @@ namespace ziggurat::dynamics {
 
 struct Problem {
   double time_step = 0;            ///< of the substep [s]
-  double compliance_factor = 0;    ///< of surfaces, see System; 0: they are rigid
+  double compliance_factor = 0;    ///< of surfaces, see StepOptions; 0: they are rigid
   bool has_several_trees = false;  ///< whether more than one tree will be added
   double allowed_overlap = 1e-6;   ///< that become_displacement() leaves [m]
   std::vector<Tree*> trees;        ///< by their index in the system

@@ -1,4 +1,4 @@
-// Pendulums, chains, limits and motors with solver="newton".
+// Pendulums, chains, limits and motors.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Free joints on what motors turn, with solver="newton".
+// Free joints on what motors turn.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Bodies that rebound and turn, with solver="newton". What rebounds straight is in
+// Bodies that rebound and turn. What rebounds straight is in
 // sliding_test.cpp.
 
 #include <gtest/gtest.h>

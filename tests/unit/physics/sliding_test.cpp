@@ -1,4 +1,4 @@
-// Sliding, rolling and bouncing with solver="newton", against closed forms at many substeps.
+// Sliding, rolling and bouncing, against closed forms at many substeps.
 
 #include <gtest/gtest.h>
 

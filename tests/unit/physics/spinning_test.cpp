@@ -1,4 +1,4 @@
-// Free rotation, gyroscopes and what must not fall asleep, with solver="newton": closed forms at
+// Free rotation, gyroscopes and what must not fall asleep: closed forms at
 // many substeps. Bodies are set turning by a plug-in.
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Bodies at rest stay: towers, mass ratios, planks, card houses with solver="newton".
+// Bodies at rest stay: towers, mass ratios, planks, card houses.
 
 #include <gtest/gtest.h>
 

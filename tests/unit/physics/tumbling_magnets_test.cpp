@@ -1,4 +1,4 @@
-// Bodies with fixed magnets that tumble freely and fall together, with solver="newton": kinetic
+// Bodies with fixed magnets that tumble freely and fall together: kinetic
 // plus magnetic energy never grows, at any substep.
 
 #include <gtest/gtest.h>
