@@ -48,17 +48,18 @@ std::string folder_to_hide(const recorder::Start& start) {
   const auto tells = [](std::string_view text, const std::string& path) {
     return path.starts_with('/') && text.find(path) != std::string_view::npos;
   };
-  for (const auto& named : start.files) {
-    const std::string in = fs::path(named.name).parent_path().string() + "/";
-    for (const auto& file : start.files) {
-      if (tells(file.text, in)) return {};
-    }
-    for (const auto* values : {&start.settings, &start.parameters}) {
-      for (const auto& each : *values) {
-        if (tells(each.second, in)) return {};
-      }
-    }
+  std::set<std::string> folders;
+  for (const auto& file : start.files) {
+    folders.insert(fs::path(file.name).parent_path().string() + "/");
   }
+  const auto is_told = [&](const std::string& in) {
+    const auto has_value = [&](const auto& each) { return tells(each.second, in); };
+    return std::ranges::any_of(start.files,
+                               [&](const auto& file) { return tells(file.text, in); }) ||
+           std::ranges::any_of(start.settings, has_value) ||
+           std::ranges::any_of(start.parameters, has_value);
+  };
+  if (std::ranges::any_of(folders, is_told)) return {};
   return folder;
 }
 
@@ -258,9 +259,10 @@ recorder::Start RecordedRun::begin(recorder::Start start, bool with_paths) {
 
 void RecordedRun::log(channels::Severity severity, std::string_view name, std::string_view text) {
   std::string shown(text);
-  for (std::size_t at = 0;
-       !hidden_folder_.empty() && (at = shown.find(hidden_folder_, at)) != std::string::npos;) {
-    shown.erase(at, hidden_folder_.size());
+  const std::string folder = hidden_folder_ + "/";
+  const bool hides = hidden_folder_.starts_with('/');  // others tell nothing of the author
+  for (std::size_t at = 0; hides && (at = shown.find(folder, at)) != std::string::npos;) {
+    shown.erase(at, folder.size());
   }
   recorder_.log(severity, name, shown);
 }
