@@ -11,8 +11,8 @@
 #include <numeric>
 
 #include "cli/arguments.h"
-#include "recording/output_file.h"
-#include "recording/output_name.h"
+#include "outputs/output_file.h"
+#include "outputs/output_name.h"
 #include "reports/console.h"
 #include "scene/values.h"
 #include "sweep/columns.h"
@@ -204,8 +204,8 @@ std::size_t usual_abscissa(const sweep::Experiment& experiment) {
 
 /// Files that belong to the sweep or that it was made of. A picture in its folder, and the program
 /// that drew it, may be replaced.
-std::vector<recording::TakenFile> taken_by(const SweepState& sofar) {
-  std::vector<recording::TakenFile> taken;
+std::vector<outputs::TakenFile> taken_by(const SweepState& sofar) {
+  std::vector<outputs::TakenFile> taken;
   for (const auto& [path, hash] : sofar.scene_files)
     taken.push_back({path, "a file of the sweep's scene"});
   std::error_code error;
@@ -219,7 +219,7 @@ std::vector<recording::TakenFile> taken_by(const SweepState& sofar) {
 }
 
 void print(const std::filesystem::path& file) {
-  recording::OutputFile out("-");
+  outputs::OutputFile out("-");
   out.buffer().append(sweep::read_file(file));
   out.close();
 }
@@ -317,8 +317,8 @@ int sweep_plot(const Arguments& arguments) {
   const auto file = values.has("file") && !to_stdout ? std::filesystem::path(values.text("file"))
                                                      : sofar.folder.path() / (name + ".svg");
   const auto taken = taken_by(sofar);
-  recording::check_output({"--file", file.string(), {".svg"}}, taken);
-  recording::check_output({"--file", sweep::program_beside(file).string(), {".gnuplot"}}, taken);
+  outputs::check_output({"--file", file.string(), {".svg"}}, taken);
+  outputs::check_output({"--file", sweep::program_beside(file).string(), {".gnuplot"}}, taken);
   sweep::draw(sofar.experiment, sofar.results, plot, file);
   reports::Console console;
   to_stdout ? print(file) : console.result(file.string());
