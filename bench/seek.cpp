@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "mcap/messages.h"
+#include "recording/mcap/messages.h"
 
 int main(int count, char** arguments) {
   using namespace ziggurat::mcap;

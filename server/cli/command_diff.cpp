@@ -5,8 +5,8 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
-#include "recording/output_file.h"
-#include "recording/output_name.h"
+#include "outputs/output_file.h"
+#include "outputs/output_name.h"
 #include "reports/console.h"
 #include "run/divergence.h"
 #include "text/numbers.h"
@@ -25,10 +25,10 @@ po::options_description diff_options() {
 }
 
 void check_plot(const std::string& out, const std::vector<std::string>& recordings, bool as_json) {
-  std::vector<recording::TakenFile> taken;
+  std::vector<outputs::TakenFile> taken;
   for (const std::string& path : recordings)
     taken.push_back({path, "a recording that is compared"});
-  recording::check_output({"--plot", out, {".svg"}}, taken);
+  outputs::check_output({"--plot", out, {".svg"}}, taken);
   if (out == "-" && as_json) {
     throw text::UsageError("--plot is '-', and stdout is for the object of --json; name a file");
   }
@@ -70,7 +70,7 @@ int execute_diff(const Arguments& arguments) {
     }
   }
   if (!out.empty()) {
-    recording::OutputFile plot(out);
+    outputs::OutputFile plot(out);
     plot.buffer().append(to_svg(divergence));
     plot.close();
   }

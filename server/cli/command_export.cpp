@@ -10,8 +10,8 @@
 #include "cli/commands.h"
 #include "cli/html_export.h"
 #include "network/glob.h"
-#include "recording/output_name.h"
-#include "replay/export.h"
+#include "outputs/output_name.h"
+#include "recording/replay/export.h"
 #include "reports/console.h"
 #include "run/page_folder.h"
 #include "text/numbers.h"
@@ -88,11 +88,11 @@ bool has_format(const po::variables_map& values) {
 
 /// Checks the outputs of all formats, before the first one is written.
 void check_outputs(const po::variables_map& values, const std::string& recording) {
-  std::vector<recording::TakenFile> taken{{recording, "the recording itself"}};
+  std::vector<outputs::TakenFile> taken{{recording, "the recording itself"}};
   for (const Format& format : formats) {
     if (!values.count(format.option)) continue;
     const auto path = values[format.option].as<std::string>();
-    recording::check_output({fmt::format("--{}", format.option), path, {format.ending}}, taken);
+    outputs::check_output({fmt::format("--{}", format.option), path, {format.ending}}, taken);
     taken.push_back({path, "the file of another format too"});
   }
 }

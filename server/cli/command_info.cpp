@@ -8,11 +8,11 @@
 #include "cli/arguments.h"
 #include "cli/atomic_file.h"
 #include "cli/commands.h"
-#include "mcap/repair.h"
-#include "mcap/scan.h"
-#include "recorder/disk.h"
-#include "recorder/overview.h"
-#include "recording/output_name.h"
+#include "outputs/output_name.h"
+#include "recording/mcap/repair.h"
+#include "recording/mcap/scan.h"
+#include "recording/recorder/disk.h"
+#include "recording/recorder/overview.h"
 #include "reports/console.h"
 #include "text/numbers.h"
 #include "text/printable.h"
@@ -233,8 +233,8 @@ int execute_info(const Arguments& arguments) {
   const std::string& path = parsed.positional[0];
   const bool as_json = parsed.values.count("json") > 0;
   const std::string out = Values(parsed.values).text("repair");
-  const recording::TakenFile damaged_file{path, "the damaged file"};
-  if (!out.empty()) recording::check_output({"--repair", out, {".mcap"}}, {&damaged_file, 1});
+  const outputs::TakenFile damaged_file{path, "the damaged file"};
+  if (!out.empty()) outputs::check_output({"--repair", out, {".mcap"}}, {&damaged_file, 1});
   reports::Console console({false, as_json});
   try {
     const mcap::Source source = mcap::open_file(path);

@@ -8,9 +8,9 @@
 #include "cli/commands.h"
 #include "magnetism/closed_forms.h"
 #include "magnetism/field.h"
+#include "outputs/output_file.h"
+#include "outputs/output_name.h"
 #include "physics/magnet_source.h"
-#include "recording/output_file.h"
-#include "recording/output_name.h"
 #include "reports/console.h"
 #include "reports/plot.h"
 #include "run/files.h"
@@ -251,12 +251,12 @@ int execute_magnetism(const Arguments& arguments) {
   if (!read.ok()) throw scene::SceneError(read.problems);
   const std::string path =
       parsed.values.count("out") ? parsed.values["out"].as<std::string>() : "magnetism.svg";
-  recording::check_output({"--out", path, {".svg"}},
-                          run::taken_by_scene(run::files_of(read.scene, scene)));
+  outputs::check_output({"--out", path, {".svg"}},
+                        run::taken_by_scene(run::files_of(read.scene, scene)));
   const auto settings = read.scene.physics.magnetism.value_or(scene::Magnetism{});
   const auto pair = choose_pair(read.scene, settings, parsed.values);
   const auto panels = plot(pair, settings, parsed.values);
-  recording::OutputFile file(path);
+  outputs::OutputFile file(path);
   file.buffer().append(to_svg(fmt::format("A = {}, B = {}", pair[0].name, pair[1].name), panels));
   file.close();
   const std::string line = fmt::format("{}: {} and {}", path, pair[0].name, pair[1].name);

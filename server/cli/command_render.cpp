@@ -87,9 +87,9 @@ std::optional<run::FilmOptions> film_options(const po::variables_map& values) {
   }
   run::FilmOptions film;
   film.path = values["video"].as<std::string>();
-  if (!recording::is_film(film.path)) {
+  if (!outputs::is_film(film.path)) {
     throw text::UsageError(fmt::format("--video is '{}'; its name must end with {}", film.path,
-                                       recording::film_endings));
+                                       outputs::film_endings));
   }
   if (values.count("fps")) film.frames_per_second = number("fps");
   if (!(film.frames_per_second >= 0.1 && film.frames_per_second <= 1000)) {

@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "recording/output_file.h"
-#include "recording/output_name.h"
+#include "outputs/output_file.h"
+#include "outputs/output_name.h"
 #include "reports/console.h"
 #include "sweep/folder.h"
 #include "sweep/ledger.h"
@@ -36,7 +36,7 @@ int write_manifest(const SweepOptions& options, const sweep::Folder& folder, std
       kubernetes_manifest(tasks, task_command(folder, settings, options.retries_failed),
                           settings.jobs, options.kubernetes);
   if (options.kubernetes_file == "-") {
-    recording::OutputFile file("-");
+    outputs::OutputFile file("-");
     file.buffer().append(manifest);
     file.close();
   } else {
@@ -73,7 +73,7 @@ int submit_sweep(const SweepOptions& options) {
   const sweep::Folder folder(options.out);
   const bool for_kubernetes = !options.kubernetes_file.empty();
   if (for_kubernetes) {
-    recording::check_output({"--kubernetes", options.kubernetes_file, {".yaml", ".yml"}});
+    outputs::check_output({"--kubernetes", options.kubernetes_file, {".yaml", ".yml"}});
     check_is_mounted(options.kubernetes.mount, folder.path());
     check_is_mounted(options.kubernetes.mount, options.definition.experiment.scene);
   }

@@ -11,8 +11,8 @@
 #include <numeric>
 
 #include "cli/arguments.h"
-#include "recording/output_file.h"
-#include "recording/output_name.h"
+#include "outputs/output_file.h"
+#include "outputs/output_name.h"
 #include "reports/console.h"
 #include "scene/values.h"
 #include "sweep/columns.h"
@@ -203,8 +203,8 @@ std::size_t usual_abscissa(const sweep::Experiment& experiment) {
 }
 
 /// Files that belong to the sweep or that it was made of. A picture in its folder may be replaced.
-std::vector<recording::TakenFile> taken_by(const SweepState& sofar) {
-  std::vector<recording::TakenFile> taken;
+std::vector<outputs::TakenFile> taken_by(const SweepState& sofar) {
+  std::vector<outputs::TakenFile> taken;
   for (const auto& [path, hash] : sofar.scene_files)
     taken.push_back({path, "a file of the sweep's scene"});
   std::error_code error;
@@ -309,11 +309,11 @@ int sweep_plot(const Arguments& arguments) {
   const auto file = values.has("file") && !to_stdout ? std::filesystem::path(values.text("file"))
                                                      : sofar.folder.path() / (name + ".svg");
   const auto taken = taken_by(sofar);
-  recording::check_output({"--file", file.string(), {".svg"}}, taken);
+  outputs::check_output({"--file", file.string(), {".svg"}}, taken);
   const std::string svg = to_svg(sofar.experiment, sofar.results, plot);
   sweep::write_file(file, svg);
   if (to_stdout) {
-    recording::OutputFile out("-");
+    outputs::OutputFile out("-");
     out.buffer().append(svg);
     out.close();
     return exit_code::finished;

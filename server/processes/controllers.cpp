@@ -10,8 +10,8 @@
 #include <system_error>
 #include <utility>
 
+#include "outputs/output_file.h"
 #include "processes/scripts.h"
-#include "recording/output_file.h"
 
 namespace ziggurat::processes {
 namespace {
@@ -121,7 +121,7 @@ std::string missing(const std::string& program) {
 ControllerProcess start(const Launch& launch, const world::Layout& layout,
                         const Guardian* guardian) {
   if (!launch.robots_file.empty()) {
-    recording::OutputFile file(launch.robots_file);
+    outputs::OutputFile file(launch.robots_file);
     for (const std::size_t robot : launch.robots) {
       file.buffer().append(layout.robots[robot].id + "\n");
     }

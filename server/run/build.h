@@ -1,7 +1,7 @@
 #pragma once
 // Build of this program, as far as it may change results.
 
-#include "recorder/start.h"
+#include "recording/recorder/start.h"
 
 namespace ziggurat::run {
 

@@ -7,8 +7,8 @@
 
 #include "processes/python_package.h"
 #include "processes/scripts.h"
-#include "replay/recording_error.h"
-#include "replay/scene.h"
+#include "recording/replay/recording_error.h"
+#include "recording/replay/scene.h"
 #include "run/controller_option.h"
 #include "run/embedded_scripts.h"
 #include "run/recorded_world.h"

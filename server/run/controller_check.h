@@ -14,7 +14,7 @@
 #include "processes/controllers.h"
 #include "processes/private_folder.h"
 #include "processes/signals.h"
-#include "replay/recording_file.h"
+#include "recording/replay/recording_file.h"
 #include "reports/console.h"
 #include "run/controller_replay.h"
 #include "run/watch.h"

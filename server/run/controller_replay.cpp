@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-#include "replay/recording_error.h"
+#include "recording/replay/recording_error.h"
 #include "run/recorded_world.h"
 #include "run/replay_difference.h"
 

@@ -11,9 +11,9 @@
 
 #include "network/server.h"
 #include "processes/controllers.h"
-#include "replay/commands_difference.h"
-#include "replay/recording_file.h"
-#include "replay/replay.h"
+#include "recording/replay/commands_difference.h"
+#include "recording/replay/recording_file.h"
+#include "recording/replay/replay.h"
 #include "run/watch.h"
 #include "supervision/world.h"
 

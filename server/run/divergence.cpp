@@ -10,8 +10,8 @@
 #include <unordered_map>
 
 #include "math/hash.h"
-#include "replay/message_difference.h"
-#include "replay/names.h"
+#include "recording/replay/message_difference.h"
+#include "recording/replay/names.h"
 #include "reports/json_text.h"
 #include "reports/plot.h"
 

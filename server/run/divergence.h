@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "replay/difference.h"
-#include "replay/recording_file.h"
+#include "recording/replay/difference.h"
+#include "recording/replay/recording_file.h"
 
 namespace ziggurat::run {
 

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "processes/scripts.h"
-#include "replay/recording_error.h"
+#include "recording/replay/recording_error.h"
 
 namespace ziggurat::run {
 namespace {

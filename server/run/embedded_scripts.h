@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "replay/embedded_files.h"
+#include "recording/replay/embedded_files.h"
 #include "scene/scene.h"
 #include "world/layout.h"
 

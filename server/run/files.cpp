@@ -7,16 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "outputs/output_name.h"
 #include "processes/scripts.h"
-#include "recording/output_name.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
 namespace {
 
 namespace fs = std::filesystem;
-using recording::OutputName;
-using recording::TakenFile;
+using outputs::OutputName;
+using outputs::TakenFile;
 
 std::vector<OutputName> outputs_of(const Options& options) {
   std::vector<OutputName> files{{"--trace", options.trace, {".csv"}},

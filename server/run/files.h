@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "recording/output_name.h"
+#include "outputs/output_name.h"
 #include "run/options.h"
 #include "scene/scene.h"
 
@@ -19,7 +19,7 @@ void check_files(const Options& options);
 std::vector<std::string> files_of(const scene::Scene& scene, const std::string& path);
 
 /// Files of a scene, its includes and its scripts, which no output may replace.
-std::vector<recording::TakenFile> taken_by_scene(const std::vector<std::string>& files);
+std::vector<outputs::TakenFile> taken_by_scene(const std::vector<std::string>& files);
 
 /// Checks that no output is a file that the scene was read from, or one of its scripts.
 /// @param read  other files that were read for the scene

@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "processes/scripts.h"
-#include "replay/recording_error.h"
-#include "replay/scene.h"
+#include "recording/replay/recording_error.h"
+#include "recording/replay/scene.h"
 #include "run/controller_option.h"
 #include "run/embedded_scripts.h"
 #include "run/files.h"

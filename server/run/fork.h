@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "processes/signals.h"
-#include "recorder/start.h"
-#include "replay/recording_file.h"
+#include "recording/recorder/start.h"
+#include "recording/replay/recording_file.h"
 #include "reports/console.h"
 #include "run/controller_replay.h"
 #include "run/options.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "mcap/records.h"
+#include "recording/mcap/records.h"
 #include "reports/gate.h"
 #include "run/deadline_option.h"
 #include "run/inject_option.h"

@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "recording/png.h"
+#include "outputs/png.h"
 #include "run/loading.h"
 #include "text/names.h"
 #include "text/numbers.h"
@@ -157,8 +157,8 @@ Pictures::Pictures(const PictureOptions& options, const scene::Scene& scene,
   if (followed_) followed_link_ = simulation.layout().entities[*followed_].links.begin;
   if (!options.film) return;
   frames_ = frame_count(*options.film, scene.experiment);
-  film_.emplace(options.film->path, recording::FilmFormat{options.view.width, options.view.height,
-                                                          options.film->frames_per_second});
+  film_.emplace(options.film->path, outputs::FilmFormat{options.view.width, options.view.height,
+                                                        options.film->frames_per_second});
 }
 
 /// Before entities that came, or other ones after a reset, are drawn.
@@ -204,7 +204,7 @@ void Pictures::tick(const simulation::Simulation& simulation) {
       ++pictures_;
     }
     draw(simulation, view(state), [path](const render::Picture& picture) {
-      recording::write_png(path, picture.width, picture.height, picture.rgb);
+      outputs::write_png(path, picture.width, picture.height, picture.rgb);
     });
   }
   std::uint64_t copies = 0;  // with more frames than ticks

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "recording/film.h"
+#include "outputs/film.h"
 #include "render/several.h"
 #include "run/viewpoint.h"
 #include "scene/scene.h"
@@ -47,14 +47,14 @@ std::string picture_path(const std::string& out, std::size_t number, std::size_t
 class Pictures {
  public:
   /// @param scene  must outlive this
-  /// @throws render::RenderError, recording::WriteError; text::UsageError if there is no entity to
+  /// @throws render::RenderError, outputs::WriteError; text::UsageError if there is no entity to
   /// follow
   Pictures(const PictureOptions& options, const scene::Scene& scene,
            const simulation::Simulation& simulation);
 
   /// Takes the pictures of the world's tick, with its rays if the view asks for them; waits for
   /// earlier ones if they are many.
-  /// @throws recording::WriteError, render::RenderError
+  /// @throws outputs::WriteError, render::RenderError
   void tick(const simulation::Simulation& simulation);
 
   /// Waits for all pictures, and completes the film with the frames that it has.
@@ -85,7 +85,7 @@ class Pictures {
   std::uint64_t next_frame_ = 0, frames_ = 0;
   std::vector<std::string> taken_;
   std::size_t pictures_ = 0;  // of these
-  std::optional<recording::Film> film_;
+  std::optional<outputs::Film> film_;
   std::optional<render::Several> several_;  // the last: its threads use the film
 };
 

@@ -14,11 +14,11 @@
 
 #include "channels/channels.h"
 #include "network/glob.h"
+#include "outputs/output_file.h"
 #include "processes/places.h"
 #include "processes/required_scripts.h"
 #include "processes/scripts.h"
-#include "recorder/recording.h"
-#include "recording/output_file.h"
+#include "recording/recorder/recording.h"
 #include "run/build.h"
 #include "text/names.h"
 #include "text/numbers.h"
@@ -294,7 +294,7 @@ void RecordedRun::close(const std::vector<world::Metric>& metrics) {
 void RecordedRun::report_failure(const std::string& missing, const char* otherwise) {
   const auto why = recorder_.take_failure();
   if (!why) return;
-  if (is_strict_) throw recording::WriteError(*why);
+  if (is_strict_) throw outputs::WriteError(*why);
   failure_ = fmt::format("{}; {}", *why, missing);
   console_.fault(failure_ + otherwise);
 }

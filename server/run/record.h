@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "recorder/recorder.h"
+#include "recording/recorder/recorder.h"
 #include "reports/console.h"
 #include "run/fork.h"
 #include "run/options.h"
@@ -38,7 +38,7 @@ class RecordedRun {
   /// Begins the recording that the options ask for. All but the options must outlive this.
   /// @param last_tick  0: until stopped
   /// @param idle       robots without controller: into Layout::robots
-  /// @throws recording::WriteError
+  /// @throws outputs::WriteError
   /// @param fork       its world is where the run begins; null: the run begins at tick 0
   RecordedRun(const Options& options, supervision::World& world, const ReadFiles& files,
               std::uint64_t last_tick, const std::vector<std::size_t>& idle, const Fork* fork,
@@ -46,7 +46,7 @@ class RecordedRun {
 
   bool wants_contacts() const { return recorder_.wants("/contacts"); }
   /// A tick was published. If the recording can't be written any more, a message is printed, once.
-  /// @throws recording::WriteError instead, if the run is to end then
+  /// @throws outputs::WriteError instead, if the run is to end then
   void tick();
   void record(const supervision::WorldChange& change);
   void log(channels::Severity severity, std::string_view name, std::string_view text);

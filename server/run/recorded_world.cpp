@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "replay/recording_error.h"
-#include "replay/scene.h"
+#include "recording/replay/recording_error.h"
+#include "recording/replay/scene.h"
 
 namespace ziggurat::run {
 

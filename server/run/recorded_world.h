@@ -1,8 +1,8 @@
 #pragma once
 // The world that a recording begins with.
 
-#include "replay/recording_file.h"
-#include "replay/replay.h"
+#include "recording/replay/recording_file.h"
+#include "recording/replay/replay.h"
 #include "supervision/world.h"
 
 namespace ziggurat::run {

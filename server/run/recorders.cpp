@@ -38,7 +38,7 @@ void Recorders::flush() {
     if (hashes_) hashes_->flush();
     if (readings_) readings_->flush();
     if (rays_) rays_->flush();
-  } catch (const recording::WriteError&) {
+  } catch (const outputs::WriteError&) {
     failed_flush_ = std::current_exception();
   }
 }

@@ -7,11 +7,11 @@
 #include <span>
 #include <string>
 
-#include "recording/hash_file.h"
-#include "recording/images.h"
-#include "recording/rays.h"
-#include "recording/readings.h"
-#include "recording/trace.h"
+#include "outputs/hash_file.h"
+#include "outputs/images.h"
+#include "outputs/rays.h"
+#include "outputs/readings.h"
+#include "outputs/trace.h"
 #include "reports/report_card.h"
 #include "reports/summary.h"
 #include "run/options.h"
@@ -27,15 +27,15 @@ namespace ziggurat::run {
 class Recorders {
  public:
   /// Creates all files, so that a path that cannot be written is reported before the run.
-  /// @throws recording::WriteError
+  /// @throws outputs::WriteError
   /// @param world  must outlive this
   /// @throws render::RenderError if pictures are asked for and cannot be rendered
   Recorders(const Options& options, const supervision::World& world);
 
-  /// Call it after each tick, and once for tick 0. @throws recording::WriteError
+  /// Call it after each tick, and once for tick 0. @throws outputs::WriteError
   void tick(const simulation::Simulation& simulation);
 
-  /// Writes the readings and commands of a tick. @throws recording::WriteError
+  /// Writes the readings and commands of a tick. @throws outputs::WriteError
   void exchange(const world::State& state, const world::Observations& observations,
                 const world::Commands& commands, const std::vector<world::Metric>& metrics);
 
@@ -44,7 +44,7 @@ class Recorders {
   void flush();
 
   /// Completes every file except the summary and the report card, also if one of them fails.
-  /// @throws recording::WriteError, render::RenderError
+  /// @throws outputs::WriteError, render::RenderError
   void close();
 
   /// The paths of the pictures that were taken so far.
@@ -52,11 +52,11 @@ class Recorders {
   /// A sentence if a film has fewer frames than it should have, otherwise empty; after close().
   std::string missing_frames() const;
 
-  /// @throws recording::WriteError
+  /// @throws outputs::WriteError
   void write_summary(const reports::Summary& summary);
 
   /// As a picture if the file's name ends with .svg, tick by tick if with .csv, otherwise as JSON.
-  /// @throws recording::WriteError
+  /// @throws outputs::WriteError
   void write_report_card(const reports::ReportCard& card);
 
  private:
@@ -64,14 +64,14 @@ class Recorders {
 
   std::mutex mutex_;                 ///< of all files: a tick is written whole
   std::exception_ptr failed_flush_;  ///< what the other thread met; thrown by the next call
-  std::optional<recording::Trace> trace_;
-  std::optional<recording::HashFile> hashes_;
-  std::optional<recording::Readings> readings_;
-  std::optional<recording::Rays> rays_;
-  std::optional<recording::OutputFile> summary_;
-  std::optional<recording::OutputFile> report_card_;
+  std::optional<outputs::Trace> trace_;
+  std::optional<outputs::HashFile> hashes_;
+  std::optional<outputs::Readings> readings_;
+  std::optional<outputs::Rays> rays_;
+  std::optional<outputs::OutputFile> summary_;
+  std::optional<outputs::OutputFile> report_card_;
   std::string (*report_card_text_)(const reports::ReportCard& card) = nullptr;
-  std::optional<recording::Images> images_;
+  std::optional<outputs::Images> images_;
   std::optional<Pictures> pictures_;
   std::optional<PeriodicTask> flushing_;  ///< the last: it uses the others
 };

@@ -10,8 +10,8 @@
 
 #include "channels/channels.h"
 #include "math/hash.h"
-#include "replay/difference.h"
-#include "replay/message_difference.h"
+#include "recording/replay/difference.h"
+#include "recording/replay/message_difference.h"
 #include "run/build.h"
 
 namespace ziggurat::run {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "replay/recording_file.h"
-#include "replay/replay.h"
+#include "recording/replay/recording_file.h"
+#include "recording/replay/replay.h"
 #include "supervision/world.h"
 
 namespace ziggurat::run {

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "recording/hash_file.h"
-#include "replay/recording_error.h"
-#include "replay/scene.h"
+#include "outputs/hash_file.h"
+#include "recording/replay/recording_error.h"
+#include "recording/replay/scene.h"
 #include "reports/json_text.h"
 #include "run/files.h"
 #include "run/recorded_world.h"
@@ -178,7 +178,7 @@ int ReplayRun::execute() {
   tell(end);
   for (const auto& picture : recorders_.pictures()) console_.result(picture);
   if (const auto missing = recorders_.missing_frames(); !missing.empty()) console_.warning(missing);
-  if (options_.run.hash) console_.result(recording::hash_line(summary_.ticks, summary_.hash));
+  if (options_.run.hash) console_.result(outputs::hash_line(summary_.ticks, summary_.hash));
   console_.flush();
   if (live_view_ && end != End::stopped) show_end();
   switch (end) {

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "processes/signals.h"
-#include "replay/recording_file.h"
-#include "replay/replay.h"
+#include "recording/replay/recording_file.h"
+#include "recording/replay/replay.h"
 #include "reports/console.h"
 #include "reports/progress.h"
 #include "reports/summary.h"

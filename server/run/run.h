@@ -62,7 +62,7 @@ class Run {
 
   /// Runs the world to its end, tells the controllers and prints the summary.
   /// @returns an exit code
-  /// @throws recording::WriteError, reports::ConsoleError
+  /// @throws outputs::WriteError, reports::ConsoleError
   int execute();
 
  private:

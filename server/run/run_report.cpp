@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "recording/hash_file.h"
+#include "outputs/hash_file.h"
 #include "reports/report_card.h"
 #include "run/run.h"
 #include "run/setup.h"
@@ -26,7 +26,7 @@ void Run::end_in_failure(const std::exception& error) {
   }
   try {
     if (recorded_) recorded_->close();
-  } catch (const recording::WriteError&) {
+  } catch (const outputs::WriteError&) {
   }
 }
 
@@ -102,7 +102,7 @@ void Run::print_summary() {
   }
   console_.report(options_.json ? to_json(statistics_.summary) : to_text(statistics_.summary));
   if (options_.hash)
-    console_.result(recording::hash_line(statistics_.summary.ticks, statistics_.summary.hash));
+    console_.result(outputs::hash_line(statistics_.summary.ticks, statistics_.summary.hash));
   console_.flush();
 }
 

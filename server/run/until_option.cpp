@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "mcap/source.h"
-#include "replay/recording_error.h"
+#include "recording/mcap/source.h"
+#include "recording/replay/recording_error.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "replay/recording_file.h"
+#include "recording/replay/recording_file.h"
 
 namespace ziggurat::run {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "mcap/messages.h"
-#include "mcap/repair.h"
-#include "mcap/scan.h"
+#include "recording/mcap/messages.h"
+#include "recording/mcap/repair.h"
+#include "recording/mcap/scan.h"
 #include "require.h"
 
 namespace {

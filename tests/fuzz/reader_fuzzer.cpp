@@ -5,9 +5,9 @@
 #include <numeric>
 
 #include "recorded.h"
-#include "replay/export.h"
-#include "replay/names.h"
-#include "replay/recording_file.h"
+#include "recording/replay/export.h"
+#include "recording/replay/names.h"
+#include "recording/replay/recording_file.h"
 
 namespace {
 

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "mcap/encode.h"
-#include "mcap/reader.h"
-#include "mcap/writer.h"
 #include "recording/inputs.h"
+#include "recording/mcap/encode.h"
+#include "recording/mcap/reader.h"
+#include "recording/mcap/writer.h"
 #include "small_world.h"
 #include "ziggurat/v1/channels.pb.h"
 #include "ziggurat/v1/run.pb.h"

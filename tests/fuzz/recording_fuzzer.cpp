@@ -5,9 +5,9 @@
 #include <stdexcept>
 
 #include "recorded.h"
-#include "replay/recording_file.h"
-#include "replay/replay.h"
-#include "replay/scene.h"
+#include "recording/replay/recording_file.h"
+#include "recording/replay/replay.h"
+#include "recording/replay/scene.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "replay/recording_error.h"
+#include "recording/replay/recording_error.h"
 #include "temporary_folder.h"
 
 namespace ziggurat::run {

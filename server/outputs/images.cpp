@@ -1,0 +1,54 @@
+#include "outputs/images.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <utility>
+
+#include "outputs/output_file.h"
+#include "outputs/png.h"
+#include "outputs/reading_cameras.h"
+
+namespace ziggurat::outputs {
+namespace {
+
+std::string for_file_name(std::string_view id) {
+  std::string name;
+  for (const char character : id) {
+    const bool plain =
+        (character >= 'a' && character <= 'z') || (character >= 'A' && character <= 'Z') ||
+        (character >= '0' && character <= '9') || character == '-' || character == '_';
+    if (plain) {
+      name += character;
+    } else {
+      name += fmt::format("%{:02X}", static_cast<unsigned char>(character));
+    }
+  }
+  return name;
+}
+
+}  // namespace
+
+std::string image_name(std::string_view robot, std::string_view camera, std::uint64_t tick) {
+  return fmt::format("{}.{}.{:06}.png", for_file_name(robot), for_file_name(camera), tick);
+}
+
+Images::Images(std::string folder, const world::Layout& layout)
+    : folder_(std::move(folder)), layout_(layout) {
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (error) throw WriteError(fmt::format("{}: cannot be made: {}", folder_, error.message()));
+}
+
+void Images::write(const world::Observations& observations) {
+  for (const world::Image& image : observations.images) {
+    if (image.rgb.empty()) continue;
+    const world::CameraLayout& camera = layout_.cameras[image.camera];
+    const std::string& robot = robot_with(image.camera, layout_).id;
+    const auto path =
+        std::filesystem::path(folder_) / image_name(robot, camera.id, observations.tick);
+    write_png(path.string(), camera.resolution[0], camera.resolution[1], image.rgb);
+  }
+}
+
+}  // namespace ziggurat::outputs
