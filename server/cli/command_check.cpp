@@ -143,7 +143,8 @@ Finding examine(const std::string& path, const run::Options& options) {
   add_plain_tags(read.scene, finding.problems);
   add_impulses(read.scene, finding.problems);
   try {
-    const simulation::Simulation simulation(read.scene, {run::choose_seed(options, read.scene)});
+    const simulation::Simulation simulation(
+        read.scene, {run::choose_seed(options, read.scene.experiment.random_seed)});
     finding.entities = simulation.layout().entities.size();
     finding.robots = simulation.layout().robots.size();
     add(simulation::scene_warnings(read.scene, simulation));

@@ -8,7 +8,7 @@
 #include "outputs/output_file.h"
 #include "outputs/output_name.h"
 #include "reports/console.h"
-#include "run/divergence.h"
+#include "rerun/divergence.h"
 #include "text/numbers.h"
 
 namespace ziggurat::cli {
@@ -62,7 +62,7 @@ int execute_diff(const Arguments& arguments) {
   const bool as_json = parsed.values.count("json") > 0;
   if (!out.empty()) check_plot(out, parsed.positional, as_json);
   const replay::RecordingFile a(parsed.positional[0]), b(parsed.positional[1]);
-  const run::Divergence divergence = run::compare(a, b);
+  const rerun::Divergence divergence = rerun::compare(a, b);
   reports::Console console;
   for (const auto* file : {&a, &b}) {
     if (const auto missing = file->shortcoming(); !missing.empty()) {

@@ -5,14 +5,15 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/options.h"
+#include "rerun/fork.h"
 #include "run/run.h"
 #include "text/numbers.h"
 
 namespace ziggurat::cli {
 namespace {
 
-run::ForkOptions read_fork(const boost::program_options::variables_map& values) {
-  run::ForkOptions fork;
+rerun::ForkOptions read_fork(const boost::program_options::variables_map& values) {
+  rerun::ForkOptions fork;
   if (values.count("at") == 0) {
     throw text::UsageError("no tick is given; write --at TICK, a tick of the recording");
   }
@@ -67,13 +68,13 @@ Exit codes: those of 'ziggurat run'.
 
 int execute_fork(const Arguments& arguments, processes::Signals& signals) {
   const Parsed parsed = parse(arguments, fork_options());
-  run::Options options = parse_options(arguments, fork_options());
+  const run::Options options = parse_options(arguments, fork_options());
   only_recording("fork", parsed.positional);
   if (options.scene_file.clock) {
     throw text::UsageError("--clock: a fork keeps the clock of the recording; leave it out");
   }
-  options.fork = read_fork(parsed.values);
-  return run::Run(options, run::Service::run, signals).execute();
+  rerun::Fork start(options, read_fork(parsed.values));
+  return run::Run(options, start, run::Service::run, signals).execute();
 }
 
 }  // namespace ziggurat::cli

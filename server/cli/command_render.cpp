@@ -200,7 +200,8 @@ int execute_render(const Arguments& arguments, processes::Signals& signals) {
   if (!options.pictures) {
     throw text::UsageError("no output file is given; write --out FILE.png or --video FILE.mp4");
   }
-  return run::Run(options, run::Service::run, signals).execute();
+  run::SceneStart start(options);
+  return run::Run(options, start, run::Service::run, signals).execute();
 }
 
 }  // namespace ziggurat::cli

@@ -3,7 +3,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "run/replay_run.h"
+#include "rerun/replay_run.h"
 #include "text/numbers.h"
 
 namespace ziggurat::cli {
@@ -37,7 +37,7 @@ read is as recorded; 1 fault of arguments or recording; 130 interrupted.
 
 int execute_replay(const Arguments& arguments, processes::Signals& signals) {
   const auto known = replay_options();
-  run::ReplayOptions options;
+  rerun::ReplayOptions options;
   options.run = parse_options(arguments, known);
   options.recording = only_recording("replay", options.run.scenes);
   const auto values = parse(arguments, known).values;
@@ -46,7 +46,7 @@ int execute_replay(const Arguments& arguments, processes::Signals& signals) {
     options.until = text::to_integer("--until", values["until"].as<std::string>());
   }
   options.run.pictures = to_pictures(values);
-  return run::ReplayRun(options, signals).execute();
+  return rerun::ReplayRun(options, signals).execute();
 }
 
 }  // namespace ziggurat::cli

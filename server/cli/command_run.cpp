@@ -49,7 +49,8 @@ wait for controllers. Output files are complete up to half a second before, also
 int execute_run(const Arguments& arguments, processes::Signals& signals) {
   const run::Options options = parse_options(arguments, run_options());
   if (options.ends_with_input) signals.interrupt_at_end_of(STDIN_FILENO);
-  return run::Run(options, run::Service::run, signals).execute();
+  run::SceneStart start(options);
+  return run::Run(options, start, run::Service::run, signals).execute();
 }
 
 }  // namespace ziggurat::cli

@@ -49,7 +49,8 @@ deadline dropped a robot; 4 the gate was missed; 130 interrupted.
 int execute_serve(const Arguments& arguments, processes::Signals& signals) {
   const run::Options options = parse_options(arguments, serve_options());
   if (options.ends_with_input) signals.interrupt_at_end_of(STDIN_FILENO);
-  return run::Run(options, run::Service::serve, signals).execute();
+  run::SceneStart start(options);
+  return run::Run(options, start, run::Service::serve, signals).execute();
 }
 
 }  // namespace ziggurat::cli

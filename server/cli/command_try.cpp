@@ -6,7 +6,7 @@
 #include "cli/commands.h"
 #include "processes/commands.h"
 #include "processes/scripts.h"
-#include "run/controller_check.h"
+#include "rerun/controller_check.h"
 #include "text/numbers.h"
 #include "text/quoting.h"
 
@@ -54,7 +54,7 @@ arguments or recording; 130 interrupted.
 int execute_try(const Arguments& arguments, processes::Signals& signals) {
   const auto end = std::ranges::find(arguments, "--");
   const Parsed parsed = parse({arguments.begin(), end}, try_options());
-  run::ControllerCheckOptions options;
+  rerun::ControllerCheckOptions options;
   options.recording = only_recording("try", parsed.positional);
   const auto text = [&](const char* name) {
     return parsed.values.count(name) ? parsed.values[name].as<std::string>() : std::string();
@@ -82,7 +82,7 @@ int execute_try(const Arguments& arguments, processes::Signals& signals) {
     options.most_told = text::to_integer("--differences", text("differences"));
     if (options.most_told == 0) throw text::UsageError("--differences is 0; write 1 or more");
   }
-  return run::ControllerCheck(options, signals).execute();
+  return rerun::ControllerCheck(options, signals).execute();
 }
 
 }  // namespace ziggurat::cli

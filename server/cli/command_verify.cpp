@@ -4,8 +4,8 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/options.h"
-#include "run/controller_check.h"
-#include "run/replay_run.h"
+#include "rerun/controller_check.h"
+#include "rerun/replay_run.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -30,12 +30,12 @@ po::options_description verify_options() {
 }
 
 int rehearse(const Parsed& parsed, const Arguments& arguments, processes::Signals& signals) {
-  run::ControllerCheckOptions options;
+  rerun::ControllerCheckOptions options;
   options.recording = only_recording("verify", parsed.positional);
   options.controllers = parse_options(arguments, verify_options()).controllers;
   options.trusts_commands = parsed.values.count("trust-recorded-commands") > 0;
   options.quiet = parsed.values.count("quiet") > 0;
-  return run::ControllerCheck(options, signals).execute();
+  return rerun::ControllerCheck(options, signals).execute();
 }
 
 }  // namespace
@@ -69,11 +69,11 @@ int execute_verify(const Arguments& arguments, processes::Signals& signals) {
   check_needs(values, {"controller", "trust-recorded-commands"}, "controllers");
   check_apart(values, "controllers", {"json"});
   if (values.has("controllers")) return rehearse(parsed, arguments, signals);
-  run::ReplayOptions options;
+  rerun::ReplayOptions options;
   options.run = parse_options(arguments, verify_options());
   options.recording = only_recording("verify", options.run.scenes);
   options.verifies = true;
-  return run::ReplayRun(options, signals).execute();
+  return rerun::ReplayRun(options, signals).execute();
 }
 
 }  // namespace ziggurat::cli

@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <functional>
 #include <future>
-#include <memory>
 #include <mutex>
 #include <string>
 #include <system_error>
@@ -35,7 +34,7 @@ class Background {
     };
     result_ = std::async(std::launch::async, [this, tell, work = std::move(work)] {
       const AtEnd at_end{this};
-      return std::unique_ptr<Result>(new Result(work(tell)));
+      return work(tell);
     });
   }
   /// Waits until the work is done.
@@ -55,7 +54,7 @@ class Background {
     return status_;
   }
   /// Waits for the result. Once. @throws what the work has thrown
-  std::unique_ptr<Result> take() { return result_.get(); }
+  Result take() { return result_.get(); }
 
  private:
   struct AtEnd {
@@ -74,7 +73,7 @@ class Background {
   int wake_;
   std::mutex mutex_;  // of the next one
   Status status_;
-  std::future<std::unique_ptr<Result>> result_;
+  std::future<Result> result_;
 };
 
 }  // namespace ziggurat::run

@@ -108,15 +108,13 @@ void check_outputs(const Options& options, const scene::Scene& scene,
   for (const OutputName& picture : pictures_of(options)) check_output(picture, taken);
 }
 
-std::vector<std::string> exceptions_of(const Options& options, const scene::Scene* scene,
-                                       const std::string& path) {
+std::vector<std::string> exceptions_of(const Options& options,
+                                       const std::vector<std::string>& fixed) {
   std::vector<std::string> arguments;
   const auto add = [&](const char* option, const std::string& file) {
     if (!file.empty()) arguments.insert(arguments.end(), {option, fs::absolute(file).string()});
   };
-  if (scene) {
-    for (const std::string& file : files_of(*scene, path)) add("--read-only-file", file);
-  }
+  for (const std::string& file : fixed) add("--read-only-file", file);
   for (const OutputName& output : outputs_of(options)) add("--read-only-file", output.path);
   add("--read-only-file", options.curve_clients);
   add("--hidden-file", options.curve_secret);

@@ -30,8 +30,8 @@ void check_outputs(const Options& options, const scene::Scene& scene,
 /// Arguments of ziggurat-lua that protect files in the scene's folder, which scripts may use.
 /// Scripts can't change the scene, its includes and scripts, outputs, and the list of keys. They
 /// can't read the secret key.
-/// @param scene  null: its files are not on the disk
-std::vector<std::string> exceptions_of(const Options& options, const scene::Scene* scene,
-                                       const std::string& path);
+/// @param fixed  files that they can't change either
+std::vector<std::string> exceptions_of(const Options& options,
+                                       const std::vector<std::string>& fixed);
 
 }  // namespace ziggurat::run

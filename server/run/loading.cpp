@@ -79,8 +79,8 @@ scene::OpenScene load_scene(const std::string& path, const Options& options,
   return {std::move(result.scene), std::move(result.additions)};
 }
 
-std::uint64_t choose_seed(const Options& options, const scene::Scene& scene) {
-  std::uint64_t seed = options.seed.value_or(scene.experiment.random_seed);
+std::uint64_t choose_seed(const Options& options, std::uint64_t usual) {
+  std::uint64_t seed = options.seed.value_or(usual);
   std::random_device system;
   while (seed == 0) seed = system();
   return seed;

@@ -17,8 +17,8 @@ namespace ziggurat::run {
 scene::OpenScene load_scene(const std::string& path, const Options& options,
                             reports::Console& console);
 
-/// The seed of the options, otherwise of the scene; drawn from the system if that is 0.
-std::uint64_t choose_seed(const Options& options, const scene::Scene& scene);
+/// The seed of the options, otherwise the usual one; drawn from the system if that is 0.
+std::uint64_t choose_seed(const Options& options, std::uint64_t usual);
 
 /// The tick that contains a simulated time [s].
 std::uint64_t tick_at(double time, const scene::Experiment& experiment);

@@ -12,18 +12,17 @@ namespace ziggurat::run {
 void Run::print_notices() {
   for (const auto& doubt : simulation::scene_warnings(world_.scene, world_.simulation))
     console_.problem(doubt);
-  for (const auto& notice : world_.simulation.notices()) console_.notice(path_ + ": " + notice);
+  for (const auto& notice : world_.simulation.notices())
+    console_.notice(start_.scene_path() + ": " + notice);
   if (config_.curve) {
     for (const auto& doubt :
          doubts_of(config_.curve->clients, world_.scene, world_.simulation.layout()))
       console_.notice(doubt);
   }
-  const std::uint64_t scene_seed = fork_ ? world_.seed : world_.scene.experiment.random_seed;
-  if (options_.seed.value_or(scene_seed) == 0) {
+  if (options_.seed.value_or(start_.usual_seed(world_.scene)) == 0) {
     console_.notice(fmt::format("seed {0} drawn; --seed {0} repeats this run", world_.seed));
   }
   if (options_.paused) {
-    server_.set_paused(!fork_);  // a fork is paused when it begins
     return console_.notice("paused, as --paused asks; 'ziggurat ctl URL resume' begins");
   }
   const bool has_controllers =

@@ -19,18 +19,8 @@
 
 namespace ziggurat::run {
 
-/// `ziggurat fork`: a run that goes on from a recorded one.
-struct ForkOptions {
-  std::uint64_t at = 0;  ///< tick of the state from which it goes on: the first one with this tick
-  bool fresh = false;  ///< controllers begin there; otherwise they are first given what came before
-  bool trusts_commands = false;  ///< those of the recording may be started
-  /// The name of an embedded script, and the file that is used instead.
-  std::vector<std::pair<std::string, std::string>> scripts;
-};
-
 struct Options {
   std::vector<std::string> scenes;  ///< exactly one for run and serve; for fork the recording
-  std::optional<ForkOptions> fork;  ///< none: the run begins at tick 0
   scene::ReadOptions scene_file;
 
   std::optional<std::uint64_t> ticks;  ///< replaces the scene's length

@@ -89,16 +89,6 @@ void add_required(std::vector<fs::path>& scripts, reports::Console& console) {
   }
 }
 
-/// Each script of the scene, and what it loads from its folders, once.
-void add_scripts(const supervision::World& world, recorder::Start& start,
-                 reports::Console& console) {
-  std::vector<fs::path> scripts = processes::scripts_of(world.scene, world.path);
-  add_required(scripts, console);
-  for (const fs::path& script : scripts) {
-    attach(script, name_of_script(script, world.path), start.files);
-  }
-}
-
 std::string clock_of(const Options& options) {
   if (!options.scene_file.clock) return {};
   return *options.scene_file.clock == scene::Clock::beta50 ? "beta50" : "nominal";
@@ -182,9 +172,9 @@ void check_names(const recorder::Start& start) {
 }
 
 recorder::Start start_of(const Options& options, const supervision::World& world,
-                         const ReadFiles& files, std::uint64_t last_tick,
-                         const std::vector<std::size_t>& idle, const Fork* fork,
-                         reports::Console& console) {
+                         const StartPoint& start_point, std::uint64_t last_tick,
+                         const std::vector<std::size_t>& idle, reports::Console& console) {
+  check_topics(options.record_topics, world, console);
   recorder::Start start;
   start.scene = world.path;
   start.scene_hash = world.scene_hash;
@@ -203,35 +193,25 @@ recorder::Start start_of(const Options& options, const supervision::World& world
       fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
   start.build = this_build();
   start.arguments = options.arguments;
-  start.files = files.all();
-  fork ? fork->describe(world, start) : add_scripts(world, start, console);
+  start_point.describe(world, start, console);
   check_names(start);
   return start;
 }
 
 }  // namespace
 
-scene::OpenFile ReadFiles::keep(scene::OpenFile open) {
-  return [this, open = std::move(open)](const fs::path& path, std::size_t max_size) {
-    auto opened = open(path, max_size);
-    const auto* file = std::get_if<scene::File>(&opened);
-    const auto is_same = [&](const auto& each) { return each.name == path.string(); };
-    if (file && std::ranges::none_of(files_, is_same)) {
-      files_.push_back({path.string(), file->text});
-    }
-    return opened;
-  };
+void add_scripts(const supervision::World& world, recorder::Start& start,
+                 reports::Console& console) {
+  std::vector<fs::path> scripts = processes::scripts_of(world.scene, world.path);
+  add_required(scripts, console);
+  for (const fs::path& script : scripts) {
+    attach(script, name_of_script(script, world.path), start.files);
+  }
 }
 
-std::vector<std::string> ReadFiles::names() const {
-  std::vector<std::string> names;
-  for (const auto& file : files_) names.push_back(file.name);
-  return names;
-}
-
-RecordedRun::RecordedRun(const Options& options, supervision::World& world, const ReadFiles& files,
-                         std::uint64_t last_tick, const std::vector<std::size_t>& idle,
-                         const Fork* fork, reports::Console& console)
+RecordedRun::RecordedRun(const Options& options, supervision::World& world,
+                         const StartPoint& start_point, std::uint64_t last_tick,
+                         const std::vector<std::size_t>& idle, reports::Console& console)
     : world_(world),
       console_(console),
       last_tick_(last_tick),
@@ -239,7 +219,7 @@ RecordedRun::RecordedRun(const Options& options, supervision::World& world, cons
       recorder_({options.record,
                  options.record_compression,
                  {wish_of(options.record_topics), options.record_every}},
-                begin(start_of(options, world, files, last_tick, idle, fork, console),
+                begin(start_of(options, world, start_point, last_tick, idle, console),
                       options.record_paths)) {}
 
 /// @param with_paths  names and the command line stay as they were written
@@ -350,15 +330,6 @@ void RecordedRun::record(const supervision::WorldChange& change) {
         }
       },
       change);
-}
-
-std::unique_ptr<RecordedRun> start_recording(const Options& options, supervision::World& world,
-                                             const ReadFiles& files, std::uint64_t last_tick,
-                                             const std::vector<std::size_t>& idle, const Fork* fork,
-                                             reports::Console& console) {
-  if (options.record.empty()) return nullptr;
-  check_topics(options.record_topics, world, console);
-  return std::make_unique<RecordedRun>(options, world, files, last_tick, idle, fork, console);
 }
 
 }  // namespace ziggurat::run

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <set>
 #include <string>
 #include <string_view>
@@ -11,37 +10,27 @@
 
 #include "recording/recorder/recorder.h"
 #include "reports/console.h"
-#include "run/fork.h"
 #include "run/options.h"
-#include "scene/files.h"
+#include "run/start_point.h"
 #include "supervision/world.h"
 #include "supervision/world_change.h"
 
 namespace ziggurat::run {
 
-/// The files that a scene is read from.
-class ReadFiles {
- public:
-  /// Opens as `open` does, and keeps what was read.
-  scene::OpenFile keep(scene::OpenFile open);
-
-  const std::vector<recorder::EmbeddedFile>& all() const { return files_; }
-  std::vector<std::string> names() const;
-
- private:
-  std::vector<recorder::EmbeddedFile> files_;
-};
+/// Embeds each script of the scene, and what it loads from its folders, once.
+void add_scripts(const supervision::World& world, recorder::Start& start,
+                 reports::Console& console);
 
 /// A run on its way into a recording.
 class RecordedRun {
  public:
-  /// Begins the recording that the options ask for. All but the options must outlive this.
+  /// Begins the recording that the options ask for. World and console must outlive this.
+  /// @param world      at the start point
   /// @param last_tick  0: until stopped
   /// @param idle       robots without controller: into Layout::robots
-  /// @throws outputs::WriteError
-  /// @param fork       its world is where the run begins; null: the run begins at tick 0
-  RecordedRun(const Options& options, supervision::World& world, const ReadFiles& files,
-              std::uint64_t last_tick, const std::vector<std::size_t>& idle, const Fork* fork,
+  /// @throws outputs::WriteError, text::UsageError
+  RecordedRun(const Options& options, supervision::World& world, const StartPoint& start_point,
+              std::uint64_t last_tick, const std::vector<std::size_t>& idle,
               reports::Console& console);
 
   bool wants_contacts() const { return recorder_.wants("/contacts"); }
@@ -78,11 +67,5 @@ class RecordedRun {
   std::string failure_;
   bool is_population_new_ = true;
 };
-
-/// Null if the options ask for no recording.
-std::unique_ptr<RecordedRun> start_recording(const Options& options, supervision::World& world,
-                                             const ReadFiles& files, std::uint64_t last_tick,
-                                             const std::vector<std::size_t>& idle, const Fork* fork,
-                                             reports::Console& console);
 
 }  // namespace ziggurat::run

@@ -11,12 +11,10 @@
 #include "processes/commands.h"
 #include "processes/python_package.h"
 #include "processes/scripts.h"
-#include "processes/spawned_scripts.h"
 #include "run/background.h"
 #include "run/client_options.h"
 #include "run/files.h"
 #include "run/gate_option.h"
-#include "run/loading.h"
 #include "run/setup.h"
 #include "run/version.h"
 #include "text/numbers.h"
@@ -27,8 +25,6 @@ using reports::Ending;
 using supervision::Phase;
 
 namespace {
-
-constexpr double before_placing = 0.1, before_building = 0.4;  // how far the world is loaded then
 
 void keep(const std::vector<world::Metric>& metrics, reports::Summary& summary) {
   for (const world::Metric& metric : metrics) {
@@ -54,13 +50,12 @@ std::vector<world::Metric> last_metrics(const network::Server& server, const Wat
 
 }  // namespace
 
-Run::Run(const Options& options, Service service, processes::Signals& signals)
+Run::Run(const Options& options, StartPoint& start, Service service, processes::Signals& signals)
     : options_(options),
+      start_(start),
       service_(service),
       signals_(signals),
       console_({options.quiet, options.json}),
-      fork_(options.fork ? std::make_unique<Fork>(options) : nullptr),
-      path_(fork_ ? fork_->scene_path() : existing_scene(options, console_)),
       local_(signals.guardian()),
       config_(network_config(options, service == Service::serve, local_)),
       listening_(listen()),
@@ -70,12 +65,9 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
       plan_(make_plan()),
       with_controllers_(!options.without_controllers && !(options.pictures && plan_.ticks == 0)),
       folder_(signals.guardian()),
-      scripts_(fork_ ? fork_->write_scripts(world_, folder_.path() + "/files")
-                     : script_paths(world_.scene, world_.simulation.layout(), path_)),
+      programs_(start.programs(world_, folder_.path() + "/files", with_controllers_)),
       recorders_(options, world_),
-      recorded_(fork_ ? nullptr
-                      : start_recording(options, world_, files_, plan_.ticks.value_or(0),
-                                        robots_without_controller(), nullptr, console_)),
+      recorded_(start.is_reached() ? start_recording() : nullptr),
       controllers_(start_controllers()),
       callers_(server_),
       population_({options.scene_file.max_size, with_controllers_, options.spawned_script_folders},
@@ -97,32 +89,8 @@ Run::Run(const Options& options, Service service, processes::Signals& signals)
     if (recorded_) recorded_->record(change);
   });
   print_notices();
-  statistics_.summary.scene = path_;
+  statistics_.summary.scene = start.scene_path();
   statistics_.summary.robots = world_.simulation.layout().robots.size();
-}
-
-/// Reads the scene and builds the world, on a thread of its own.
-/// @param tell  how far that is
-supervision::World Run::read_world(const Tell& tell_clients) {
-  const auto tell = [&](double share, const std::string& message) {
-    console_.progress(fmt::format("{:.0f} %: {}", 100 * share, message));
-    tell_clients(share, message);
-  };
-  const auto tell_step = [&](simulation::Step step, std::size_t done, std::size_t all) {
-    const bool is_placing = step == simulation::Step::placing;
-    const double from = is_placing ? before_placing : before_building,
-                 to = is_placing ? before_building : 1;
-    tell(from + (to - from) * static_cast<double>(done) / static_cast<double>(all),
-         fmt::format("{} of {} entities are {}.", done, all, is_placing ? "placed" : "built"));
-  };
-  tell(0, "The scene is being read.");
-  if (fork_) return fork_->build(tell_step);
-  Options options = options_;
-  if (!options.record.empty()) options.scene_file.open = files_.keep(options.scene_file.open);
-  scene::OpenScene opened = load_scene(path_, options, console_);
-  tell(before_placing, "The world is being built.");
-  const std::uint64_t seed = choose_seed(options_, opened.scene);
-  return {path_, std::move(opened), seed, tell_step};
 }
 
 /// A killed program cannot remove the files of its sockets: the guardian has their names before
@@ -139,13 +107,19 @@ std::unique_ptr<network::Server> Run::listen() const {
 /// Answers clients while another thread loads the world, which alone uses the console meanwhile.
 std::unique_ptr<supervision::World> Run::load_world() {
   if (service_ == Service::serve) announce(options_, server_.endpoints(), console_);
-  Background<supervision::World> loading([this](const Tell& tell) { return read_world(tell); });
+  Background<std::unique_ptr<supervision::World>> loading([this](const TellLoading& tell) {
+    return start_.build(
+        [&](double share, const std::string& message) {
+          console_.progress(fmt::format("{:.0f} %: {}", 100 * share, message));
+          tell(share, message);
+        },
+        console_);
+  });
   const std::array descriptors{signals_.descriptor(), loading.descriptor()};
   for (;;) {
     const auto status = loading.status();
     if (status.is_done) {
       auto world = loading.take();
-      fork_ ? fork_->prepare(*world) : check_outputs(options_, world->scene, files_.names());
       if (service_ == Service::serve)
         tell_how_to_connect(options_, server_.endpoints().front(), *world, console_);
       return world;
@@ -159,21 +133,11 @@ std::unique_ptr<supervision::World> Run::load_world() {
 }
 
 Plan Run::make_plan() const {
-  const scene::Experiment& experiment = world_.scene.experiment;
   Plan plan;
-  plan.ticks = options_.pictures ? last_tick(*options_.pictures, experiment)
-                                 : tick_count(options_, world_.scene);
-  if (fork_ && !options_.ticks && !options_.duration && fork_->last_tick()) {
-    plan.ticks = fork_->last_tick();
-  }
-  if (fork_ && plan.ticks && *plan.ticks < options_.fork->at) {
-    throw text::UsageError(fmt::format(
-        "--at {} is after the end of the run at tick {}; write --ticks with a later end",
-        options_.fork->at, *plan.ticks));
-  }
+  plan.ticks = start_.last_tick(world_.scene);
   plan.real_time = options_.real_time;
-  const bool is_paced =
-      options_.hil || options_.view.has_value() || (!options_.pictures && experiment.real_time);
+  const bool is_paced = options_.hil || options_.view.has_value() ||
+                        (!options_.pictures && world_.scene.experiment.real_time);
   if (!plan.real_time && is_paced) plan.real_time = 1;
   return plan;
 }
@@ -194,51 +158,50 @@ network::Config Run::complete_config() {
 /// Robots whose Lua controller names no script, or all robots if controllers are not wanted. The
 /// run does not wait for them.
 std::vector<std::size_t> Run::robots_without_controller() const {
-  if (fork_) return fork_->idle_robots(world_, scripts_);
   const auto& all = world_.simulation.layout().robots;
   std::vector<std::size_t> robots;
   for (std::size_t r = 0; r < all.size(); ++r) {
-    const bool is_lua = processes::runs_script(world_.scene.controllers[all[r].controller]);
-    if (!with_controllers_ || (is_lua && scripts_[r].empty())) robots.push_back(r);
+    const bool has_no_script =
+        processes::runs_script(world_.scene.controllers[all[r].controller]) &&
+        r < programs_.scripts.size() && programs_.scripts[r].empty();
+    const bool is_idle = std::ranges::find(programs_.idle, r) != programs_.idle.end();
+    if (!with_controllers_ || has_no_script || is_idle) robots.push_back(r);
   }
   return robots;
 }
 
 processes::Controllers Run::start_controllers() {
-  wire::Run run = description_of(world_, scripts_);
+  wire::Run run = description_of(world_, programs_.scripts);
   run.is_hardware_in_the_loop = options_.hil;
-  std::vector<scene::Director> directors;
-  if (with_controllers_) {
-    directors = fork_ ? fork_->directors(world_, folder_.path() + "/files") : directors_of(world_);
-  }
-  run.directors = directors;
+  run.directors = programs_.directors;
   server_.open(std::move(run), complete_config());
   server_.remove_robots(robots_without_controller());
   if (options_.starts_directors) check_programs(world_.scene);
   if (!with_controllers_ || (service_ == Service::serve && !options_.starts_directors)) return {};
-  return {world_.scene, world_.simulation.layout(), scripts_,
-          launch_settings(std::move(directors))};
+  return {world_.scene, world_.simulation.layout(), programs_.scripts, launch_settings()};
 }
 
-processes::LaunchSettings Run::launch_settings(std::vector<scene::Director> directors) const {
+processes::LaunchSettings Run::launch_settings() const {
   processes::LaunchSettings settings{server_.endpoints().front(),  folder_.path(),
                                      processes::find_lua_runner(), options_.lua_processes,
                                      options_.lua_arguments,       signals_.guardian(),
-                                     std::move(directors)};
+                                     programs_.directors};
   settings.only_directors = service_ == Service::serve;
-  settings.scene_folder = fork_ ? folder_.path() + "/files" : processes::scene_folder(path_);
+  settings.scene_folder = programs_.folder;
   settings.python_path = processes::python_path(folder_.path());
-  const auto allow = [&](const std::string& folder) {
-    settings.lua_arguments.insert(settings.lua_arguments.end(), {"--script-folder", folder});
-  };
-  if (fork_) allow(folder_.path() + "/files");
-  if (!fork_) {
-    for (const auto& folder : processes::folders_of(world_.scene, path_)) allow(folder.string());
+  for (const auto* folders : {&programs_.script_folders, &options_.spawned_script_folders}) {
+    for (const std::string& folder : *folders)
+      settings.lua_arguments.insert(settings.lua_arguments.end(), {"--script-folder", folder});
   }
-  for (const auto& folder : options_.spawned_script_folders) allow(folder);
-  const auto exceptions = exceptions_of(options_, fork_ ? nullptr : &world_.scene, path_);
+  const auto exceptions = exceptions_of(options_, programs_.fixed_files);
   settings.lua_arguments.insert(settings.lua_arguments.end(), exceptions.begin(), exceptions.end());
   return settings;
+}
+
+std::unique_ptr<RecordedRun> Run::start_recording() {
+  if (options_.record.empty()) return nullptr;
+  return std::make_unique<RecordedRun>(options_, world_, start_, plan_.ticks.value_or(0),
+                                       robots_without_controller(), console_);
 }
 
 supervision::Supervision::Settings Run::supervision_settings() {
@@ -281,25 +244,21 @@ int Run::execute() {
   return code;
 }
 
-/// A fork begins with the recorded run. Supervisors wait meanwhile.
-std::optional<Ending> Run::replay_to_begin() {
+/// Takes the world to where the run begins. Supervisors wait meanwhile.
+std::optional<Ending> Run::reach_start() {
   callers_.hold(true);
-  const auto ending =
-      fork_->replay_to_begin(world_, {server_, controllers_, watch_}, robots_without_controller(),
-                             folder_.path() + "/files", signals_, console_);
+  const auto ending = start_.reach({world_, programs_, robots_without_controller(), server_,
+                                    controllers_, watch_, signals_, console_});
   callers_.hold(false);
   if (ending) return ending;
-  recorded_ = start_recording(options_, world_, files_, plan_.ticks.value_or(0),
-                              robots_without_controller(), fork_.get(), console_);
+  if (!recorded_) recorded_ = start_recording();
   if (options_.paused) server_.set_paused(true);
   return std::nullopt;
 }
 
 /// From the start to the end, again after each reset.
 Ending Run::run_to_end() {
-  if (fork_) {
-    if (const auto ending = replay_to_begin()) return *ending;
-  }
+  if (const auto ending = reach_start()) return *ending;
   for (;;) {
     std::optional<Ending> ending = wait([&] { return watch_.gather(); });
     statistics_.timer.end_startup(statistics_.summary);

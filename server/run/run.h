@@ -15,7 +15,6 @@
 #include "processes/signals.h"
 #include "reports/console.h"
 #include "reports/summary.h"
-#include "run/fork.h"
 #include "run/live_view.h"
 #include "run/local_endpoints.h"
 #include "run/options.h"
@@ -24,6 +23,7 @@
 #include "run/record.h"
 #include "run/recorders.h"
 #include "run/schedule.h"
+#include "run/start_point.h"
 #include "run/watch.h"
 #include "supervision/directing.h"
 #include "supervision/supervision.h"
@@ -55,10 +55,10 @@ struct RunStatistics {
 /// Run of a world. Its members are in the order in which a run is set up.
 class Run {
  public:
-  /// Listens, loads the scene, creates the output files and starts the controllers.
-  /// @param signals  must outlive the run
+  /// Listens, builds the world, creates the output files and starts the controllers. All must
+  /// outlive the run.
   /// @throws what main() turns into a message: faults of scene, options and environment
-  Run(const Options& options, Service service, processes::Signals& signals);
+  Run(const Options& options, StartPoint& start, Service service, processes::Signals& signals);
 
   /// Runs the world to its end, tells the controllers and prints the summary.
   /// @returns an exit code
@@ -68,22 +68,21 @@ class Run {
  private:
   using Ending = reports::Ending;
   using Wait = std::function<std::optional<Ending>()>;
-  using Tell = std::function<void(double progress, std::string message)>;
 
   // Setting up.
-  supervision::World read_world(const Tell& tell);
   std::unique_ptr<network::Server> listen() const;
   std::unique_ptr<supervision::World> load_world();
   Plan make_plan() const;
   network::Config complete_config();
   std::vector<std::size_t> robots_without_controller() const;
   processes::Controllers start_controllers();
-  processes::LaunchSettings launch_settings(std::vector<scene::Director> directors) const;
+  processes::LaunchSettings launch_settings() const;
+  std::unique_ptr<RecordedRun> start_recording();
   supervision::Supervision::Settings supervision_settings();
   void print_notices();
 
   // Running.
-  std::optional<Ending> replay_to_begin();
+  std::optional<Ending> reach_start();
   Ending run_to_end();
   Ending run_world();
   std::optional<Ending> collect();
@@ -100,12 +99,10 @@ class Run {
   void print_summary();
 
   const Options& options_;
+  StartPoint& start_;
   const Service service_;
   processes::Signals& signals_;
   reports::Console console_;
-  const std::unique_ptr<Fork> fork_;  ///< null: the run begins at tick 0
-  const std::string path_;            ///< of the scene file
-  ReadFiles files_;                   ///< of the scene
   LocalEndpoints local_;
   network::Config config_;
   std::unique_ptr<network::Server> listening_;
@@ -115,9 +112,9 @@ class Run {
   const Plan plan_;
   const bool with_controllers_;
   const processes::PrivateFolder folder_;
-  const std::vector<std::string> scripts_;  ///< per robot of the scene; empty = none
+  const Programs programs_;
   Recorders recorders_;
-  std::unique_ptr<RecordedRun> recorded_;  ///< null: not recorded; of a fork, once it begins
+  std::unique_ptr<RecordedRun> recorded_;  ///< null: not recorded, or not yet at the start point
   processes::Controllers controllers_;
   supervision::Callers callers_;
   supervision::Population population_;

@@ -54,7 +54,7 @@ void Run::complete_summary() {
 reports::ReportCard Run::report_card() const {
   const world::Layout& layout = world_.simulation.layout();
   reports::ReportCard card;
-  card.scene = path_;
+  card.scene = start_.scene_path();
   card.seed = world_.seed;
   card.date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
                           fmt::gmtime(std::chrono::system_clock::to_time_t(statistics_.date)));

@@ -7,15 +7,12 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
 #include "processes/scripts.h"
 #include "reports/json_text.h"
-#include "run/files.h"
-#include "run/loading.h"
 #include "run/version.h"
 #include "text/numbers.h"
 #include "text/quoting.h"
@@ -34,14 +31,6 @@ scene::DeadlinePolicy usual_policy(const Options& options, const scene::Scene& s
 }
 
 }  // namespace
-
-std::string existing_scene(const Options& options, reports::Console& console) {
-  const std::string& path = only_scene(options);
-  check_files(options);
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) load_scene(path, options, console);  // throws
-  return path;
-}
 
 network::Config network_config(const Options& options, bool is_serve, LocalEndpoints& local) {
   if (options.paused && options.endpoints.empty() && !is_serve && !options.view) {
@@ -151,14 +140,6 @@ void check_programs(const scene::Scene& scene) {
              director.id)});
   }
   if (!problems.empty()) throw scene::SceneError(std::move(problems));
-}
-
-std::vector<scene::Director> directors_of(const supervision::World& world) {
-  std::vector<scene::Director> directors = world.scene.directors;
-  for (scene::Director& director : directors) {
-    director.script = processes::script_path(world.scene, director, world.path);
-  }
-  return directors;
 }
 
 wire::End end_message(const reports::Summary& summary) {

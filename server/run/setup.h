@@ -17,11 +17,6 @@
 
 namespace ziggurat::run {
 
-/// The path of the one scene, which exists: otherwise a client would connect to a run that cannot
-/// start. The files that options name are checked, too.
-/// @throws text::UsageError, scene::SceneError
-std::string existing_scene(const Options& options, reports::Console& console);
-
 /// Network configuration from the options, before the scene is read.
 /// @param is_serve  listens in a folder of this user if the options name no endpoint
 /// @param local     makes the folders of sockets
@@ -48,9 +43,6 @@ wire::Run description_of(const supervision::World& world, const std::vector<std:
 /// Checks that directors can be started. @throws scene::SceneError that names those without script
 /// and command
 void check_programs(const scene::Scene& scene);
-
-/// Directors of the scene, with the paths of their scripts.
-std::vector<scene::Director> directors_of(const supervision::World& world);
 
 /// Message to clients at the end of the run.
 wire::End end_message(const reports::Summary& summary);

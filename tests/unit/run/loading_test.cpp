@@ -46,13 +46,14 @@ TEST(Seed, CommandLineWinsAndZeroDrawsOne) {
   auto scene = scene_of(1, 1);
   scene.experiment.random_seed = 5;
   Options options;
-  EXPECT_EQ(choose_seed(options, scene), 5u);
+  EXPECT_EQ(choose_seed(options, scene.experiment.random_seed), 5u);
   options.seed = 9;
-  EXPECT_EQ(choose_seed(options, scene), 9u);
+  EXPECT_EQ(choose_seed(options, scene.experiment.random_seed), 9u);
   options.seed = 0;
-  const auto first = choose_seed(options, scene);
+  const auto first = choose_seed(options, scene.experiment.random_seed);
   EXPECT_NE(first, 0u);
-  EXPECT_TRUE(choose_seed(options, scene) != first || choose_seed(options, scene) != first);
+  EXPECT_TRUE(choose_seed(options, scene.experiment.random_seed) != first ||
+              choose_seed(options, scene.experiment.random_seed) != first);
 }
 
 class Included : public testing::Test {

@@ -1,4 +1,4 @@
-#include "run/controller_check.h"
+#include "rerun/controller_check.h"
 
 #include <fmt/format.h>
 
@@ -9,14 +9,13 @@
 #include "processes/scripts.h"
 #include "recording/replay/recording_error.h"
 #include "recording/replay/scene.h"
+#include "rerun/embedded_scripts.h"
+#include "rerun/recorded_world.h"
 #include "run/controller_option.h"
-#include "run/embedded_scripts.h"
-#include "run/recorded_world.h"
 #include "run/setup.h"
-#include "run/until_option.h"
 #include "text/numbers.h"
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
 namespace {
 
 using processes::runs_script;
@@ -38,7 +37,7 @@ ControllerCheck::ControllerCheck(const ControllerCheckOptions& options, processe
       folder_(signals.guardian()),
       world_(build_world()),
       scripts_(embed_scripts()),
-      server_(config(), description_of(world_, scripts_)),
+      server_(config(), run::description_of(world_, scripts_)),
       controllers_(start()),
       callers_(server_),
       population_({}, world_, server_, callers_, controllers_, console_),
@@ -65,7 +64,7 @@ supervision::World ControllerCheck::build_world() {
     if (found == opened.scene.controllers.end()) {
       throw text::UsageError(fmt::format("--controller: the recording has no controller '{}'", id));
     }
-    check_command(id, command);
+    run::check_command(id, command);
     found->command = command;
   }
   if (!options_.command.empty()) {
@@ -225,4 +224,4 @@ int ControllerCheck::tell(const std::optional<Ending>& ending) {
   return reports::exit_code::finished;
 }
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun

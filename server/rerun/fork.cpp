@@ -1,4 +1,4 @@
-#include "run/fork.h"
+#include "rerun/fork.h"
 
 #include <fmt/format.h>
 
@@ -7,20 +7,20 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <random>
 #include <set>
 #include <utility>
 
 #include "processes/scripts.h"
 #include "recording/replay/recording_error.h"
 #include "recording/replay/scene.h"
+#include "rerun/embedded_scripts.h"
+#include "rerun/recorded_world.h"
 #include "run/controller_option.h"
-#include "run/embedded_scripts.h"
 #include "run/files.h"
-#include "run/recorded_world.h"
+#include "run/loading.h"
 #include "text/numbers.h"
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
 
 using processes::runs_script;
 using reports::Ending;
@@ -28,16 +28,9 @@ using reports::Ending;
 namespace {
 
 /// Checks the names of all files before any is created.
-std::string checked_recording(const Options& options) {
-  check_files(options);
+std::string checked_recording(const run::Options& options) {
+  run::check_files(options);
   return options.scenes.front();
-}
-
-std::uint64_t seed_of(const Options& options, const v1::RunStart& run) {
-  std::uint64_t seed = options.seed.value_or(run.seed());
-  std::random_device system;
-  while (seed == 0) seed = system();
-  return seed;
 }
 
 /// Whether a state of one fits into the other.
@@ -49,12 +42,11 @@ bool have_same_layout(const world::Layout& a, const world::Layout& b) {
 
 }  // namespace
 
-Fork::Fork(const Options& options)
+Fork::Fork(const run::Options& options, ForkOptions fork_options)
     : options_(options),
-      fork_options_(*options.fork),
+      fork_options_(std::move(fork_options)),
       file_(checked_recording(options)),
-      files_(file_.files()),
-      seed_(seed_of(options, file_.run())) {
+      files_(file_.files()) {
   use_own_scripts();
 }
 
@@ -83,9 +75,17 @@ void Fork::use_own_scripts() {
   }
 }
 
-std::optional<std::uint64_t> Fork::last_tick() const {
-  const std::uint64_t tick = file_.run().last_tick();
-  return tick == 0 ? std::nullopt : std::optional(tick);
+std::optional<std::uint64_t> Fork::last_tick(const scene::Scene& scene) const {
+  const std::uint64_t recorded = file_.run().last_tick();  // 0: it was stopped
+  const bool is_asked = options_.ticks || options_.duration;
+  const auto tick =
+      is_asked || recorded == 0 ? run::tick_count(options_, scene) : std::optional(recorded);
+  if (tick && *tick < fork_options_.at) {
+    throw text::UsageError(fmt::format(
+        "--at {} is after the end of the run at tick {}; write --ticks with a later end",
+        fork_options_.at, *tick));
+  }
+  return tick;
 }
 
 bool Fork::changes_world() const {
@@ -106,16 +106,21 @@ void Fork::set_commands(scene::Scene& scene) const {
   for (scene::Director& director : scene.directors) {
     if (!fork_options_.trusts_commands) director.command.clear();
   }
-  for (const auto& [id, command] : options_.controllers) set_command(scene, id, command);
+  for (const auto& [id, command] : options_.controllers) run::set_command(scene, id, command);
 }
 
-supervision::World Fork::build(const simulation::TellStep& tell) const {
+std::unique_ptr<supervision::World> Fork::build(const run::TellLoading& tell, reports::Console&) {
+  tell(0, "The scene is being read.");
   const v1::RunStart& run = file_.run();
+  seed_ = run::choose_seed(options_, run.seed());
   scene::OpenScene opened = replay::read_scene(run, files_, options_.scene_file.variation);
   set_commands(opened.scene);
   const std::string hash =
       changes_world() ? replay::scene_hash(opened.scene, files_) : run.scene_hash();
-  return {run.scene(), std::move(opened), seed_, tell, hash};
+  auto world = std::make_unique<supervision::World>(run.scene(), std::move(opened), seed_,
+                                                    run::tell_steps(tell), hash);
+  begin(*world);
+  return world;
 }
 
 /// Puts the world of the fork into the recorded state.
@@ -123,12 +128,14 @@ void Fork::branch(supervision::World& world) const {
   world.branch(recorded_->simulation.snapshot(), options_.seed ? seed_ : recorded_->seed);
 }
 
-void Fork::prepare(supervision::World& world) {
+/// Puts the world where the recording begins, and checks that it can go on from recorded states.
+void Fork::begin(supervision::World& world) {
   const v1::RunStart& run = file_.run();
   const bool has_other_values = changes_world();
   if (has_other_values) {
-    recorded_.reset(new supervision::World{
-        run.scene(), replay::read_scene(run, file_.files()), run.seed(), {}, run.scene_hash()});
+    recorded_ =
+        std::make_unique<supervision::World>(run.scene(), replay::read_scene(run, file_.files()),
+                                             run.seed(), simulation::TellStep(), run.scene_hash());
   }
   supervision::World& recorded_world = recorded_ ? *recorded_ : world;
   begin_as_recorded(file_, recorded_world);
@@ -150,15 +157,21 @@ void Fork::prepare(supervision::World& world) {
   }
 }
 
-std::vector<std::string> Fork::write_scripts(const supervision::World& world,
-                                             const std::string& folder) const {
+run::Programs Fork::programs(const supervision::World& world, const std::string& folder,
+                             bool with_controllers) const {
   write_below(folder, files_);
-  const auto& robots = world.simulation.layout().robots;
-  std::vector<std::string> scripts;
-  for (const world::RobotLayout& robot : robots) {
-    scripts.push_back(script_below(folder, files_, world.scene, world.path, robot));
+  run::Programs programs;
+  for (const world::RobotLayout& robot : world.simulation.layout().robots) {
+    programs.scripts.push_back(script_below(folder, files_, world.scene, world.path, robot));
   }
-  return scripts;
+  const auto& without = file_.run().robots_without_controller();
+  programs.idle.assign(without.begin(), without.end());
+  programs.folder = folder;
+  programs.script_folders = {folder};
+  if (!with_controllers) return programs;
+  check_commands(world);
+  programs.directors = directors(world, folder);
+  return programs;
 }
 
 std::vector<scene::Director> Fork::directors(const supervision::World& world,
@@ -177,21 +190,15 @@ std::vector<scene::Director> Fork::directors(const supervision::World& world,
   return directors;
 }
 
-std::vector<std::size_t> Fork::idle_robots(const supervision::World& world,
-                                           const std::vector<std::string>& scripts) const {
-  const auto& recorded = file_.run().robots_without_controller();
+/// Refuses controllers without a command that may be started, unless their robots had none.
+void Fork::check_commands(const supervision::World& world) const {
+  const auto& without = file_.run().robots_without_controller();
   const auto& robots = world.simulation.layout().robots;
-  std::vector<std::size_t> idle;
   std::set<std::string> missing;
   for (std::size_t r = 0; r < robots.size(); ++r) {
     const scene::Controller& controller = world.scene.controllers[robots[r].controller];
-    const bool had_none = std::ranges::find(recorded, r) != recorded.end();
-    const bool has_no_script = runs_script(controller) && r < scripts.size() && scripts[r].empty();
-    if (had_none || has_no_script || options_.without_controllers) {
-      idle.push_back(r);
-    } else if (!runs_script(controller) && controller.command.empty()) {
-      missing.insert(controller.id);
-    }
+    if (std::ranges::find(without, r) != without.end() || runs_script(controller)) continue;
+    if (controller.command.empty()) missing.insert(controller.id);
   }
   if (!missing.empty() && options_.endpoints.empty()) {
     throw text::UsageError(
@@ -201,19 +208,16 @@ std::vector<std::size_t> Fork::idle_robots(const supervision::World& world,
                     "--endpoint where they connect",
                     fmt::join(missing, ", ")));
   }
-  return idle;
 }
 
-std::optional<Ending> Fork::replay_to_begin(supervision::World& world,
-                                            const ControllerReplay::Services& services,
-                                            const std::vector<std::size_t>& idle,
-                                            const std::string& folder, processes::Signals& signals,
-                                            reports::Console& console) {
+std::optional<Ending> Fork::reach(const Parts& parts) {
+  supervision::World& world = parts.world;
   supervision::World& recorded_world = recorded_ ? *recorded_ : world;
   std::vector<bool> gone(world.simulation.layout().robots.size());
-  for (const std::size_t robot : idle) gone[robot] = true;
+  for (const std::size_t robot : parts.without_controller) gone[robot] = true;
   const auto script_of = [&](const world::RobotLayout& robot) -> std::optional<std::string> {
-    const std::string script = script_below(folder, files_, world.scene, world.path, robot);
+    const std::string script =
+        script_below(parts.programs.folder, files_, world.scene, world.path, robot);
     const bool is_lua = runs_script(world.scene.controllers[robot.controller]);
     return options_.without_controllers || (is_lua && script.empty()) ? std::nullopt
                                                                       : std::optional(script);
@@ -221,16 +225,17 @@ std::optional<Ending> Fork::replay_to_begin(supervision::World& world,
   const auto follow = [&] {
     if (recorded_) branch(world);
   };
-  ControllerReplay controller_replay(file_, recorded_world, world, follow, services,
+  ControllerReplay controller_replay(file_, recorded_world, world, follow,
+                                     {parts.server, parts.controllers, parts.watch},
                                      std::move(gone), script_of, {});
   const auto is_there = [this](std::uint64_t tick) { return tick == fork_options_.at; };
   using clock = std::chrono::steady_clock;
   auto last_look = clock::now();
   const auto meanwhile = [&] {  // clients are heard while nothing is asked of them
     if (clock::now() - last_look < std::chrono::milliseconds(200)) return true;
-    services.server.gather({std::chrono::milliseconds(0), {}});
+    parts.server.gather({std::chrono::milliseconds(0), {}});
     last_look = clock::now();
-    return signals.take().interruptions == 0;
+    return parts.signals.take().interruptions == 0;
   };
   if (fork_options_.fresh) {
     if (!controller_replay.skip(is_there, meanwhile)) return Ending::interrupted;
@@ -251,7 +256,7 @@ std::optional<Ending> Fork::replay_to_begin(supervision::World& world,
     world.simulation.commands().radio_messages.clear();
     world.simulation.commands().pushes.clear();
   }
-  if (!fork_options_.fresh) report(controller_replay, console);
+  if (!fork_options_.fresh) report(controller_replay, parts.console);
   return std::nullopt;
 }
 
@@ -278,12 +283,12 @@ void Fork::report(const ControllerReplay& controller_replay, reports::Console& c
                   fork_options_.at, fmt::join(robots, "; ")));
 }
 
-void Fork::describe(const supervision::World& world, recorder::Start& start) const {
+void Fork::describe(const supervision::World& world, recorder::Start& start,
+                    reports::Console&) const {
   const v1::RunStart& run = file_.run();
   start.lenient = run.lenient();
   start.clock = run.clock();
   start.snapshot = "begin";
-  start.files.clear();
   for (const auto& [name, bytes] : files_.all()) start.files.push_back({name, bytes});
   const auto snapshot =
       simulation::to_bytes(world.simulation.snapshot(), {world.scene_hash, start.build.version});
@@ -291,4 +296,4 @@ void Fork::describe(const supervision::World& world, recorder::Start& start) con
                          {reinterpret_cast<const char*>(snapshot.data()), snapshot.size()}});
 }
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun

@@ -1,4 +1,4 @@
-#include "run/replay_run.h"
+#include "rerun/replay_run.h"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -12,14 +12,13 @@
 #include "recording/replay/recording_error.h"
 #include "recording/replay/scene.h"
 #include "reports/json_text.h"
+#include "rerun/recorded_world.h"
+#include "rerun/replay_difference.h"
 #include "run/files.h"
-#include "run/recorded_world.h"
-#include "run/replay_difference.h"
 #include "run/setup.h"
-#include "run/until_option.h"
 #include "text/numbers.h"
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
 
 using supervision::Phase;
 
@@ -27,7 +26,7 @@ namespace {
 
 constexpr int longest_sleep_ms = 100;  // viewers get their frames meanwhile
 
-std::optional<double> factor_of(const Options& options) {
+std::optional<double> factor_of(const run::Options& options) {
   if (options.real_time || !options.view) return options.real_time;
   return 1;
 }
@@ -38,7 +37,7 @@ supervision::World build_world(const replay::RecordingFile& file) {
 }
 
 /// Refuses outputs that need a simulation, not only poses.
-void check_poses_suffice(const Options& options) {
+void check_poses_suffice(const run::Options& options) {
   const std::pair<const char*, bool> others[] = {
       {"--readings", !options.readings.empty()},   {"--rays", !options.rays.empty()},
       {"--images", !options.images.empty()},       {"--summary", !options.summary.empty()},
@@ -66,12 +65,12 @@ std::pair<std::uint64_t, std::uint64_t> ticks_of(const replay::RecordingFile& fi
 
 /// Before any output is created. A film of the recording is as long as it is, unless other ends are
 /// asked for.
-Options checked_outputs(const ReplayOptions& options, const replay::RecordingFile& file,
-                        const scene::Experiment& experiment) {
+run::Options checked_outputs(const ReplayOptions& options, const replay::RecordingFile& file,
+                             const scene::Experiment& experiment) {
   if (options.until) check_until(file, *options.until);
-  Options outputs = options.run;
+  run::Options outputs = options.run;
   if (!outputs.pictures || !outputs.pictures->film) return outputs;
-  FilmOptions& film = *outputs.pictures->film;
+  run::FilmOptions& film = *outputs.pictures->film;
   const auto [first, last] = ticks_of(file);
   film.from = std::max(film.from, static_cast<double>(first) / experiment.ticks_per_second);
   if (!film.to)
@@ -83,9 +82,9 @@ Options checked_outputs(const ReplayOptions& options, const replay::RecordingFil
 /// Checks the names of all files before any is created.
 std::string checked(const ReplayOptions& options) {
   if (options.from_poses) check_poses_suffice(options.run);
-  Options files = options.run;
+  run::Options files = options.run;
   files.scenes = {options.recording};
-  check_files(files);
+  run::check_files(files);
   return options.recording;
 }
 
@@ -102,15 +101,15 @@ ReplayRun::ReplayRun(const ReplayOptions& options, processes::Signals& signals)
       replay_({world_.scene, world_.additions, world_.simulation, world_.seed},
               file_.files().opener(), [this] { return states_.next(); }),
       schedule_(factor_of(options.run), world_.simulation.tick_length()),
-      live_view_(make_showing(options.run, shown())),
+      live_view_(run::make_showing(options.run, shown())),
       progress_(console_, world_.simulation.tick_length(), file_.states()) {
   replay_.open_snapshots_by(embedded_snapshots(file_, world_));
   options.from_poses ? show_poses() : begin_as_recorded(file_, world_);
   summary_.scene = world_.path;
   summary_.robots = world_.simulation.layout().robots.size();
   if (live_view_) {
-    console_.notice(wait_notice());
-    waits_for_viewer_until_ = clock::now() + longest_wait_for_viewer;
+    console_.notice(run::wait_notice());
+    waits_for_viewer_until_ = clock::now() + run::longest_wait_for_viewer;
   }
 }
 
@@ -127,8 +126,8 @@ void ReplayRun::show_poses() {
   replay_.begin_at(replay::read_snapshot(file_, begin, world_.scene, world_.additions));
 }
 
-LiveView::Run ReplayRun::shown() {
-  LiveView::Run watched{world_, schedule_, file_.run().last_tick(), {}, {}, {}, {}, {}, {}};
+run::LiveView::Run ReplayRun::shown() {
+  run::LiveView::Run watched{world_, schedule_, file_.run().last_tick(), {}, {}, {}, {}, {}, {}};
   watched.connect = [this](supervision::LocalCalls calls) {
     viewer_controls_.connect(std::move(calls));
   };
@@ -343,4 +342,4 @@ void ReplayRun::tell(End end) {
   console_.result(reports::json_text(json));
 }
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun

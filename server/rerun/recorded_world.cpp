@@ -1,4 +1,4 @@
-#include "run/until_option.h"
+#include "rerun/recorded_world.h"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,29 @@
 
 #include "recording/mcap/source.h"
 #include "recording/replay/recording_error.h"
+#include "recording/replay/scene.h"
 #include "text/numbers.h"
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
+
+void begin_as_recorded(const replay::RecordingFile& file, supervision::World& world) {
+  replay::check_core(file.run(), world.scene);
+  const std::string& name = file.run().snapshot();
+  if (name.empty()) return;
+  try {
+    world.restore(replay::read_snapshot(file, name, world.scene, world.additions));
+  } catch (const simulation::SnapshotError& error) {
+    throw replay::RecordingError(
+        fmt::format("{}: the state that it begins with: {}", file.path(), error.what()));
+  }
+}
+
+replay::Replay::OpenSnapshot embedded_snapshots(const replay::RecordingFile& file,
+                                                const supervision::World& world) {
+  return [&file, &world](const std::string& name) {
+    return replay::read_snapshot(file, name, world.scene, world.additions);
+  };
+}
 
 void check_until(const replay::RecordingFile& file, std::uint64_t until) {
   std::uint64_t least = 0, greatest = 0;
@@ -31,4 +51,4 @@ void check_until(const replay::RecordingFile& file, std::uint64_t until) {
       file.path(), least, greatest));
 }
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun

@@ -1,4 +1,4 @@
-#include "run/replay_difference.h"
+#include "rerun/replay_difference.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 #include "recording/replay/message_difference.h"
 #include "run/build.h"
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
 namespace {
 
 /// Compares the topics that show readings and device states of robots; poses of links do not.
@@ -106,7 +106,7 @@ std::string explain_difference(const replay::RecordingFile& file, const replay::
 
 std::vector<std::string> likely_causes(const v1::RunStart& recorded) {
   const v1::RunStart::Build& then = recorded.build();
-  const recorder::Build now = this_build();
+  const recorder::Build now = run::this_build();
   std::vector<std::string> causes;
   const auto compare = [&](std::string_view what, const std::string& a, const std::string& b) {
     if (a != b) causes.push_back(fmt::format("{}: {} then, {} now", what, a, b));
@@ -122,4 +122,4 @@ std::vector<std::string> likely_causes(const v1::RunStart& recorded) {
   return causes;
 }
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun

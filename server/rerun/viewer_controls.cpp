@@ -1,8 +1,8 @@
-#include "run/viewer_controls.h"
+#include "rerun/viewer_controls.h"
 
 #include <utility>
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
 
 void ViewerControls::serve(std::uint64_t tick) {
   if (!calls_.take) return;
@@ -48,4 +48,4 @@ void ViewerControls::stepped(std::uint64_t tick) {
   calls_.done(*std::exchange(stepping_, std::nullopt), tick);
 }
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun

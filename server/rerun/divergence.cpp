@@ -1,4 +1,4 @@
-#include "run/divergence.h"
+#include "rerun/divergence.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 #include "reports/json_text.h"
 #include "reports/plot.h"
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
 namespace {
 
 constexpr std::size_t most_rows = 20;      // of the table
@@ -239,4 +239,4 @@ std::string to_svg(const Divergence& of) {
   return reports::to_svg("A: " + of.path_a + "\nB: " + of.path_b, {panel});
 }
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun

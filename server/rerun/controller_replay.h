@@ -17,7 +17,7 @@
 #include "run/watch.h"
 #include "supervision/world.h"
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
 
 class ControllerReplay {
  public:
@@ -33,7 +33,7 @@ class ControllerReplay {
   struct Services {
     network::Server& server;
     processes::Controllers& controllers;
-    Watch& watch;
+    run::Watch& watch;
   };
 
   /// All that is given must outlive this, but for the functions.
@@ -101,4 +101,4 @@ class ControllerReplay {
   std::map<std::string, Difference> differences_;
 };
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun

@@ -1,4 +1,4 @@
-#include "run/controller_replay.h"
+#include "rerun/controller_replay.h"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "recording/replay/recording_error.h"
-#include "run/recorded_world.h"
-#include "run/replay_difference.h"
+#include "rerun/recorded_world.h"
+#include "rerun/replay_difference.h"
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
 
 using reports::Ending;
 
@@ -223,4 +223,4 @@ void ControllerReplay::compare() {
   if (has_compared) ++ticks_;
 }
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun

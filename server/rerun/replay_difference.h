@@ -8,7 +8,7 @@
 #include "recording/replay/replay.h"
 #include "supervision/world.h"
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
 
 /// A sentence with tick, entity, field and both values.
 /// @param states  has read the inputs of the present state last
@@ -18,4 +18,4 @@ std::string explain_difference(const replay::RecordingFile& file, const replay::
 /// Sentences on what differs between the program that recorded and this one.
 std::vector<std::string> likely_causes(const v1::RunStart& recorded);
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun

@@ -1,4 +1,4 @@
-#include "run/embedded_scripts.h"
+#include "rerun/embedded_scripts.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "recording/replay/recording_error.h"
 #include "temporary_folder.h"
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
 namespace {
 
 namespace fs = std::filesystem;
@@ -74,4 +74,4 @@ TEST(EmbeddedScripts, AScriptOfAnotherFolderIsNotTakenForIt) {
 }
 
 }  // namespace
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun

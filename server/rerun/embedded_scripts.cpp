@@ -1,4 +1,4 @@
-#include "run/embedded_scripts.h"
+#include "rerun/embedded_scripts.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "processes/scripts.h"
 #include "recording/replay/recording_error.h"
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
 namespace {
 
 namespace fs = std::filesystem;
@@ -113,4 +113,4 @@ std::string script_below(const std::string& folder, const replay::EmbeddedFiles&
                          {director.script, director.id, director.id});
 }
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun

@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 #include "world/layout.h"
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
 
 /// Writes all embedded files below a folder, which nothing in their names can leave.
 void write_below(const std::string& folder, const replay::EmbeddedFiles& files);
@@ -23,4 +23,4 @@ std::string script_below(const std::string& folder, const replay::EmbeddedFiles&
                          const scene::Scene& scene, const std::string& scene_path,
                          const scene::Director& director);
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun

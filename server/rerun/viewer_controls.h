@@ -9,7 +9,7 @@
 #include "supervision/callers.h"
 #include "supervision/supervision.h"
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
 
 class ViewerControls {
  public:
@@ -36,4 +36,4 @@ class ViewerControls {
   bool is_paused_ = false, is_over_ = false;
 };
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun

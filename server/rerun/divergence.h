@@ -9,7 +9,7 @@
 #include "recording/replay/difference.h"
 #include "recording/replay/recording_file.h"
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
 
 struct Divergence {
   struct State {
@@ -40,4 +40,4 @@ std::string to_json(const Divergence& divergence);
 /// Distances over time, both logarithmic.
 std::string to_svg(const Divergence& divergence);
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun

@@ -1,11 +1,11 @@
-#include "run/viewer_controls.h"
+#include "rerun/viewer_controls.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
 namespace {
 
 using Kind = wire::Request::Kind;
@@ -93,4 +93,4 @@ TEST(ViewerControls, ChangesNothingOfTheWorld) {
 }
 
 }  // namespace
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun

@@ -13,19 +13,19 @@
 #include "reports/console.h"
 #include "reports/progress.h"
 #include "reports/summary.h"
+#include "rerun/viewer_controls.h"
 #include "run/live_view.h"
 #include "run/options.h"
 #include "run/phase_timer.h"
 #include "run/recorders.h"
 #include "run/schedule.h"
-#include "run/viewer_controls.h"
 #include "supervision/world.h"
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
 
 struct ReplayOptions {
   std::string recording;               ///< path
-  Options run;                         ///< outputs, view, pacing
+  run::Options run;                    ///< outputs, view, pacing
   std::optional<std::uint64_t> until;  ///< the last tick; of the last epoch that has it
   bool verifies = false;               ///< the verdict is the result, on stdout
   bool from_poses = false;             ///< nothing is simulated: the recorded poses are shown
@@ -45,8 +45,7 @@ class ReplayRun {
   enum class End { complete, differs, damaged, stopped };
 
   void show_poses();
-  LiveView::Run shown();
-  std::unique_ptr<LiveView> make_shown();
+  run::LiveView::Run shown();
   End repeat();
   bool wait();
   bool may_step(clock::time_point now, int& timeout_ms);
@@ -62,15 +61,15 @@ class ReplayRun {
   reports::Console console_;
   const replay::RecordingFile file_;
   supervision::World world_;
-  Recorders recorders_;
+  run::Recorders recorders_;
   replay::States states_;
   replay::Replay replay_;
-  Schedule schedule_;
+  run::Schedule schedule_;
   ViewerControls viewer_controls_;
-  const std::unique_ptr<LiveView> live_view_;  ///< null: not shown
+  const std::unique_ptr<run::LiveView> live_view_;  ///< null: not shown
   reports::Progress progress_;
   reports::Summary summary_;
-  PhaseTimer timer_;
+  run::PhaseTimer timer_;
   std::uint64_t same_ = 0;  ///< states that are as recorded
   std::string difference_;  ///< what differs first
   std::string damage_;      ///< what ends the recording early
@@ -78,4 +77,4 @@ class ReplayRun {
   clock::time_point waits_for_viewer_until_{};
 };
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun

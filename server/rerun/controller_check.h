@@ -16,12 +16,12 @@
 #include "processes/signals.h"
 #include "recording/replay/recording_file.h"
 #include "reports/console.h"
-#include "run/controller_replay.h"
+#include "rerun/controller_replay.h"
 #include "run/watch.h"
 #include "supervision/supervision.h"
 #include "supervision/world.h"
 
-namespace ziggurat::run {
+namespace ziggurat::rerun {
 
 struct ControllerCheckOptions {
   std::string recording;  ///< path
@@ -71,9 +71,9 @@ class ControllerCheck {
   supervision::Callers callers_;
   supervision::Population population_;
   supervision::Supervision supervision_;
-  Watch watch_;
+  run::Watch watch_;
   std::optional<ControllerReplay> controller_replay_;
   std::size_t told_ = 0;
 };
 
-}  // namespace ziggurat::run
+}  // namespace ziggurat::rerun
