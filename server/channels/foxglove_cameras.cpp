@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "channels/foxglove_scene.h"
-#include "outputs/png.h"
+#include "outputs/images.h"
 
 namespace ziggurat::channels {
 namespace {

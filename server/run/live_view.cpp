@@ -6,8 +6,8 @@
 #include <iterator>
 #include <utility>
 
-#include "run/page_folder.h"
-#include "run/version.h"
+#include "run/build.h"
+#include "run/files.h"
 
 namespace ziggurat::run {
 namespace {

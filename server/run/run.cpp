@@ -12,11 +12,10 @@
 #include "processes/python_package.h"
 #include "processes/scripts.h"
 #include "run/background.h"
-#include "run/client_options.h"
+#include "run/build.h"
 #include "run/files.h"
-#include "run/gate_option.h"
+#include "run/options/option_checks.h"
 #include "run/setup.h"
-#include "run/version.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {

@@ -16,7 +16,6 @@
 #include "recording/replay/difference.h"
 #include "recording/replay/export.h"
 #include "recording/replay/names.h"
-#include "recording/replay/recording_error.h"
 #include "temporary_folder.h"
 #include "ziggurat/v1/channels.pb.h"
 

@@ -1,11 +1,11 @@
-#include "run/deadline_option.h"
+#include "run/options/deadline_option.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "run/controller_option.h"
+#include "run/options/controller_option.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
