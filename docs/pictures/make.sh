@@ -3,7 +3,7 @@
 #
 # usage: docs/pictures/make.sh [FOLDER OF THE PROGRAMS [FOLDER OF THE RESULTS]]
 #
-# It needs ffmpeg, gnuplot, and for the screenshots Chromium and the packages of tests/web (the build's target
+# It needs ffmpeg, and for the screenshots Chromium and the packages of tests/web (the build's target
 # web_tests); what can't be made for want of these is named and left as it is. LONG=no and SCREENSHOTS=no leave out
 # what takes minutes, and the screenshots.
 set -eu
@@ -50,13 +50,9 @@ plot() {  # EXPERIMENT PARAMETER METRIC
   rm -r "$sweep"
 }
 
-if ! is_long; then
-  :
-elif command -v gnuplot > /dev/null; then  # on two cores one minute (docs/experiments.md) and some ten
+if is_long; then  # on two cores one minute (docs/experiments.md) and some ten
   plot aggregation share swarm/time_to_aggregate
   plot pyramid robots site/time_to_finish
-else
-  echo "make.sh: no plot without gnuplot (sudo apt install gnuplot-nox)" >&2
 fi
 
 if command -v ffmpeg > /dev/null; then

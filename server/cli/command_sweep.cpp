@@ -114,7 +114,7 @@ table of what came out (docs/experiments.md).
   ziggurat sweep results results/ --by gain
       means with confidence intervals (Student's t)
   ziggurat sweep plot results/ --x gain --y time_to_aggregate
-      the same as a picture, by gnuplot
+      the same as a picture
 
   ziggurat sweep swarm.argos --seeds 1..1000 --out results/ --slurm --partition short
       the same on a cluster; status, results and plot read it in the same way

@@ -202,8 +202,7 @@ std::size_t usual_abscissa(const sweep::Experiment& experiment) {
       "from left to right");
 }
 
-/// Files that belong to the sweep or that it was made of. A picture in its folder, and the program
-/// that drew it, may be replaced.
+/// Files that belong to the sweep or that it was made of. A picture in its folder may be replaced.
 std::vector<outputs::TakenFile> taken_by(const SweepState& sofar) {
   std::vector<outputs::TakenFile> taken;
   for (const auto& [path, hash] : sofar.scene_files)
@@ -211,17 +210,10 @@ std::vector<outputs::TakenFile> taken_by(const SweepState& sofar) {
   std::error_code error;
   for (const auto& entry :
        std::filesystem::recursive_directory_iterator(sofar.folder.path(), error)) {
-    const auto ending = entry.path().extension();
-    if (!entry.is_regular_file(error) || ending == ".svg" || ending == ".gnuplot") continue;
+    if (!entry.is_regular_file(error) || entry.path().extension() == ".svg") continue;
     taken.push_back({entry.path().string(), "a file that the sweep is kept in"});
   }
   return taken;
-}
-
-void print(const std::filesystem::path& file) {
-  outputs::OutputFile out("-");
-  out.buffer().append(sweep::read_file(file));
-  out.close();
 }
 
 }  // namespace
@@ -318,10 +310,16 @@ int sweep_plot(const Arguments& arguments) {
                                                      : sofar.folder.path() / (name + ".svg");
   const auto taken = taken_by(sofar);
   outputs::check_output({"--file", file.string(), {".svg"}}, taken);
-  outputs::check_output({"--file", sweep::program_beside(file).string(), {".gnuplot"}}, taken);
-  sweep::draw(sofar.experiment, sofar.results, plot, file);
+  const std::string svg = to_svg(sofar.experiment, sofar.results, plot);
+  sweep::write_file(file, svg);
+  if (to_stdout) {
+    outputs::OutputFile out("-");
+    out.buffer().append(svg);
+    out.close();
+    return exit_code::finished;
+  }
   reports::Console console;
-  to_stdout ? print(file) : console.result(file.string());
+  console.result(file.string());
   console.flush();
   return exit_code::finished;
 }

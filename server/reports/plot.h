@@ -1,5 +1,5 @@
 #pragma once
-// A plot as a picture: curves over a logarithmic abscissa, in SVG.
+// A plot as a picture in SVG: curves, error bars, axes with logarithms, numbers or names.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,8 @@ struct Curve {
   std::string name;
   std::string color;  ///< of SVG
   bool dashed = false;
-  std::vector<double> y;  ///< parallel to Panel::x; not finite or zero = no point there
+  std::vector<double> y;            ///< parallel to Panel::x; where it can't be drawn, a gap
+  std::vector<double> spread = {};  ///< half of the error bar at each point; empty = none
 };
 
 /// A vertical line.
@@ -26,14 +27,18 @@ struct Note {
   std::string color;  ///< of SVG
 };
 
-/// Axes with curves: both logarithmic, |y| is drawn.
+/// Logarithmic axes show |y|, and zero as a gap.
+enum class Scale { logarithmic, linear };
+
 struct Panel {
   std::string title;
   std::string x_label, y_label;  ///< with units
-  std::vector<double> x;         ///< > 0, ascending
+  std::vector<double> x;         ///< ascending; logarithmic: > 0
   std::vector<Curve> curves;
   std::vector<Mark> marks = {};
   std::vector<Note> notes = {};
+  Scale scale = Scale::logarithmic;       ///< of both axes
+  std::vector<std::string> x_names = {};  ///< shown at 0, 1, 2, … instead of numbers; linear only
 };
 
 /// The panels one below the other.

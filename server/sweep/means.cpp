@@ -60,7 +60,11 @@ Estimate estimate(std::span<const double> values, double confidence) {
   double squares = 0;
   for (const double value : values) squares += (value - result.mean) * (value - result.mean);
   const double deviation = std::sqrt(squares / (n - 1));
-  const boost::math::students_t distribution(n - 1);
+  // In double precision: Valgrind has no long double, and Boost's tables would not initialise under
+  // it.
+  using namespace boost::math::policies;
+  const boost::math::students_t_distribution<double, policy<promote_double<false>>> distribution(n -
+                                                                                                 1);
   const double t = boost::math::quantile(distribution, 0.5 + confidence / 2);
   result.half_width = t * deviation / std::sqrt(n);
   return result;

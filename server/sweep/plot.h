@@ -1,7 +1,6 @@
 #pragma once
-// Means with error bars as a picture, drawn by gnuplot.
+// Means with error bars as a picture.
 
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,17 +17,8 @@ struct Plot {
   double confidence = 0.95;           ///< of the error bars, in (0, 1)
 };
 
-/// A program for gnuplot that writes an SVG file.
-std::string gnuplot_program(const Experiment& experiment, std::span<const Result> results,
-                            const Plot& plot, const std::filesystem::path& svg);
-
-/// Path of the program for gnuplot that draws a picture: the ending is .gnuplot.
-std::filesystem::path program_beside(const std::filesystem::path& svg);
-
-/// Writes the picture, and the program for gnuplot beside it.
-/// @throws text::UsageError if gnuplot is missing or fails, or a file of another origin stands
-/// where the program would
-void draw(const Experiment& experiment, std::span<const Result> results, const Plot& plot,
-          const std::filesystem::path& svg);
+/// The picture, in SVG. Intervals of a single value are none.
+/// @throws text::UsageError if no run that finished has the measure
+std::string to_svg(const Experiment& experiment, std::span<const Result> results, const Plot& plot);
 
 }  // namespace ziggurat::sweep

@@ -131,32 +131,13 @@ class Tables(SweepTest):
 
     def test_plots_with_error_bars(self):
         self.sweep(self.scene, *self.grid)
-        arguments = ("plot", self.out, "--y", "wall_s", "--x", "gain", "--by", "iterations")
-        if shutil.which("gnuplot"):
-            self.sweep(*arguments, out=False)
-            svg = (self.out / "wall_s.svg").read_text()
-            self.assertIn("<svg", svg)
-            self.assertIn(f"{ITERATIONS} = 10", svg)
-            self.assertEqual(sorted(path.name for path in self.out.glob("wall_s*")), ["wall_s.gnuplot", "wall_s.svg"])
-        self.environment["PATH"] = "/nowhere"
-        outcome = self.sweep(*arguments, out=False, code=FAULT)
-        self.assert_is_sentence(outcome, "plots need gnuplot, which is not installed; on Debian: apt-get")
-        self.assertIn("yerrorlines", (self.out / "wall_s.gnuplot").read_text())
-
-    def test_plots_replace_no_file_beside_them(self):
-        self.sweep(self.scene, *self.grid)
-        arguments = ("plot", self.out, "--y", "ticks", "--file", self.folder / "a.svg")
-        log = self.folder / "a.svg.log"
-        log.write_text("mine")
-        if shutil.which("gnuplot"):
-            for _ in range(2):  # its own program is replaced
-                self.sweep(*arguments, out=False)
-        self.assertEqual(log.read_text(), "mine")
-        program = self.folder / "a.gnuplot"
-        program.write_text("# mine")
-        outcome = self.sweep(*arguments, out=False, code=FAULT)
-        self.assert_is_sentence(outcome, "a.gnuplot' is there and was not written by sweep plot")
-        self.assertEqual(program.read_text(), "# mine")
+        for _ in range(2):  # the picture before it is replaced
+            self.sweep("plot", self.out, "--y", "wall_s", "--x", "gain", "--by", "iterations", out=False)
+        svg = (self.out / "wall_s.svg").read_text()
+        for text in (f">{ITERATIONS} = 10<", ">gain<", ">wall_s (mean, 95 % confidence)<", "<circle"):
+            self.assertIn(text, svg)
+        outcome = self.sweep("plot", self.out, "--y", "ticks", "--file", self.out / "results.csv", out=False, code=FAULT)
+        self.assert_is_sentence(outcome, "results.csv")
 
 
 class Failures(SweepTest):

@@ -22,7 +22,7 @@ std::size_t count(const std::string& text, const std::string& part) {
 TEST(Plot, DrawsACurveThroughItsPoints) {
   const std::string svg = to_svg("A & B", {panel({1, 0.1, 0.01})});
   EXPECT_EQ(svg.find("<svg"), 0u);
-  EXPECT_EQ(count(svg, "<path"), 1u);
+  EXPECT_EQ(count(svg, "fill=\"none\""), 1u);
   EXPECT_EQ(count(svg, "L"), 2u) << svg;
   EXPECT_NE(svg.find("A &amp; B"), std::string::npos);
   EXPECT_NE(svg.find("Force &lt;now>"), std::string::npos);
@@ -37,6 +37,16 @@ TEST(Plot, ShowsCharactersThatAreNotSeenAsNumbers) {
 TEST(Plot, LiftsThePenWhereThereIsNoPoint) {
   const std::string svg = to_svg("", {panel({1, std::nan(""), 0.01})});
   EXPECT_EQ(count(svg, "L"), 0u);
+}
+
+TEST(Plot, LinearAxesHaveRoundNumbersAndErrorBars) {
+  Panel linear = panel({-1, 0, 2});
+  linear.scale = Scale::linear;
+  linear.curves[0].spread = {0, 0.5, 0};
+  const std::string svg = to_svg("", {linear});
+  for (const char* number : {">-1<", ">-0.5<", ">0<", ">1.5<", ">0.03<"})
+    EXPECT_NE(svg.find(number), std::string::npos) << number << " in " << svg;
+  EXPECT_EQ(count(svg, "<circle"), 3u);
 }
 
 TEST(Plot, SaysWhenAllIsZero) {

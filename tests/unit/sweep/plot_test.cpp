@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <regex>
 #include <vector>
 
 #include "text/numbers.h"
@@ -16,6 +17,27 @@ Result run_with(std::size_t run, double time) {
   return result;
 }
 
+/// Heights of the dots of a curve [px], downwards; the curve by its name in the legend.
+std::vector<double> heights(const std::string& svg, const std::string& name) {
+  static const std::regex curve(
+      "<circle cx=\"([0-9.]+)\" cy=\"([0-9.]+)\"|<text[^>]*>([^<]*)</text>");
+  std::vector<double> found;
+  for (std::sregex_iterator match(svg.begin(), svg.end(), curve), end; match != end; ++match) {
+    if ((*match)[2].matched) found.push_back(std::stod((*match)[2]));
+    if (!(*match)[2].matched && !found.empty() && (*match)[3] == name) return found;
+    if (!(*match)[2].matched) found.clear();
+  }
+  return found;
+}
+
+/// The length of the first error bar [px].
+double bar(const std::string& svg) {
+  static const std::regex ends("V([0-9.]+)h-4h8M[0-9.]+ [0-9.]+M[0-9.]+ [0-9.]+V([0-9.]+)h-4");
+  std::smatch found;
+  if (!std::regex_search(svg, found, ends)) return -1;
+  return std::stod(found[1]) - std::stod(found[2]);
+}
+
 TEST(Plot, HasACurvePerValueWithItsMeansInOrder) {
   const Experiment experiment{
       "/s.argos",
@@ -25,31 +47,30 @@ TEST(Plot, HasACurvePerValueWithItsMeansInOrder) {
   std::vector<Result> results;
   for (std::size_t run = 1; run <= 8; ++run)
     results.push_back(run_with(run, static_cast<double>(run)));
-  const std::string text = gnuplot_program(experiment, results, {0, 1, "time"}, "a.svg");
-  // Runs 1, 2: gain 2, first mode; 5, 6: gain 1. Intervals: 12.706 · √0.5 / √2 = 6.353.
-  EXPECT_NE(text.find("$curve0 << END\n1 5.5 6.35"), std::string::npos) << text;
-  EXPECT_NE(text.find("\n2 1.5 6.35"), std::string::npos) << text;
-  EXPECT_NE(text.find("title 'mode = it''s'"), std::string::npos) << text;
-  EXPECT_NE(text.find("$curve1 using 1:2:3"), std::string::npos) << text;
+  const std::string svg = to_svg(experiment, results, {0, 1, "time"});
+  // Runs 1, 2: gain 2, first mode; 5, 6: gain 1. Means 5.5, then 1.5; the second mode's are 2
+  // higher.
+  const auto first = heights(svg, "mode = it's"), second = heights(svg, "mode = b");
+  ASSERT_EQ(first.size(), 2u) << svg;
+  ASSERT_EQ(second.size(), 2u) << svg;
+  EXPECT_NEAR(first[1] - first[0], 2 * (first[0] - second[0]), 0.2) << "[px] of 4 and 2";
+  EXPECT_NEAR(second[1] - second[0], first[1] - first[0], 0.2);
+  EXPECT_NEAR(bar(svg), 2 * 6.353 / 4 * (first[1] - first[0]), 0.5) << "12.706 · √0.5 / √2 = 6.353";
 }
 
 TEST(Plot, NamesThatAreNoNumbersStandSideBySide) {
   const Experiment experiment{
       "/s.argos", {{Axis::Kind::parameter, "mode", {"a\u202e", "b"}}}, {1}, {}};
   const std::vector<Result> results = {run_with(1, 3), run_with(2, 4)};
-  const std::string text = gnuplot_program(experiment, results, {0, {}, "time"}, "a.svg");
-  EXPECT_NE(text.find("set xtics ('a\\u202e' 0, 'b' 1)"), std::string::npos) << text;
-  EXPECT_NE(text.find("0 3 0\n1 4 0\n"), std::string::npos)
-      << "one value has no interval: " << text;
-}
-
-TEST(Plot, TheProgramStandsBesideThePicture) {
-  EXPECT_EQ(program_beside("a/b.svg"), "a/b.gnuplot");
+  const std::string svg = to_svg(experiment, results, {0, {}, "time"});
+  EXPECT_LT(svg.find(">a\\u202e<"), svg.find(">b<")) << svg;
+  EXPECT_EQ(heights(svg, "").size(), 2u);
+  EXPECT_EQ(bar(svg), 0) << "one value has no interval: " << svg;
 }
 
 TEST(Plot, OfNothingIsRefused) {
   const Experiment experiment{"/s.argos", {{Axis::Kind::parameter, "mode", {"a", "b"}}}, {1}, {}};
-  EXPECT_THROW(gnuplot_program(experiment, {}, {0, {}, "time"}, "a.svg"), text::UsageError);
+  EXPECT_THROW(to_svg(experiment, {}, {0, {}, "time"}), text::UsageError);
 }
 
 }  // namespace
