@@ -29,13 +29,14 @@ std::string for_file_name(std::string_view id) {
 
 }  // namespace
 
-std::string to_png(unsigned width, unsigned height, std::span<const std::uint8_t> rgb, bool fast) {
+std::string to_png(unsigned width, unsigned height, std::span<const std::uint8_t> rgb,
+                   PngEncoding encoding) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   image.width = width;
   image.height = height;
   image.format = PNG_FORMAT_RGB;
-  if (fast) image.flags = PNG_IMAGE_FLAG_FAST;
+  if (encoding == PngEncoding::fast) image.flags = PNG_IMAGE_FLAG_FAST;
   std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(image), '\0');
   png_alloc_size_t size = bytes.size();
   if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, rgb.data(), 0, nullptr)) {
@@ -49,7 +50,7 @@ std::string to_png(unsigned width, unsigned height, std::span<const std::uint8_t
 void write_png(const std::string& path, unsigned width, unsigned height,
                std::span<const std::uint8_t> rgb) {
   OutputFile file(path);
-  const std::string bytes = to_png(width, height, rgb, false);
+  const std::string bytes = to_png(width, height, rgb, PngEncoding::small);
   file.buffer().append(bytes.data(), bytes.data() + bytes.size());
   file.close();
 }

@@ -12,11 +12,14 @@
 
 namespace ziggurat::outputs {
 
+/// Encoding of a picture: fast takes a third of the time, and its files are somewhat longer.
+enum class PngEncoding { small, fast };
+
 /// The bytes of a PNG file.
 /// @param rgb  width * height * 3 bytes, rows from top to bottom
-/// @param fast  a third of the time, and somewhat longer
 /// @throws WriteError
-std::string to_png(unsigned width, unsigned height, std::span<const std::uint8_t> rgb, bool fast);
+std::string to_png(unsigned width, unsigned height, std::span<const std::uint8_t> rgb,
+                   PngEncoding encoding);
 
 /// @param rgb  width * height * 3 bytes, rows from top to bottom
 /// @throws WriteError

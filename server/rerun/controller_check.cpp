@@ -31,7 +31,7 @@ std::size_t robot_named(const world::Layout& layout, const std::string& id) {
 ControllerCheck::ControllerCheck(const ControllerCheckOptions& options, processes::Signals& signals)
     : options_(options),
       signals_(signals),
-      console_({options.quiet, false}),
+      console_({.quiet = options.quiet}),
       file_(options.recording),
       folder_(signals.guardian()),
       world_(build_world()),
@@ -41,8 +41,8 @@ ControllerCheck::ControllerCheck(const ControllerCheckOptions& options, processe
       callers_(server_),
       population_({}, world_, server_, callers_, controllers_, console_),
       supervision_({}, world_, server_, callers_, population_),
-      watch_({{}, false, false, false, file_.states(), {}}, world_, server_, controllers_,
-             supervision_, signals, console_, nullptr, [](auto...) {}) {}
+      watch_({.metrics = {}, .ticks = file_.states(), .restarts = {}}, world_, server_,
+             controllers_, supervision_, signals, console_, nullptr, [](auto...) {}) {}
 
 supervision::World ControllerCheck::build_world() {
   if (options_.until) check_until(file_, *options_.until);
@@ -103,7 +103,7 @@ bool ControllerCheck::is_checked(std::size_t robot) const {
 network::Config ControllerCheck::config() const {
   network::Config config;
   config.private_endpoint = "ipc://" + folder_.path() + "/run";
-  config.deadlines.assign(world_.scene.controllers.size(), {scene::DeadlinePolicy{}, true});
+  config.deadlines.assign(world_.scene.controllers.size(), {.policy = {}, .is_fixed = true});
   return config;
 }
 
