@@ -48,7 +48,7 @@ MODULES = {
     "recording/recorder": ["recording", "recording/mcap", "channels", "outputs", "world", "protocol", "math"],
     "recording/replay": ["recording", "recording/mcap", "outputs", "simulation", "scene", "world", "protocol", "math"],
     "run": ["supervision", "recording/recorder", "recording/mcap", "view", "channels", "reports", "processes",
-            "network", "outputs", "simulation", "render", "scene", "world", "math", "text", "posix"],
+            "network", "outputs", "simulation", "render", "scene", "world", "math", "text"],
     "rerun": ["run", "supervision", "recording/mcap", "recording/replay", "channels", "reports", "processes", "network", "outputs",
               "scene", "world", "math", "text"],
     "sweep": ["reports", "processes", "scene", "text", "math"],

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "channels/foxglove_scene.h"
-#include "outputs/png.h"
+#include "outputs/images.h"
 
 namespace ziggurat::channels {
 namespace {
@@ -97,7 +97,7 @@ std::shared_ptr<const Content> picture_of(const v1::World& world, std::size_t ca
     set_time(time_ns, *picture.mutable_timestamp());
     picture.set_frame_id(frame);
     picture.set_format("png");
-    picture.set_data(outputs::to_png(width, height, rgb, true));
+    picture.set_data(outputs::to_png(width, height, rgb, outputs::PngEncoding::fast));
     return picture.SerializeAsString();
   };
   return std::make_shared<const Content>(encode, image->rgb.size());

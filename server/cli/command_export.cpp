@@ -13,7 +13,7 @@
 #include "outputs/output_name.h"
 #include "recording/replay/export.h"
 #include "reports/console.h"
-#include "run/page_folder.h"
+#include "run/files.h"
 #include "text/numbers.h"
 
 namespace ziggurat::cli {

@@ -17,7 +17,7 @@
 #include "processes/limits.h"
 #include "processes/signals.h"
 #include "reports/console.h"
-#include "run/version.h"
+#include "run/build.h"
 #include "scene/reader.h"
 #include "text/numbers.h"
 #include "text/printable.h"

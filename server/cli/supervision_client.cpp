@@ -5,7 +5,7 @@
 #include <chrono>
 #include <utility>
 
-#include "run/version.h"
+#include "run/build.h"
 #include "ziggurat/session.h"
 
 namespace ziggurat::cli {

@@ -10,7 +10,7 @@
 
 #include "cli/arguments.h"
 #include "cli/options.h"
-#include "run/version.h"
+#include "run/build.h"
 #include "sweep/experiment_file.h"
 #include "sweep/folder.h"
 #include "sweep/scene_files.h"

@@ -47,15 +47,10 @@ void check_can_be_written(const std::string& path) {
   }
 }
 
-bool has_name(int descriptor) {
-  struct stat status {};
-  return ::fstat(descriptor, &status) != 0 || status.st_nlink > 0;
-}
-
-std::optional<std::string> loss_of(int descriptor, bool had_name, std::uint64_t size) {
+std::optional<std::string> loss_of(int descriptor, std::uint64_t size) {
   struct stat status {};
   if (::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
-  if (had_name && status.st_nlink == 0) return "was removed while it was written, and is lost";
+  if (status.st_nlink == 0) return "was removed while it was written, and is lost";
   const auto now = static_cast<std::uint64_t>(status.st_size);
   if (now >= size) return std::nullopt;
   return fmt::format(
@@ -66,7 +61,6 @@ std::optional<std::string> loss_of(int descriptor, bool had_name, std::uint64_t 
 OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
   descriptor_ = path_ == "-" ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3) : open_alone(path_);
   if (descriptor_ < 0) fail(path_, errno);
-  has_name_ = has_name(descriptor_);
 }
 
 OutputFile::~OutputFile() {
@@ -80,7 +74,7 @@ void OutputFile::written() {
 void OutputFile::close() {
   if (descriptor_ < 0) return;
   flush();
-  const auto loss = loss_of(descriptor_, has_name_, size_);
+  const auto loss = loss_of(descriptor_, size_);
   // Some file systems report a full disk only here.
   if (::close(std::exchange(descriptor_, -1)) != 0) fail(path_, errno);
   if (loss) throw WriteError(fmt::format("{}: {}", path_, *loss));

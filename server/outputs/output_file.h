@@ -26,14 +26,10 @@ int open_alone(const std::string& path, int flags = 0);
 /// @throws WriteError
 void check_can_be_written(const std::string& path);
 
-/// Whether an open file has a name, by which it can be found when it is closed.
-bool has_name(int descriptor);
-
 /// Description of the damage to a file of open_alone() by another program, which removed or
 /// shortened it; none: it is whole.
-/// @param had_name  when it was opened
-/// @param size      of the written content [bytes]
-std::optional<std::string> loss_of(int descriptor, bool had_name, std::uint64_t size);
+/// @param size  of the written content [bytes]
+std::optional<std::string> loss_of(int descriptor, std::uint64_t size);
 
 class OutputFile {
  public:
@@ -61,7 +57,6 @@ class OutputFile {
  private:
   std::string path_;
   int descriptor_ = -1;
-  bool has_name_ = true;
   std::uint64_t size_ = 0;  // of what was written [bytes]
   fmt::memory_buffer buffer_;
 };

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "outputs/json.h"
-#include "outputs/reading_cameras.h"
+#include "outputs/reading.h"
 #include "ziggurat/v1/envelope.h"
 #include "ziggurat/v1/recording.pb.h"
 

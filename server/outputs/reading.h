@@ -18,7 +18,9 @@ struct Moment {
   const world::Commands& commands;
 };
 
-v1::Color color_of(world::Color packed);
+/// The robot that a camera belongs to.
+/// @param camera  into Layout::cameras
+const world::RobotLayout& robot_with(std::size_t camera, const world::Layout& layout);
 
 /// @param robot  into Layout::robots
 v1::Reading make_reading(const Moment& moment, std::size_t robot);

@@ -16,12 +16,12 @@ void Trace::name_rows(const world::State& state) {
   last_tick_ = state.tick;
   for (; entities_ < layout_.entities.size(); ++entities_) {
     const auto& entity = layout_.entities[entities_];
-    rows_.push_back({fmt::format(",{},,", text::csv_field(entity.id)), entities_, true, entities_});
+    rows_.push_back({fmt::format(",{},,", text::csv_field(entity.id)), entities_, {}});
     if (!entity.lists_links) continue;
     for (std::size_t l = entity.links.begin; l < entity.links.end(); ++l) {
       rows_.push_back(
           {fmt::format(",{},{},", text::csv_field(entity.id), text::csv_field(layout_.links[l].id)),
-           entities_, false, l});
+           entities_, l});
     }
   }
 }
@@ -43,7 +43,7 @@ void Trace::write(const world::State& state) {
   auto& buffer = file_.buffer();
   for (const Row& row : rows_) {
     if (state.is_absent(row.entity)) continue;
-    const math::Pose& pose = row.origin ? state.origins[row.index] : state.links[row.index].pose;
+    const math::Pose& pose = row.link ? state.links[*row.link].pose : state.origins[row.entity];
     const auto& p = pose.position;
     const auto& q = pose.orientation;
     buffer.append(when);

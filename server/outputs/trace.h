@@ -2,6 +2,7 @@
 // World poses of all links over time: `--trace`, a CSV file.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,7 @@ class Trace {
   struct Row {
     std::string names;  ///< `,entity,link,` as it stands in the file
     std::size_t entity;
-    bool origin;  ///< whether `index` counts State::origins or State::links
-    std::size_t index;
+    std::optional<std::size_t> link;  ///< none: the origin of the entity
   };
 
   const world::Layout& layout_;

@@ -25,13 +25,7 @@
 namespace ziggurat::processes {
 namespace {
 
-enum class Kind : std::int32_t {
-  end_group,
-  forget_group,
-  remove_dead_socket,
-  remove_folder,
-  remove_empty_folder
-};
+enum class Kind : std::int32_t { end_group, forget_group, remove_dead_socket, remove_folder };
 
 /// One write to the pipe: shorter than PIPE_BUF, so that orders of several processes do not mix.
 struct Order {
@@ -59,7 +53,7 @@ void send_path(int pipe, Kind kind, const std::string& path) noexcept {
 /// Processes, sockets and folders that remain if the watched process ends now.
 struct Left {
   std::vector<pid_t> groups;
-  std::vector<std::string> sockets, folders, empty_folders;
+  std::vector<std::string> sockets, folders;
 };
 
 void take(const Order& order, Left& left) {
@@ -75,9 +69,6 @@ void take(const Order& order, Left& left) {
       break;
     case Kind::remove_folder:
       left.folders.emplace_back(order.path);
-      break;
-    case Kind::remove_empty_folder:
-      left.empty_folders.emplace_back(order.path);
       break;
   }
 }
@@ -110,7 +101,6 @@ void clean_up(const Left& left) {
     if (is_dead_socket(socket)) ::unlink(socket.c_str());
   }
   for (const std::string& folder : left.folders) remove_locked_folder(folder);
-  for (const std::string& folder : left.empty_folders) ::rmdir(folder.c_str());
 }
 
 /// The next order; none at the end of the pipe.
@@ -215,10 +205,6 @@ void Guardian::remove_dead_socket(const std::string& path) const noexcept {
 
 void Guardian::remove_folder(const std::string& path) const noexcept {
   send_path(orders_, Kind::remove_folder, path);
-}
-
-void Guardian::remove_empty_folder(const std::string& path) const noexcept {
-  send_path(orders_, Kind::remove_empty_folder, path);
 }
 
 }  // namespace ziggurat::processes

@@ -34,8 +34,6 @@ class Guardian {
   void remove_dead_socket(const std::string& path) const noexcept;
   /// Removes this folder with everything in it.
   void remove_folder(const std::string& path) const noexcept;
-  /// Removes this folder if nothing is left in it then.
-  void remove_empty_folder(const std::string& path) const noexcept;
 
  private:
   int orders_ = -1;  ///< the pipe's end for writing, closed by exec()

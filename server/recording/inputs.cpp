@@ -280,9 +280,8 @@ std::optional<std::string> unpack(const v1::Commands& from, const world::Layout&
   return fault ? fault : read_pushes(from, layout, state, to.pushes);
 }
 
-void StatePacker::pack(std::uint64_t epoch, const world::State& state, bool is_complete,
-                       v1::ExactState& to) {
-  is_complete = is_complete || last_.size() != state.links.size();
+void StatePacker::pack(std::uint64_t epoch, const world::State& state, v1::ExactState& to) {
+  const bool is_complete = last_.size() != state.links.size();
   to.set_epoch(epoch);
   to.set_tick(state.tick);
   to.set_is_complete(is_complete);

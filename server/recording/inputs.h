@@ -43,10 +43,9 @@ std::optional<std::string> unpack(const v1::Commands& from, const world::Layout&
 /// Packs the links of one tick after the other.
 class StatePacker {
  public:
-  /// @param is_complete  all links; otherwise those with other bits than in the call before, or all
-  ///                     if their number has changed
-  /// @param to           is empty before
-  void pack(std::uint64_t epoch, const world::State& state, bool is_complete, v1::ExactState& to);
+  /// Links with other bits than in the call before; all if their number has changed.
+  /// @param to  is empty before
+  void pack(std::uint64_t epoch, const world::State& state, v1::ExactState& to);
 
  private:
   std::vector<world::LinkState> last_;

@@ -7,11 +7,10 @@
 
 #include "processes/python_package.h"
 #include "processes/scripts.h"
-#include "recording/replay/recording_error.h"
-#include "recording/replay/scene.h"
+#include "recording/replay/recording_file.h"
 #include "rerun/embedded_scripts.h"
 #include "rerun/recorded_world.h"
-#include "run/controller_option.h"
+#include "run/options/controller_option.h"
 #include "run/setup.h"
 #include "text/numbers.h"
 
@@ -32,7 +31,7 @@ std::size_t robot_named(const world::Layout& layout, const std::string& id) {
 ControllerCheck::ControllerCheck(const ControllerCheckOptions& options, processes::Signals& signals)
     : options_(options),
       signals_(signals),
-      console_({options.quiet, false}),
+      console_({.quiet = options.quiet}),
       file_(options.recording),
       folder_(signals.guardian()),
       world_(build_world()),
@@ -42,35 +41,18 @@ ControllerCheck::ControllerCheck(const ControllerCheckOptions& options, processe
       callers_(server_),
       population_({}, world_, server_, callers_, controllers_, console_),
       supervision_({}, world_, server_, callers_, population_),
-      watch_({{}, false, false, false, file_.states(), {}}, world_, server_, controllers_,
-             supervision_, signals, console_, nullptr, [](auto...) {}) {}
+      watch_({.metrics = {}, .ticks = file_.states(), .restarts = {}}, world_, server_,
+             controllers_, supervision_, signals, console_, nullptr, [](auto...) {}) {}
 
-/// The commands of the recording are replaced by the user's own: none of them is left by itself.
 supervision::World ControllerCheck::build_world() {
   if (options_.until) check_until(file_, *options_.until);
-  const v1::RunStart& run = file_.run();
-  scene::OpenScene opened = replay::read_scene(run, file_.files());
-  const auto recorded = [&](const std::string& id) {
-    for (const auto& each : run.controllers()) {
-      if (each.id() == id) return each.command();
-    }
-    return std::string();
-  };
-  for (scene::Controller& controller : opened.scene.controllers) {
-    controller.command = options_.trusts_commands ? recorded(controller.id) : std::string();
-  }
-  for (const auto& [id, command] : options_.controllers) {
-    const auto found = std::ranges::find(opened.scene.controllers, id, &scene::Controller::id);
-    if (found == opened.scene.controllers.end()) {
-      throw text::UsageError(fmt::format("--controller: the recording has no controller '{}'", id));
-    }
-    run::check_command(id, command);
-    found->command = command;
-  }
-  if (!options_.command.empty()) {
-    opened.scene.controllers[tried_controller(opened.scene)].command = options_.command;
-  }
-  return {run.scene(), std::move(opened), run.seed(), {}, run.scene_hash()};
+  return build_recorded(file_, [&](scene::Scene& scene) {
+    for (const auto& [id, command] : options_.controllers)
+      run::controller_named("--controller", id, scene);
+    set_commands(scene, file_.run(), {options_.trusts_commands, options_.controllers});
+    if (!options_.command.empty())
+      scene.controllers[tried_controller(scene)].command = options_.command;
+  });
 }
 
 /// The controller of the robot that is tried.
@@ -121,7 +103,7 @@ bool ControllerCheck::is_checked(std::size_t robot) const {
 network::Config ControllerCheck::config() const {
   network::Config config;
   config.private_endpoint = "ipc://" + folder_.path() + "/run";
-  config.deadlines.assign(world_.scene.controllers.size(), {scene::DeadlinePolicy{}, true});
+  config.deadlines.assign(world_.scene.controllers.size(), {.policy = {}, .is_fixed = true});
   return config;
 }
 

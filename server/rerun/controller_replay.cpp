@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-#include "recording/replay/recording_error.h"
+#include "recording/replay/recording_file.h"
 #include "rerun/recorded_world.h"
 #include "rerun/replay_difference.h"
 

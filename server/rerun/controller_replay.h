@@ -11,7 +11,7 @@
 
 #include "network/server.h"
 #include "processes/controllers.h"
-#include "recording/replay/commands_difference.h"
+#include "recording/replay/difference.h"
 #include "recording/replay/recording_file.h"
 #include "recording/replay/replay.h"
 #include "run/watch.h"

@@ -228,8 +228,8 @@ std::string to_svg(const Divergence& of) {
   panel.title = "how far links are apart";
   panel.x_label = "simulated time [s]";
   panel.y_label = "distance [m]";
-  panel.curves = {{"the farthest link", "#c1272d", false, {}},
-                  {"mean of all links", "#0050a0", true, {}}};
+  panel.curves = {{.name = "the farthest link", .color = "#c1272d", .y = {}},
+                  {.name = "mean of all links", .color = "#0050a0", .dashed = true, .y = {}}};
   for (const Divergence::State* state : some(of.states, most_points)) {
     if (state->time_s <= 0) continue;
     panel.x.push_back(state->time_s);

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "processes/scripts.h"
-#include "recording/replay/recording_error.h"
+#include "recording/replay/recording_file.h"
 
 namespace ziggurat::rerun {
 namespace {

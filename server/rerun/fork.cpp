@@ -11,11 +11,10 @@
 #include <utility>
 
 #include "processes/scripts.h"
-#include "recording/replay/recording_error.h"
+#include "recording/replay/recording_file.h"
 #include "recording/replay/scene.h"
 #include "rerun/embedded_scripts.h"
 #include "rerun/recorded_world.h"
-#include "run/controller_option.h"
 #include "run/files.h"
 #include "run/loading.h"
 #include "text/numbers.h"
@@ -94,27 +93,12 @@ bool Fork::changes_world() const {
          seed_ != file_.run().seed();
 }
 
-/// Sets the commands of the user; no command of the recording starts by itself.
-void Fork::set_commands(scene::Scene& scene) const {
-  const auto& recorded = file_.run().controllers();
-  for (scene::Controller& controller : scene.controllers) {
-    const auto found =
-        std::ranges::find(recorded, controller.id, [](const auto& each) { return each.id(); });
-    const bool is_trusted = fork_options_.trusts_commands && found != recorded.end();
-    controller.command = is_trusted ? found->command() : std::string();
-  }
-  for (scene::Director& director : scene.directors) {
-    if (!fork_options_.trusts_commands) director.command.clear();
-  }
-  for (const auto& [id, command] : options_.controllers) run::set_command(scene, id, command);
-}
-
 std::unique_ptr<supervision::World> Fork::build(const run::TellLoading& tell, reports::Console&) {
   tell(0, "The scene is being read.");
   const v1::RunStart& run = file_.run();
   seed_ = run::choose_seed(options_, run.seed());
   scene::OpenScene opened = replay::read_scene(run, files_, options_.scene_file.variation);
-  set_commands(opened.scene);
+  set_commands(opened.scene, run, {fork_options_.trusts_commands, options_.controllers});
   const std::string hash =
       changes_world() ? replay::scene_hash(opened.scene, files_) : run.scene_hash();
   auto world = std::make_unique<supervision::World>(run.scene(), std::move(opened), seed_,
@@ -130,13 +114,8 @@ void Fork::branch(supervision::World& world) const {
 
 /// Puts the world where the recording begins, and checks that it can go on from recorded states.
 void Fork::begin(supervision::World& world) {
-  const v1::RunStart& run = file_.run();
   const bool has_other_values = changes_world();
-  if (has_other_values) {
-    recorded_ =
-        std::make_unique<supervision::World>(run.scene(), replay::read_scene(run, file_.files()),
-                                             run.seed(), simulation::TellStep(), run.scene_hash());
-  }
+  if (has_other_values) recorded_.reset(new supervision::World(build_recorded(file_)));
   supervision::World& recorded_world = recorded_ ? *recorded_ : world;
   begin_as_recorded(file_, recorded_world);
   if (!has_other_values) return;

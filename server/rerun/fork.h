@@ -50,7 +50,6 @@ class Fork final : public run::StartPoint {
   void branch(supervision::World& world) const;
   void use_own_scripts();
   std::string embedded_script(const std::string& name) const;
-  void set_commands(scene::Scene& scene) const;
   std::vector<scene::Director> directors(const supervision::World& world,
                                          const std::string& folder) const;
   void check_commands(const supervision::World& world) const;

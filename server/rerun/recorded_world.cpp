@@ -5,11 +5,34 @@
 #include <algorithm>
 
 #include "recording/mcap/source.h"
-#include "recording/replay/recording_error.h"
+#include "recording/replay/recording_file.h"
 #include "recording/replay/scene.h"
+#include "run/options/controller_option.h"
 #include "text/numbers.h"
 
 namespace ziggurat::rerun {
+
+supervision::World build_recorded(const replay::RecordingFile& file,
+                                  const std::function<void(scene::Scene&)>& change) {
+  const v1::RunStart& run = file.run();
+  scene::OpenScene opened = replay::read_scene(run, file.files());
+  if (change) change(opened.scene);
+  return {run.scene(), std::move(opened), run.seed(), {}, run.scene_hash()};
+}
+
+void set_commands(scene::Scene& scene, const v1::RunStart& run, const Commands& commands) {
+  const auto& recorded = run.controllers();
+  for (scene::Controller& controller : scene.controllers) {
+    const auto found =
+        std::ranges::find(recorded, controller.id, [](const auto& each) { return each.id(); });
+    const bool is_trusted = commands.trusts_recorded && found != recorded.end();
+    controller.command = is_trusted ? found->command() : std::string();
+  }
+  for (scene::Director& director : scene.directors) {
+    if (!commands.trusts_recorded) director.command.clear();
+  }
+  for (const auto& [id, command] : commands.own) run::set_command(scene, id, command);
+}
 
 void begin_as_recorded(const replay::RecordingFile& file, supervision::World& world) {
   replay::check_core(file.run(), world.scene);

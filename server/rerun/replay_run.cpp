@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "outputs/hash_file.h"
-#include "recording/replay/recording_error.h"
+#include "recording/replay/recording_file.h"
 #include "recording/replay/scene.h"
 #include "reports/json_text.h"
 #include "rerun/recorded_world.h"
@@ -29,11 +29,6 @@ constexpr int longest_sleep_ms = 100;  // viewers get their frames meanwhile
 std::optional<double> factor_of(const run::Options& options) {
   if (options.real_time || !options.view) return options.real_time;
   return 1;
-}
-
-supervision::World build_world(const replay::RecordingFile& file) {
-  const v1::RunStart& run = file.run();
-  return {run.scene(), replay::read_scene(run, file.files()), run.seed(), {}, run.scene_hash()};
 }
 
 /// Refuses outputs that need a simulation, not only poses.
@@ -95,7 +90,7 @@ ReplayRun::ReplayRun(const ReplayOptions& options, processes::Signals& signals)
       signals_(signals),
       console_({options.run.quiet, options.run.json}),
       file_(checked(options)),
-      world_(build_world(file_)),
+      world_(build_recorded(file_)),
       recorders_(checked_outputs(options, file_, world_.scene.experiment), world_),
       states_(file_),
       replay_({world_.scene, world_.additions, world_.simulation, world_.seed},

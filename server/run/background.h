@@ -30,7 +30,7 @@ class Background {
       : wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
     if (wake_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
     const auto tell = [this](double progress, std::string message) {
-      publish({false, progress, std::move(message)});
+      publish({.progress = progress, .message = std::move(message)});
     };
     result_ = std::async(std::launch::async, [this, tell, work = std::move(work)] {
       const AtEnd at_end{this};
@@ -59,7 +59,7 @@ class Background {
  private:
   struct AtEnd {
     Background* owner;
-    ~AtEnd() { owner->publish({true, 1, {}}); }
+    ~AtEnd() { owner->publish({.is_done = true, .progress = 1, .message = {}}); }
   };
 
   void publish(Status status) {

@@ -2,8 +2,6 @@
 
 #include <gnu/libc-version.h>
 
-#include "run/version.h"
-
 namespace ziggurat::run {
 namespace {
 

@@ -1,9 +1,11 @@
 #pragma once
-// Build of this program, as far as it may change results.
+// Version of this program, and its build as far as it may change results.
 
 #include "recording/recorder/start.h"
 
 namespace ziggurat::run {
+
+inline constexpr const char* version = ZIGGURAT_VERSION;
 
 recorder::Build this_build();
 

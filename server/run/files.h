@@ -1,6 +1,6 @@
 #pragma once
-// The files that options name: checked before any of them is opened, because opening an output
-// empties it.
+// Files that a run reads and writes. Those that options name are checked before any of them is
+// opened, because opening an output empties it.
 
 #include <string>
 #include <vector>
@@ -33,5 +33,9 @@ void check_outputs(const Options& options, const scene::Scene& scene,
 /// @param fixed  files that they can't change either
 std::vector<std::string> exceptions_of(const Options& options,
                                        const std::vector<std::string>& fixed);
+
+/// Folder of the page's files, beside the program: installed, or built. It is missing if the page
+/// was not built.
+std::string page_folder();
 
 }  // namespace ziggurat::run

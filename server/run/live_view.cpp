@@ -6,8 +6,8 @@
 #include <iterator>
 #include <utility>
 
-#include "run/page_folder.h"
-#include "run/version.h"
+#include "run/build.h"
+#include "run/files.h"
 
 namespace ziggurat::run {
 namespace {
@@ -113,9 +113,12 @@ void LiveView::populate() {
                     world.simulation.state()});
 }
 
-void LiveView::show(const std::vector<std::uint32_t>& wanted, bool all) {
-  if (wanted.empty()) return;
-  server_.show(moment(), {wanted, all ? wanted : std::vector<std::uint32_t>(), wants(Kind::image)});
+void LiveView::show_tick() {
+  if (!wanted_.empty()) server_.show(moment(), {wanted_, {}, wants(Kind::image)});
+}
+
+void LiveView::show_all(const std::vector<std::uint32_t>& wanted) {
+  if (!wanted.empty()) server_.show(moment(), {wanted, wanted, wants(Kind::image)});
 }
 
 void LiveView::tick(const std::array<double, supervision::phase_count>& phases) {
@@ -128,7 +131,7 @@ void LiveView::tick(const std::array<double, supervision::phase_count>& phases) 
   if (now - last_frame_ < least) return;
   last_frame_ = now;
   is_current_ = true;
-  show(wanted_, false);
+  show_tick();
 }
 
 void LiveView::answered() {
@@ -140,7 +143,7 @@ void LiveView::restarted() {
   populate();
   seen_changes_ = run_.changes();
   is_current_ = true;
-  show(wanted_, true);
+  show_all(wanted_);
 }
 
 void LiveView::log(channels::Severity severity, std::string_view name, std::string_view text) {
@@ -181,7 +184,7 @@ void LiveView::apply(const view::Parameter& parameter) {
   (parameter.name == "draw_labels" ? layers_.labels : layers_.frusta) =
       std::get<bool>(parameter.value);
   server_.set_layers(layers_);
-  show(wanted_, true);
+  show_all(wanted_);
 }
 
 void LiveView::set_speed(double factor) {
@@ -195,7 +198,7 @@ void LiveView::update() {
     seen_changes_ = run_.changes();
     populate();
     is_current_ = true;
-    show(wanted_, true);
+    show_all(wanted_);
   }
   if (!has_viewers()) return;
   const auto now = clock::now();
@@ -206,13 +209,13 @@ void LiveView::update() {
     std::vector<std::uint32_t> still_wanted;
     std::ranges::set_intersection(wanted_, fresh_, std::back_inserter(still_wanted));
     fresh_.clear();
-    show(still_wanted, true);
+    show_all(still_wanted);
   }
   const std::chrono::duration<double> least(0.9 / frames_per_second_);
   if (!is_current_ && !wanted_.empty() && now - last_frame_ >= least) {  // while the world waits
     last_frame_ = now;
     is_current_ = true;
-    show(wanted_, false);
+    show_tick();
   }
   const auto phase = is_over_           ? wire::Status::Phase::ending
                      : run_.is_paused() ? wire::Status::Phase::paused

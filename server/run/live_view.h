@@ -82,8 +82,9 @@ class LiveView {
   void apply(const view::Parameter& parameter);
   void set_speed(double factor);
   void populate();
-  /// @param all  latched messages and commands, too
-  void show(const std::vector<std::uint32_t>& wanted, bool all);
+  void show_tick();
+  /// Latched messages and commands, too.
+  void show_all(const std::vector<std::uint32_t>& wanted);
   void show_barrier();
   bool wants(channels::Kind kind) const { return kinds_.test(channels::index_of(kind)); }
   channels::Moment moment() const;

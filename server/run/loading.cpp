@@ -9,7 +9,7 @@
 
 #include "processes/commands.h"
 #include "processes/scripts.h"
-#include "run/controller_option.h"
+#include "run/options/controller_option.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {

@@ -1,8 +1,6 @@
 #include "run/local_endpoints.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -30,23 +28,12 @@ std::string short_name(const std::string& scene) {
   return name.empty() || name[0] == '.' ? "scene" : name;
 }
 
-/// Opens the folder, which is made if it is not there, and keeps others from removing it until it
-/// is closed. Not open unless only this user can enter it.
-posix::Descriptor open_private(const std::string& folder) {
-  for (;;) {
-    ::mkdir(folder.c_str(), 0700);
-    posix::Descriptor opened(
-        ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
-    struct stat here {
-    }, there{};
-    if (!opened.is_open() || ::fstat(opened.number(), &here) != 0) return {};
-    // Before the lock: another user could hold it.
-    if (here.st_uid != ::geteuid() || (here.st_mode & 077) != 0) return {};
-    if (::flock(opened.number(), LOCK_SH) != 0) return {};
-    const bool is_same = ::stat(folder.c_str(), &there) == 0 && here.st_ino == there.st_ino &&
-                         here.st_dev == there.st_dev;
-    if (is_same) return opened;  // otherwise another server has just removed it
-  }
+/// Makes the folder, unless it is there. Whether only this user can enter it.
+bool make_private(const std::string& folder) {
+  ::mkdir(folder.c_str(), 0700);
+  struct stat status {};
+  return ::lstat(folder.c_str(), &status) == 0 && S_ISDIR(status.st_mode) &&
+         status.st_uid == ::geteuid() && (status.st_mode & 077) == 0;
 }
 
 /// Sockets whose server was killed, and its guardian with it: the process in their name is gone.
@@ -65,15 +52,6 @@ void remove_left_sockets(const std::string& folder) {
 
 }  // namespace
 
-void LocalEndpoints::release() {
-  // No other server uses it.
-  if (opened_.is_open() && ::flock(opened_.number(), LOCK_EX | LOCK_NB) == 0) {
-    ::rmdir(shared_.c_str());
-  }
-  opened_ = {};
-  folders_.clear();
-}
-
 std::string LocalEndpoints::any() {
   return "ipc://" + folders_.emplace_back(guardian_).path() + "/socket";
 }
@@ -86,12 +64,8 @@ std::string LocalEndpoints::of_server(const std::string& scene) {
   parents.push_back(fmt::format("/tmp/ziggurat-{}", ::geteuid()));
   for (const std::string& folder : parents) {
     const std::string path = fmt::format("{}/{}-{}", folder, short_name(scene), ::getpid());
-    if (path.size() > longest_path) continue;
-    opened_ = open_private(folder);
-    if (!opened_.is_open()) continue;
+    if (path.size() > longest_path || !make_private(folder)) continue;
     remove_left_sockets(folder);
-    shared_ = folder;
-    if (guardian_ != nullptr) guardian_->remove_empty_folder(folder);
     return "ipc://" + path;
   }
   return any();

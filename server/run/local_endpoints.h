@@ -4,7 +4,6 @@
 #include <list>
 #include <string>
 
-#include "posix/descriptor.h"
 #include "processes/guardian.h"
 #include "processes/private_folder.h"
 
@@ -14,15 +13,11 @@ class LocalEndpoints {
  public:
   /// @param guardian  removes what is left if this program is killed; null: none
   explicit LocalEndpoints(const processes::Guardian* guardian) : guardian_(guardian) {}
-  /// Removes what is empty. The server has removed its sockets by then.
-  ~LocalEndpoints() { release(); }
-  LocalEndpoints(const LocalEndpoints&) = delete;
-  LocalEndpoints& operator=(const LocalEndpoints&) = delete;
 
   /// The same as the destructor, for a program that ends without it.
-  void release();
+  void release() { folders_.clear(); }
 
-  /// For `ipc://*`: anywhere.
+  /// For `ipc://*`: in a folder of its own.
   std::string any();
   /// Endpoint of `serve` by default, at which clients of this user find it. Its folder is
   /// $XDG_RUNTIME_DIR/ziggurat, otherwise /tmp/ziggurat-UID, both with mode 0700. If another user
@@ -33,8 +28,6 @@ class LocalEndpoints {
  private:
   const processes::Guardian* guardian_;
   std::list<processes::PrivateFolder> folders_;
-  std::string shared_;        ///< the folder of of_server()
-  posix::Descriptor opened_;  ///< the same
 };
 
 }  // namespace ziggurat::run

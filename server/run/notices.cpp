@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "run/client_scopes.h"
+#include "run/options/option_checks.h"
 #include "run/run.h"
 #include "simulation/scene_warnings.h"
 

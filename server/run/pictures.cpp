@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "outputs/png.h"
+#include "outputs/images.h"
 #include "run/loading.h"
 #include "text/names.h"
 #include "text/numbers.h"

@@ -1,6 +1,8 @@
 #include "run/recorders.h"
 
 #include <chrono>
+#include <condition_variable>
+#include <stop_token>
 #include <utility>
 
 namespace ziggurat::run {
@@ -9,6 +11,17 @@ namespace {
 // Shorter than processes::Signals::patience: when the program is ended by force in a long tick, all
 // that was written before is on the disk.
 constexpr std::chrono::milliseconds flush_interval{400};
+
+/// Calls it again and again, until it is stopped. It must not throw.
+template <class Call>
+std::jthread call_each(std::chrono::milliseconds interval, Call call) {
+  return std::jthread([interval, call](const std::stop_token& stop) {
+    std::mutex mutex;
+    std::condition_variable_any end;
+    std::unique_lock lock(mutex);
+    while (end.wait_for(lock, stop, interval, [] { return false; }), !stop.stop_requested()) call();
+  });
+}
 
 }  // namespace
 
@@ -28,7 +41,7 @@ Recorders::Recorders(const Options& options, const supervision::World& world) {
   }
   if (!options.images.empty()) images_.emplace(options.images, layout);
   const bool writes_each_tick = trace_ || hashes_ || readings_ || rays_;
-  if (writes_each_tick) flushing_.emplace(flush_interval, [this] { flush(); });
+  if (writes_each_tick) flushing_ = call_each(flush_interval, [this] { flush(); });
 }
 
 void Recorders::flush() {
@@ -66,7 +79,7 @@ void Recorders::exchange(const world::State& state, const world::Observations& o
 }
 
 void Recorders::close() {
-  flushing_.reset();
+  flushing_ = {};
   std::exception_ptr first = std::exchange(failed_flush_, nullptr);
   const auto close = [&](auto& file) {
     if (!file) return;

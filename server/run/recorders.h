@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <thread>
 
 #include "outputs/hash_file.h"
 #include "outputs/images.h"
@@ -15,7 +16,6 @@
 #include "reports/report_card.h"
 #include "reports/summary.h"
 #include "run/options.h"
-#include "run/periodic_task.h"
 #include "run/pictures.h"
 #include "simulation/simulation.h"
 #include "supervision/world.h"
@@ -73,7 +73,7 @@ class Recorders {
   std::string (*report_card_text_)(const reports::ReportCard& card) = nullptr;
   std::optional<outputs::Images> images_;
   std::optional<Pictures> pictures_;
-  std::optional<PeriodicTask> flushing_;  ///< the last: it uses the others
+  std::jthread flushing_;  ///< the last: it uses the others
 };
 
 }  // namespace ziggurat::run

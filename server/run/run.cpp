@@ -12,11 +12,10 @@
 #include "processes/python_package.h"
 #include "processes/scripts.h"
 #include "run/background.h"
-#include "run/client_options.h"
+#include "run/build.h"
 #include "run/files.h"
-#include "run/gate_option.h"
+#include "run/options/option_checks.h"
 #include "run/setup.h"
-#include "run/version.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
@@ -77,8 +76,12 @@ Run::Run(const Options& options, StartPoint& start, Service service, processes::
       schedule_(plan_.real_time, world_.simulation.tick_length()),
       live_view_(make_showing(options, shown(world_, server_, callers_, supervision_, schedule_,
                                              plan_.ticks.value_or(0)))),
-      watch_({options.metrics, options.insecure, options.fail_fast, service == Service::serve,
-              plan_.ticks, restarts_of(options.restarts, world_.scene)},
+      watch_({.metrics = options.metrics,
+              .insecure = options.insecure,
+              .fail_fast = options.fail_fast,
+              .waits_for_clients = service == Service::serve,
+              .ticks = plan_.ticks,
+              .restarts = restarts_of(options.restarts, world_.scene)},
              world_, server_, controllers_, supervision_, signals, console_, live_view_.get(),
              [this](auto severity, auto name, auto text) {
                if (live_view_) live_view_->log(severity, name, text);

@@ -13,7 +13,7 @@
 
 #include "processes/scripts.h"
 #include "reports/json_text.h"
-#include "run/version.h"
+#include "run/build.h"
 #include "text/numbers.h"
 #include "text/quoting.h"
 

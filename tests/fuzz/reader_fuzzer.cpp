@@ -31,7 +31,7 @@ fuzz::Recorded record() {
     inputs.set_hash(i + 1);
     state.tick = i;
     state.links[i % 2].pose.position.x() += 0.5;
-    links.pack(0, state, i == 0, run.states.emplace_back());
+    links.pack(0, state, run.states.emplace_back());
     inputs.add_acts()->mutable_move()->set_entity("box");
     commands.joint_targets = {0.5, static_cast<double>(i)};
     commands.led_colors = {0xFF0000};

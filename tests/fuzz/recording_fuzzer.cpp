@@ -26,7 +26,7 @@ fuzz::Recorded record() {
     v1::Inputs& next = run.inputs.emplace_back();
     next.set_tick(world.state().tick);
     next.set_hash(world.hash());
-    links.pack(0, world.state(), i == 0, run.states.emplace_back());
+    links.pack(0, world.state(), run.states.emplace_back());
     if (i == 1) next.add_acts()->mutable_spawn()->set_xml(fuzz::small_box);
     if (i == 1) next.add_acts()->mutable_snapshot()->set_name("a");
     if (i == 2) next.add_acts()->mutable_remove()->set_entity("new");

@@ -13,7 +13,7 @@
 #include "network/keys.h"
 #include "reports/gate.h"
 #include "require.h"
-#include "run/deadline_option.h"
+#include "run/options/deadline_option.h"
 #include "text/numbers.h"
 
 namespace {

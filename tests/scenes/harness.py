@@ -63,8 +63,10 @@ class SceneTest(unittest.TestCase):
             shutil.rmtree(self.folder, ignore_errors=True)
 
     def wait_for_guardian(self):
-        """The guardian of a program that was killed cleans up a moment later."""
-        wait_until(lambda: not any(self.runtime.iterdir()), "the runtime folder is empty")
+        """The guardian of a program that was killed cleans up a moment later; the folder that servers share stays."""
+        shared = self.runtime / "ziggurat"
+        wait_until(lambda: all(path == shared and not any(shared.iterdir()) for path in self.runtime.iterdir()),
+                   "the runtime folder is empty")
 
     # --- scenes ---------------------------------------------------------------------------------
 

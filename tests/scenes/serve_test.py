@@ -97,7 +97,7 @@ class Serve(SceneTest):
         (folder / "dead-4194999").unlink()
         process.kill()
         process.wait()
-        self.wait_for(folder.exists, lambda there: not there, "removal of the socket and its folder")
+        self.wait_for(path.exists, lambda there: not there, "removal of the socket")
 
     def test_a_folder_that_others_can_enter_is_not_used(self):
         folder = self.runtime / "ziggurat"

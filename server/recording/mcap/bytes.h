@@ -1,6 +1,8 @@
 #pragma once
-// Little-endian numbers and texts with their lengths, to bytes and back. Reading checks every
-// length against what is left.
+// Little-endian numbers and texts with their lengths, to bytes and back, and the CRC of bytes.
+// Reading checks every length against what is left.
+
+#include <zlib.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +11,12 @@
 #include <type_traits>
 
 namespace ziggurat::mcap {
+
+/// The CRC-32 of zlib. @param so_far  of the bytes before
+inline std::uint32_t crc32(std::string_view bytes, std::uint32_t so_far = 0) {
+  return static_cast<std::uint32_t>(
+      ::crc32_z(so_far, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
 
 template <class Number>
 void put(Number value, std::string& to) {

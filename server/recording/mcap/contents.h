@@ -38,11 +38,19 @@ struct Contents {
   Statistics statistics;
 
   /// The channel with this topic; null: there is none.
-  const Channel* channel_of(std::string_view topic) const;
-  /// The attachment with this name; of several the last one; null: there is none.
-  const AttachmentIndex* attachment_named(std::string_view name) const;
+  const Channel* channel_of(std::string_view topic) const {
+    for (const auto& [id, channel] : channels) {
+      if (channel.topic == topic) return &channel;
+    }
+    return nullptr;
+  }
   /// Number of messages of a channel; 0 if the statistics leave it out.
-  std::uint64_t messages_of(std::uint16_t channel) const;
+  std::uint64_t messages_of(std::uint16_t channel) const {
+    for (const auto& [id, count] : statistics.channel_messages) {
+      if (id == channel) return count;
+    }
+    return 0;
+  }
 };
 
 }  // namespace ziggurat::mcap

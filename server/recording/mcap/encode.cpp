@@ -1,7 +1,6 @@
 #include "recording/mcap/encode.h"
 
 #include "recording/mcap/bytes.h"
-#include "recording/mcap/crc.h"
 
 namespace ziggurat::mcap {
 namespace {

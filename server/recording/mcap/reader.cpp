@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "recording/mcap/bytes.h"
 #include "recording/mcap/compression.h"
-#include "recording/mcap/crc.h"
 #include "recording/mcap/scan.h"
 #include "recording/mcap/summary.h"
 

@@ -8,8 +8,8 @@
 #include <set>
 #include <utility>
 
+#include "recording/mcap/bytes.h"
 #include "recording/mcap/compression.h"
-#include "recording/mcap/crc.h"
 #include "recording/mcap/decode.h"
 #include "recording/mcap/summary.h"
 

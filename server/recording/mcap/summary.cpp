@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "recording/mcap/crc.h"
+#include "recording/mcap/bytes.h"
 #include "recording/mcap/decode.h"
 
 namespace ziggurat::mcap {

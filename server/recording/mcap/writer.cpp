@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "recording/mcap/bytes.h"
-#include "recording/mcap/crc.h"
 #include "recording/mcap/encode.h"
 
 namespace ziggurat::mcap {

@@ -20,7 +20,6 @@ Disk::Disk(std::string path) : path_(std::move(path)) {
   }
   // A pipe without a reader is an error, not a wait.
   descriptor_ = outputs::open_alone(path_, O_NONBLOCK);
-  has_name_ = outputs::has_name(descriptor_);
   ::fcntl(descriptor_, F_SETFL, O_APPEND);  // from now on writes wait
 }
 
@@ -33,7 +32,7 @@ void Disk::fail(int error) {
 }
 
 void Disk::check_loss() const {
-  const auto loss = outputs::loss_of(descriptor_, has_name_, size_);
+  const auto loss = outputs::loss_of(descriptor_, size_);
   if (loss) throw outputs::WriteError(fmt::format("{}: {}", path_, *loss));
 }
 

@@ -36,7 +36,6 @@ class Disk {
 
   std::string path_;
   int descriptor_ = -1;
-  bool has_name_ = true;
   std::uint64_t size_ = 0;  // of what was written whole [bytes]
   std::atomic<std::uint64_t> taken_ = 0;
   std::atomic<bool> is_abandoned_ = false;

@@ -107,7 +107,7 @@ void Recording::tick(channels::TickCopy& copy) {
   write_messages(Pace::tick);
   if (state_channel_ != 0) {
     exact_.Clear();
-    links_.pack(epoch_, tick_.state, false, exact_);
+    links_.pack(epoch_, tick_.state, exact_);
     write(state_channel_, exact_.SerializeAsString());
   }
   inputs_.Clear();

@@ -1,11 +1,13 @@
 #pragma once
-// Comparison of two states.
+// Comparison of two states, and of a robot's commands with the recorded ones.
 
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
 
+#include "world/commands.h"
+#include "world/layout.h"
 #include "world/state.h"
 
 namespace ziggurat::replay {
@@ -29,5 +31,16 @@ struct Distance {
 };
 /// Distance over the links that both have. All zero if there are none.
 Distance distance(std::span<const world::LinkState> a, std::span<const world::LinkState> b);
+
+struct CommandDifference {
+  std::string device;  ///< as `joint_targets of 'left'`
+  std::string recorded, now;
+};
+
+/// The first value of this robot that differs, bit by bit.
+/// @param robot  into Layout::robots
+std::optional<CommandDifference> first_difference(const world::Layout& layout, std::size_t robot,
+                                                  const world::Commands& recorded,
+                                                  const world::Commands& now);
 
 }  // namespace ziggurat::replay

@@ -17,7 +17,7 @@
 #include "outputs/trace.h"
 #include "recording/inputs.h"
 #include "recording/replay/names.h"
-#include "recording/replay/recording_error.h"
+#include "recording/replay/recording_file.h"
 #include "ziggurat/v1/channels.pb.h"
 
 namespace ziggurat::replay {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "recording/replay/recording_error.h"
+#include "recording/replay/recording_file.h"
 #include "ziggurat/v1/channels.pb.h"
 
 namespace ziggurat::replay {

@@ -8,7 +8,6 @@
 
 #include "recording/decoding.h"
 #include "recording/inputs.h"
-#include "recording/replay/recording_error.h"
 
 namespace ziggurat::replay {
 namespace {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,12 @@
 #include "ziggurat/v1/run.pb.h"
 
 namespace ziggurat::replay {
+
+/// A recording that cannot be read or repeated: a sentence that says what is wrong, and where.
+class RecordingError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 class RecordingFile {
  public:

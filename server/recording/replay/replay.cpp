@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "recording/inputs.h"
-#include "recording/replay/recording_error.h"
+#include "recording/replay/recording_file.h"
 #include "scene/reader.h"
 #include "simulation/joints.h"
 #include "simulation/show.h"

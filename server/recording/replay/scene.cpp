@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "math/hash.h"
-#include "recording/replay/recording_error.h"
+#include "recording/replay/recording_file.h"
 #include "scene/reader.h"
 #include "ziggurat/v1/run.pb.h"
 

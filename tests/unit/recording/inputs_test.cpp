@@ -178,7 +178,7 @@ std::string bits_of(const std::vector<world::LinkState>& links) {
   world::State state;
   state.links = links;
   v1::ExactState message;
-  StatePacker().pack(0, state, true, message);
+  StatePacker().pack(0, state, message);
   return message.SerializeAsString();
 }
 
@@ -188,14 +188,14 @@ TEST(ExactState, GivesBackLinksFromChanges) {
   state.links = {link(0.1), link(0.2), link(0.3)};
   std::vector<world::LinkState> read;
   v1::ExactState first;
-  packer.pack(0, state, false, first);
+  packer.pack(0, state, first);
   EXPECT_TRUE(first.is_complete());
   EXPECT_EQ(unpack(first, read), std::nullopt);
   EXPECT_EQ(bits_of(read), bits_of(state.links));
 
   state.links[1].angular_velocity.z() = -0.0;
   v1::ExactState second;
-  packer.pack(0, state, false, second);
+  packer.pack(0, state, second);
   EXPECT_EQ(second.links_size(), 1);
   EXPECT_EQ(second.links(0), 1u);
   EXPECT_EQ(unpack(second, read), std::nullopt);
@@ -203,7 +203,7 @@ TEST(ExactState, GivesBackLinksFromChanges) {
 
   state.links.push_back(link(0.4));
   v1::ExactState third;
-  packer.pack(0, state, false, third);
+  packer.pack(0, state, third);
   EXPECT_TRUE(third.is_complete());
   EXPECT_EQ(unpack(third, read), std::nullopt);
   EXPECT_EQ(bits_of(read), bits_of(state.links));

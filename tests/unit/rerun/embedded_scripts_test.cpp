@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "recording/replay/recording_error.h"
+#include "recording/replay/recording_file.h"
 #include "temporary_folder.h"
 
 namespace ziggurat::rerun {

@@ -6,7 +6,6 @@
 
 #include "example.h"
 #include "recording/mcap/bytes.h"
-#include "recording/mcap/crc.h"
 #include "recording/mcap/encode.h"
 #include "recording/mcap/scan.h"
 

@@ -30,7 +30,7 @@ TEST(Reader, ReadsWhatWasWritten) {
     EXPECT_EQ(contents.statistics.messages, 9u);
     EXPECT_EQ(contents.messages_of(1), 6u);
     EXPECT_EQ(contents.statistics.end_time, 22u);
-    EXPECT_EQ(reader.attachment(*contents.attachment_named("scene.argos")), "<argos/>");
+    EXPECT_EQ(reader.attachment(contents.attachments.at(0)), "<argos/>");
     EXPECT_EQ(reader.metadata(contents.metadata.at(0)).values, (Map{{"seed", "7"}, {"", ""}}));
     const auto messages = read_all(reader);
     ASSERT_EQ(messages.size(), 9u);

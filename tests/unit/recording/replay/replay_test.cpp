@@ -7,7 +7,7 @@
 
 #include "recorded_run.h"
 #include "recording/replay/difference.h"
-#include "recording/replay/recording_error.h"
+#include "recording/replay/recording_file.h"
 
 namespace ziggurat::replay {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "checkout/checkout.h"
 #include "recorded_run.h"
-#include "recording/replay/recording_error.h"
+#include "recording/replay/recording_file.h"
 #include "scene/reader.h"
 
 namespace ziggurat::replay {

@@ -1,4 +1,4 @@
-#include "run/inject_option.h"
+#include "run/options/inject_option.h"
 
 #include <gtest/gtest.h>
 

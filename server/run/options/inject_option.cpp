@@ -1,4 +1,4 @@
-#include "run/inject_option.h"
+#include "run/options/inject_option.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "run/controller_option.h"
+#include "run/options/controller_option.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {

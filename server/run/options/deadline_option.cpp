@@ -1,11 +1,11 @@
-#include "run/deadline_option.h"
+#include "run/options/deadline_option.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "run/controller_option.h"
+#include "run/options/controller_option.h"
 #include "text/numbers.h"
 
 namespace ziggurat::run {
@@ -64,17 +64,18 @@ DeadlineOption to_deadline(const std::string& value) {
 DeadlinesOfRun deadlines_of(const std::vector<DeadlineOption>& options, const scene::Scene& scene,
                             const scene::DeadlinePolicy& otherwise) {
   DeadlinesOfRun deadlines;
-  deadlines.of_others = {otherwise, false};
+  deadlines.of_others.policy = otherwise;
   const auto add = [&](const auto& from) {
-    deadlines.all.push_back({from.deadline.value_or(otherwise), false});
+    deadlines.all.push_back({.policy = from.deadline.value_or(otherwise)});
   };
   std::ranges::for_each(scene.controllers, add);
   std::ranges::for_each(scene.directors, add);
   apply_by_awaited("--deadline", options, scene, [&](const DeadlineOption& option, std::size_t i) {
-    deadlines.all[i] = {option.policy, true};
+    deadlines.all[i] = {.policy = option.policy, .is_fixed = true};
   });
   for (const DeadlineOption& option : options) {
-    if (option.controller.empty()) deadlines.of_others = {option.policy, true};
+    if (option.controller.empty())
+      deadlines.of_others = {.policy = option.policy, .is_fixed = true};
   }
   return deadlines;
 }

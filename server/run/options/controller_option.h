@@ -24,12 +24,9 @@ std::vector<std::string> ids_of_awaited(const scene::Scene& scene);
 std::vector<std::size_t> awaited_named(std::string_view option, const std::string& id,
                                        const scene::Scene& scene);
 
-/// @throws text::UsageError if no shell could start its program
-void check_command(const std::string& id, const std::string& command);
-
 /// The command of `--controller ID=CMD`, of a controller or director; the script of a director is
 /// not run then.
-/// @throws as awaited_named()
+/// @throws as awaited_named(); text::UsageError if no shell could start the program
 void set_command(scene::Scene& scene, const std::string& id, const std::string& command);
 
 /// Calls apply(option) for every option: first for those without a name, which hold for all, then
@@ -71,5 +68,20 @@ void apply_by_awaited(std::string_view name, const std::vector<Option>& options,
     for (const std::size_t i : awaited_named(name, option.controller, scene)) apply(option, i);
   });
 }
+
+/// --restart [CONTROLLER=]N: controllers that died are started again.
+struct RestartOption {
+  std::string controller;  ///< id in the scene; empty: all
+  unsigned times = 0;      ///< that each of its processes is started again at most
+};
+
+/// @throws text::UsageError
+RestartOption to_restart(const std::string& value);
+
+/// For each controller of the scene, how often each of its processes is started again at most.
+/// Later options win over earlier ones, those that name a controller over those for all.
+/// @throws text::UsageError if the scene has no such controller
+std::vector<unsigned> restarts_of(const std::vector<RestartOption>& options,
+                                  const scene::Scene& scene);
 
 }  // namespace ziggurat::run

@@ -1,4 +1,4 @@
-#include "run/restart_option.h"
+#include "run/options/controller_option.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "run/client_options.h"
+#include "run/options/option_checks.h"
 
 #include <gtest/gtest.h>
 
@@ -80,6 +80,46 @@ TEST_F(ClientOptionsTest, DropsAreAllowedWhereADeadlineDrops) {
   config.deadlines[0].policy = {};
   options.endpoints = {"ipc://x"};
   EXPECT_EQ(refused(), "") << "a client may ask for a deadline";
+}
+
+bool is_refused(const std::string& gate, const GateContext& context) {
+  try {
+    check_gate(reports::parse_gate(gate), context);
+  } catch (const text::UsageError&) {
+    return true;
+  }
+  return false;
+}
+
+TEST(GateOption, ConditionsThatAreAlwaysMetAreRefused) {
+  std::vector<network::Config::Deadline> deadlines(2);
+  EXPECT_TRUE(is_refused("p99<1s,misses<1%", {deadlines, false, true}));
+  EXPECT_TRUE(is_refused("run<2", {deadlines, false, true}));
+  EXPECT_FALSE(is_refused("misses<1%", {deadlines, true, true}))
+      << "a client may ask for a deadline";
+  EXPECT_TRUE(is_refused("late<1", {deadlines, true, false}));
+  EXPECT_FALSE(is_refused("late<1", {deadlines, false, true}));
+  EXPECT_FALSE(is_refused("p99<1s,max<2s,jitter<1s", {deadlines, false, false}));
+  deadlines[1].policy = {scene::DeadlineAction::hold, 50, 0};
+  EXPECT_FALSE(is_refused("misses<1%,run<2", {deadlines, false, false}));
+}
+
+TEST(Scopes, ThatMeanNoRobotOfTheSceneAreDoubted) {
+  scene::Scene scene;
+  scene.controllers.resize(1);
+  scene.controllers[0].id = "wander";
+  world::Layout layout;
+  layout.robots.resize(2);
+  layout.robots[0].id = "scout1";
+  layout.robots[1].id = "r7";
+  network::ClientKey fits{"k", network::all_roles, "Alice", {{"scout*", "r7"}, {"w*"}}};
+  network::ClientKey misspelt{
+      "key of 40 characters", network::all_roles, "", {{"zzz*", "r7", "r8"}, {"wonder"}}};
+  EXPECT_EQ(doubts_of({fits, misspelt}, scene, layout),
+            (std::vector<std::string>{"--curve-clients: robots=zzz*,r8 of the key key of 40 "
+                                      "characters means no robot of the scene",
+                                      "--curve-clients: controllers=wonder of the key key of 40 "
+                                      "characters means no controller of the scene"}));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "run/deadline_option.h"
+#include "run/options/deadline_option.h"
 
 #include <gtest/gtest.h>
 
