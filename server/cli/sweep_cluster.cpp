@@ -1,9 +1,8 @@
-#include "cli/sweep_cluster.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
 
+#include "cli/sweep_options.h"
 #include "recording/output_file.h"
 #include "recording/output_name.h"
 #include "reports/console.h"

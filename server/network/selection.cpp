@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "network/glob.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::network {
 namespace {

@@ -6,12 +6,14 @@
 // share of the rest.
 
 #include <poll.h>
+#include <time.h>
 
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <ratio>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,11 +24,24 @@
 #include "network/link.h"
 #include "network/listener.h"
 #include "network/peer_table.h"
-#include "network/thread_clock.h"
 #include "network/token_bucket.h"
 #include "wire/outbox.h"
 
 namespace ziggurat::network {
+
+/// The processor time of this thread: one that other programs keep from running uses none.
+struct ThreadClock {
+  using rep = std::int64_t;
+  using period = std::nano;
+  using duration = std::chrono::duration<rep, period>;
+  using time_point = std::chrono::time_point<ThreadClock>;
+  static constexpr bool is_steady = true;
+  static time_point now() {
+    timespec time{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return time_point(std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec));
+  }
+};
 
 class Socket {
  public:

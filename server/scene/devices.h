@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "math/pose.h"
-#include "scene/location.h"
+#include "scene/problem.h"
 
 namespace ziggurat::scene {
 

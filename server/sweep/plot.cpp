@@ -16,7 +16,7 @@
 #include "sweep/means.h"
 #include "text/numbers.h"
 #include "text/printable.h"
-#include "text/trim.h"
+#include "text/shortened.h"
 
 namespace ziggurat::sweep {
 namespace {

@@ -15,4 +15,7 @@ std::string shortened(std::string_view text, std::size_t most = 100);
 /// more than 4000, keep their beginning and end, with `…` between.
 std::string shortened_message(std::string_view message);
 
+/// The text without spaces, tabs and line ends at its ends.
+std::string_view trimmed(std::string_view text);
+
 }  // namespace ziggurat::text

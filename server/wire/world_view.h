@@ -8,8 +8,7 @@
 
 #include "scene/scene.h"
 #include "wire/messages.h"
-#include "wire/reading_size.h"
-#include "world/contact.h"
+#include "wire/observation.h"
 #include "world/layout.h"
 #include "world/state.h"
 

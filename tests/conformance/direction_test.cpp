@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "directed_run.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 #include "ziggurat/v1/extent.h"
 
 namespace ziggurat::network {

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "network/answer_times.h"
 #include "network/barrier/calls.h"
 #include "network/barrier/connections.h"
 #include "network/barrier/deadlines.h"
@@ -21,6 +20,7 @@
 #include "network/barrier/sessions.h"
 #include "network/barrier/tick_gate.h"
 #include "network/config.h"
+#include "network/latencies.h"
 #include "network/limits.h"
 #include "network/link.h"
 #include "network/reactions.h"

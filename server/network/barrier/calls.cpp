@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "network/glob.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::network {
 

@@ -11,7 +11,7 @@
 #include "network/barrier/exchange.h"
 #include "network/barrier/peer_messages.h"
 #include "network/barrier/timeouts.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::network {
 

@@ -13,7 +13,7 @@
 #include "network/barrier/peer_messages.h"
 #include "network/barrier/timeouts.h"
 #include "network/glob.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 #include "wire/welcome_size.h"
 
 namespace ziggurat::network {

@@ -6,7 +6,7 @@
 #include "network/barrier/peer_messages.h"
 #include "network/keys.h"
 #include "network/selection.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 #include "wire/welcome_size.h"
 
 namespace ziggurat::network {

@@ -2,8 +2,8 @@
 
 #include <limits>
 
+#include "wire/command.h"
 #include "wire/device_wire.h"
-#include "wire/reset_commands.h"
 
 namespace ziggurat::wire {
 namespace {
