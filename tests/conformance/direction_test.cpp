@@ -7,7 +7,6 @@
 
 #include "directed_run.h"
 #include "wire/messages.h"
-#include "ziggurat/v1/extent.h"
 
 namespace ziggurat::network {
 namespace {
@@ -48,19 +47,6 @@ TEST_F(Directing, R5_ALayoutThatNoMessageCanHoldIsAFatalError) {
   EXPECT_EQ(messages[0].error().code(), v1::Error::TOO_LARGE);
   EXPECT_EQ(messages[0].error().severity(), v1::Error::FATAL);
   EXPECT_EQ(messages[0].error().field(), "subscription");
-}
-
-TEST_F(Directing, R4_AllThatADirectorIsToldOfHasABound) {
-  const wire::Truth truth = boxes.truth();
-  const auto is_told = [&](std::size_t before) {
-    wire::Outbox outbox;
-    wire::WorldView view;
-    for (std::size_t i = 0; i < 2; ++i) wire::consider(view, truth, i, true);
-    view.laid_out = before;
-    return world_layout(outbox, small.run(), truth, view, wire::max_observation_bytes);
-  };
-  EXPECT_TRUE(is_told(v1::most_laid_out - 4096));
-  EXPECT_FALSE(is_told(v1::most_laid_out - 100));
 }
 
 TEST_F(Directing, R3_ASubscriptionHas64PatternsOf256Bytes) {

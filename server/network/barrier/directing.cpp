@@ -14,7 +14,6 @@
 #include "network/barrier/timeouts.h"
 #include "network/glob.h"
 #include "wire/messages.h"
-#include "wire/welcome_size.h"
 
 namespace ziggurat::network {
 
@@ -267,11 +266,6 @@ std::variant<Session*, wire::Refusal> begin_directing(Barrier& barrier, const wi
   if (director == barrier.directors.all.size()) {
     add_from_outside(barrier, hello.director);
   } else {
-    if (!wire::is_decoded(barrier.directors.all[director])) {
-      return refuse(
-          ErrorCode::too_large, "director",
-          "A Welcome with the <params> of this director would be longer than clients decode.");
-    }
     if (auto refusal = check_seat(barrier, director, hello.takeover)) return std::move(*refusal);
     displace(barrier, director, client);
   }

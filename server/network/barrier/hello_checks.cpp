@@ -7,7 +7,7 @@
 #include "network/keys.h"
 #include "network/selection.h"
 #include "wire/messages.h"
-#include "wire/welcome_size.h"
+#include "wire/devices.h"
 
 namespace ziggurat::network {
 
@@ -235,10 +235,10 @@ std::variant<std::vector<std::size_t>, wire::Refusal> grant_robots(Barrier& barr
     if (auto refusal = check_robot(barrier, robot, hello.takeover)) return std::move(*refusal);
   }
   // At last: this takes as long as the Welcome itself.
-  if (!wire::are_decoded(*barrier.run, robots)) {
+  if (!wire::fit_into_welcome(*barrier.run, robots)) {
     return make_refusal(ErrorCode::too_large, "robots",
-                        fmt::format("A Welcome with these {} robots would be longer than clients "
-                                    "decode: ask for fewer in each session "
+                        fmt::format("A Welcome with these {} robots would have more than 64 MiB: "
+                                    "ask for fewer in each session "
                                     "(--lua-processes for scripts).",
                                     robots.size()));
   }
