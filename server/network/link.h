@@ -23,6 +23,12 @@ enum class Delivery {
   congested,    ///< the peer does not read; the message was dropped
 };
 
+/// Kinds of messages that wait: a newer observation takes an older one's place.
+enum class MessageKind { observation, other };
+inline MessageKind kind_of(const wire::Outbox& message) {
+  return message.is_observation() ? MessageKind::observation : MessageKind::other;
+}
+
 /// Sends a message over this connection, without waiting.
 using Send = std::function<Delivery(const std::string& connection, const wire::Outbox& message)>;
 

@@ -61,7 +61,7 @@ class Socket {
 
   // Neither waits.
   Delivery send(const std::string& connection, const wire::Outbox& message);
-  Delivery send(const std::string& connection, std::string_view bytes, bool is_observation);
+  Delivery send(const std::string& connection, std::string_view bytes, MessageKind kind);
 
   /// Sets the standing of a connection.
   /// @param longest  length of its longest message [bytes]
@@ -94,7 +94,7 @@ class Socket {
   struct Entrance {
     Listener listener;
     std::uint64_t id = 0;  ///< in the list of what is ready
-    bool is_private = false;
+    Trust trust = Trust::none;
     bool is_accepting = true;
 
     /// Accepts connections, or leaves new ones waiting in the system.
@@ -110,8 +110,8 @@ class Socket {
     void give_turn(PeerSocket& peer);
   };
 
-  void listen(const std::string& endpoint, bool is_private, bool allows_any);
-  Delivery send(const std::string& connection, std::size_t size, bool is_observation,
+  void listen(const std::string& endpoint, Trust trust);
+  Delivery send(const std::string& connection, std::size_t size, MessageKind kind,
                 const auto& write);
   bool may_serve_others() const { return !is_ticking_ || Clock::now() >= others_wait_until_; }
   Group* next_group();

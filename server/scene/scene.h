@@ -215,7 +215,7 @@ struct Medium {
   std::string id;
   MediumKind kind;
   bool checks_occlusions = true;  ///< range_and_bearing: bodies in between stop packets
-  Location where;
+  Location where = {};
 };
 
 struct Arena {

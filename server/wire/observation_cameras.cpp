@@ -62,8 +62,7 @@ void count_cameras(const Roster& roster, const world::Observations& from,
                    std::span<const std::string> tag_payloads, ReadingSize& to) {
   constexpr std::size_t size_of_led = 1 + 2 * sizeof(double), size_of_tag = 2 + 10 * sizeof(double);
   const auto count_leds = [&](const auto& cameras, const auto& readings) {
-    for_each_camera(cameras, readings,
-                    [&](auto seen) { to.size += seen.size() * size_of_led; });
+    for_each_camera(cameras, readings, [&](auto seen) { to.size += seen.size() * size_of_led; });
   };
   count_leds(roster.led_cameras, from.leds);
   count_leds(roster.directional_led_cameras, from.directional_leds);

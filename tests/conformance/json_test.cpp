@@ -29,7 +29,7 @@ struct Twin : ::testing::Test {
   }
 
   void say(const std::string& peer, const std::string& bytes) {
-    receive(barrier, {peer, bytes, true, all_roles}, &commands);
+    receive(barrier, {.connection = peer, .bytes = bytes}, &commands);
   }
   void publish(std::uint64_t tick) {
     observations = small.observations(tick);
@@ -176,22 +176,25 @@ TEST_F(Twin, T6_DepthIsBounded) {
 
 TEST_F(Twin, T6_SeveralFramesAreAnsweredInTheFormOfTheFirst) {
   for (const auto form : {wire::Encoding::json, wire::Encoding::binary}) {
-    receive(barrier, {"unknown", "x", false, Access{}, 0, form}, &commands);
+    receive(
+        barrier,
+        {.connection = "unknown", .bytes = "x", .is_single_frame = false, .several_frames = form},
+        &commands);
     EXPECT_EQ(inboxes["unknown"].back().starts_with('{'), form == wire::Encoding::json);
   }
   join("p");
-  receive(barrier, {"p", "x", false, Access{}, 0, wire::Encoding::binary}, &commands);
+  receive(barrier, {.connection = "p", .bytes = "x", .is_single_frame = false}, &commands);
   EXPECT_EQ(told("p")["error"]["code"], "MALFORMED") << "in the session's form";
 }
 
 TEST_F(Twin, T6_ABinarySessionMayResumeInJson) {
-  say("p", bytes_of(Peers::hello("*"), false));
+  say("p", bytes_of(Peers::hello("*"), wire::Encoding::binary));
   const auto token = message_of(inboxes["p"].at(0)).welcome().session_token();
   publish(4);
   dead = "p";
   v1::ClientMessage hello = Peers::hello("*");
   hello.mutable_hello()->set_session_token(token);
-  say("q", bytes_of(hello, true));
+  say("q", bytes_of(hello, wire::Encoding::json));
   ASSERT_EQ(inboxes["q"].size(), 2U);
   EXPECT_EQ(told("q")["observation"]["tick"], "4");
   say("q", R"({"command":{"tick":"4"}})");

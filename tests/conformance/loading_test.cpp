@@ -11,7 +11,8 @@ namespace {
 using std::chrono::milliseconds;
 
 struct Loading : ::testing::Test {
-  explicit Loading(const Config& config = {}) : small(2), peers(small, config, true) {
+  explicit Loading(const Config& config = {})
+      : small(2), peers(small, config, Peers::World::loading) {
     peers.barrier.progress = {0.5, "half of it is there"};
   }
   v1::Error refused(const std::string& peer) { return peers.told(peer).refusal().error(); }

@@ -6,8 +6,8 @@
 #include "network/barrier/peer_messages.h"
 #include "network/keys.h"
 #include "network/selection.h"
-#include "wire/messages.h"
 #include "wire/devices.h"
+#include "wire/messages.h"
 
 namespace ziggurat::network {
 

@@ -145,8 +145,8 @@ struct Protected : Keys {
     config.endpoints = {"tcp://127.0.0.1:*"};
     config.private_endpoint = "ipc://" + path("private");
     config.curve = {read_secret_key(path("server.secret")), {}};
-    config.curve->clients.push_back({write_key_pair(path("friend")), {true, false, false}, ""});
-    config.curve->clients.push_back({write_key_pair(path("viewer")), {false, false, true}, ""});
+    config.curve->clients.push_back({write_key_pair(path("friend")), {.controller = true}, ""});
+    config.curve->clients.push_back({write_key_pair(path("viewer")), {.observer = true}, ""});
     write_key_pair(path("unlisted"));
   }
   Options options(const Server& server, const std::string& key, std::size_t endpoint = 1) const {
@@ -289,7 +289,7 @@ TEST_F(Protected, K10_AKeyDrivesOnlyRobotsOfItsScope) {
   const SmallRun small(3);
   config.curve->clients[0].scope = {{"robot1", "robot2"}, {}, true};
   config.curve->clients[1] = {
-      config.curve->clients[1].public_key, {true, false, false}, "", {{}, {"nothing*"}, true}};
+      config.curve->clients[1].public_key, {.controller = true}, "", {{}, {"nothing*"}, true}};
   Server server(config, small.run());
   meanwhile(server, [&] {
     Options from = options(server, "friend");

@@ -96,9 +96,10 @@ class Robot : public Sensors {
  private:
   friend class Fleet;
   friend struct Layout;
+  enum class Severity { info, error };
   struct Line {
     std::uint32_t robot;  // position in the session
-    bool error;
+    Severity severity;
     std::string text;
   };
   struct Log {  // of a session, not yet sent
@@ -108,7 +109,7 @@ class Robot : public Sensors {
     std::map<std::pair<std::uint32_t, std::string>, double>
         metrics;  // by position in the session and name
   };
-  void add_line(bool error, std::string_view text);
+  void add_line(Severity severity, std::string_view text);
 
   std::string id_;
   std::string controller_;
