@@ -1,6 +1,6 @@
 #pragma once
 // Messages about exchange between entities at a tick: rays, detections of cameras, radio messages,
-// contacts.
+// contacts, readings and commands of a robot as in a session of its own.
 
 #include "channels/moment.h"
 #include "wire/roster.h"
@@ -15,8 +15,6 @@ void fill(const Moment& moment, v1::Detections& detections);
 /// Without messages and packets: nothing was received.
 void fill(const Moment& moment, v1::RadioTraffic& traffic);
 void fill(const Moment& moment, v1::Contacts& contacts);
-
-// Each clears the message, whose memory is used again.
 
 /// Pictures are left out: they have channels of their own.
 void fill(const wire::Roster& robot, const Moment& moment, v1::Observation& to);

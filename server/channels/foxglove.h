@@ -1,5 +1,5 @@
 #pragma once
-// The world in Foxglove's messages: shapes locked to frames, and the frames' poses.
+// The world in Foxglove's messages: shapes locked to frames, the frames' poses, and cameras.
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// Line of sight between a camera and the things that it detects.
+// Line of sight between a camera and the things that it detects, and the pictures it takes.
 
 #include <cstddef>
 #include <span>

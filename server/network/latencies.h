@@ -1,5 +1,5 @@
 #pragma once
-// Percentiles of the most recent latencies.
+// Percentiles of the most recent latencies, and the histogram of all response times.
 
 #include <algorithm>
 #include <array>

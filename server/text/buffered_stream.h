@@ -1,6 +1,6 @@
 #pragma once
 // stdout or stderr: writing never waits for its reader. What the reader does not take waits in
-// memory up to a limit; lines beyond it are dropped and counted.
+// memory up to a limit; lines beyond it are dropped and counted. Preparation of these streams.
 
 #include <chrono>
 #include <cstddef>

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers as people write them, for example on a command line.
+// Numbers as people write them, for example on a command line, and durations as they read them.
 
 #include <cstddef>
 #include <cstdint>

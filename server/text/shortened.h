@@ -1,5 +1,5 @@
 #pragma once
-// Long texts of others in a message: a part that tells which text is meant.
+// Texts without a part: long ones of others in a message, and white space at the ends.
 
 #include <cstddef>
 #include <string>

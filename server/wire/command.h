@@ -1,6 +1,7 @@
 #pragma once
-// Command -> world::Commands, and Leave. A message is checked whole before anything of it has
-// effect. The part of radios is in command_radios.cpp, that of channels in devices.cpp.
+// Command -> world::Commands, Leave, and the commands of robots that left. A message is checked
+// whole before anything of it has effect. The part of radios is in command_radios.cpp, that of
+// channels in devices.cpp.
 
 #include <cstddef>
 #include <optional>

@@ -1,5 +1,5 @@
 #pragma once
-// Size limit of a Command for its session: a larger one only costs time of the tick.
+// Cost of decoding a message, estimated before, and the size limit of a Command for its session.
 
 #include <cstddef>
 #include <string_view>

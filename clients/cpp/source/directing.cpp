@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "metric.h"
+#include "convert.h"
 #include "text/printable.h"
 #include "ziggurat/error.h"
 #include "ziggurat/v1/envelope.h"

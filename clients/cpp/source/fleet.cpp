@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "convert.h"
 #include "layout.h"
-#include "metric.h"
 
 namespace ziggurat {
 

@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
+#include "convert.h"
 #include "find.h"
-#include "metric.h"
 #include "text/printable.h"
 #include "ziggurat/v1/envelope.h"
 

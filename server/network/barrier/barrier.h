@@ -2,7 +2,7 @@
 // The lock-step barrier without sockets and clocks: messages of peers and the time in, messages to
 // peers out. It is a set of parts, each of which stands alone. The rules of docs/protocol.md are
 // functions that act on them together: dispatch.h (which message is handled in which state),
-// admission.h, exchange.h, departure.h, population.h, timing.h.
+// admission.h, exchange.h, departure.h, population.h, timeouts.h.
 
 #include <cstdint>
 #include <functional>
@@ -44,7 +44,7 @@ struct Begin {
   std::optional<world::Commands> commands = {};  ///< that hold there; none: nothing was commanded
 };
 
-/// When timing.h has something to do next.
+/// When timeouts.h has something to do next.
 struct Timers {
   Time deadline = never;
   Time heartbeat;

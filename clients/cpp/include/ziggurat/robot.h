@@ -13,14 +13,12 @@
 #include <utility>
 #include <vector>
 
+#include "ziggurat/actuators.h"
 #include "ziggurat/camera.h"
 #include "ziggurat/joint.h"
-#include "ziggurat/led.h"
-#include "ziggurat/magnet.h"
 #include "ziggurat/radio.h"
 #include "ziggurat/range_and_bearing.h"
 #include "ziggurat/sensors.h"
-#include "ziggurat/tag.h"
 #include "ziggurat/turret.h"
 #include "ziggurat/wheels.h"
 
