@@ -7,19 +7,6 @@
 namespace ziggurat::network {
 namespace {
 
-TEST(Hello, H2_AHelloWithoutVersionIsToldThat) {
-  const SmallRun small(1);
-  Peers peers(small);
-  auto hello = Peers::hello("*");
-  hello.mutable_hello()->clear_version();
-  peers.say("p", hello);
-  const auto refusal = peers.told("p").refusal();
-  EXPECT_EQ(refusal.error().code(), v1::Error::VERSION_MISMATCH);
-  EXPECT_EQ(refusal.error().message(),
-            "The Hello has no major version of the protocol; write the one of the client, as 1.4, "
-            "the server's.");
-}
-
 TEST(Hello, H9_AWelcomeHas64MebibytesOfDescriptions) {
   SmallRun small(4);
   const std::string long_value(std::size_t{33} << 20, 'x');
