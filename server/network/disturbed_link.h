@@ -32,7 +32,7 @@ class DisturbedLink {
 
   struct Target {
     std::string id;  ///< in the scene: of a controller or director
-    Injection injection;
+    Injection injection = {};
     bool is_director = false;
   };
   /// @param targets     all controllers of the scene, then its directors

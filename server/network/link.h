@@ -37,7 +37,7 @@ struct Received {
   std::string connection;
   std::string_view bytes;       ///< valid until the next message is received
   bool is_single_frame = true;  ///< a message of the protocol is one ZeroMQ frame
-  Access access;                ///< that the connection has
+  Access access = {};           ///< that the connection has
   /// Bytes of the message that were not kept, because a frame was too long or not its last: there
   /// are no others.
   std::size_t skipped = 0;

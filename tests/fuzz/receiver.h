@@ -27,7 +27,7 @@ inline world::Layout make_layout() {
     robot.range_and_bearing = {layout.range_and_bearing.size(), count == 0 ? 0U : 1U};
     if (count > 0)
       layout.range_and_bearing.push_back(
-          {.range = 1, .data = {devices, count}, .sends = true, .receives = true});
+          {.mount = {}, .range = 1, .data = {devices, count}, .sends = true, .receives = true});
     if (count > 0) {
       robot.wheels = robot.turrets = {layout.wheels.size(), 1};
       layout.wheels.push_back({.entity = 0, .axle_length = 0.14, .drives = true, .measures = true});

@@ -11,12 +11,11 @@
 namespace ziggurat::simulation {
 namespace {
 
+using testing::Base;
 using testing::gravity;
 using testing::robot;
 using testing::SmallScene;
 using testing::wheels;
-
-enum class Base { free, fixed };
 
 std::string box(const std::string& id, const std::string& position, Base base = Base::free) {
   return "<box id=\"" + id + R"(" size=".1,.1,.1" mass="1" movable=")" +

@@ -7,11 +7,10 @@
 namespace ziggurat::simulation {
 namespace {
 
+using testing::Base;
 using testing::ground;
 using testing::robot;
 using testing::SmallScene;
-
-enum class Base { free, fixed };
 
 std::string body(const std::string& id, const std::string& position, Base base = Base::free,
                  const std::string& size = "1,1,1") {

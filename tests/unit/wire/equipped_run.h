@@ -49,7 +49,7 @@ class EquippedRun {
       layout_.imus[i].id = "imu" + std::to_string(i);
       layout_.directional_leds[i].id = "directional" + std::to_string(i);
       layout_.range_and_bearing[i] = {
-          .range = 3.0, .data = {4 * i, 4}, .sends = i != 1, .receives = true};
+          .mount = {}, .range = 3.0, .data = {4 * i, 4}, .sends = i != 1, .receives = true};
       layout_.proximity[i].range = 0.1 * static_cast<double>(i + 1);
     }
     layout_.proximity[0].mount.link = 0;
