@@ -23,8 +23,8 @@ world::Layout layout_for(const Setup& setup) {
       robot.joint_actuators = {layout.joint_actuators.size(), joints};
       for (std::size_t joint = 0; joint < joints; ++joint) {
         const std::string id = "wheel" + std::to_string(joint);
-        layout.joint_sensors.push_back({id, true, false});
-        layout.joint_actuators.push_back({id, true, false, 0.005});
+        layout.joint_sensors.push_back({.id = id, .velocity = true});
+        layout.joint_actuators.push_back({.id = id, .velocity = true, .max_impulse = 0.005});
       }
       layout.robots.push_back(robot);
     }

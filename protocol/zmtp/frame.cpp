@@ -47,7 +47,7 @@ Bytes bytes_of(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-std::string greeting(std::string_view mechanism, bool is_server) {
+std::string greeting(std::string_view mechanism, End end) {
   std::string greeting(greeting_size, '\0');
   greeting[0] = '\xff';
   greeting[8] = 1;  // what older versions take for a length
@@ -55,7 +55,7 @@ std::string greeting(std::string_view mechanism, bool is_server) {
   greeting[10] = major_version;
   greeting[11] = minor_version;
   std::ranges::copy(mechanism, greeting.begin() + mechanism_at);
-  greeting[mechanism_at + mechanism_size] = is_server && mechanism != "NULL" ? 1 : 0;
+  greeting[mechanism_at + mechanism_size] = end == End::server && mechanism != "NULL" ? 1 : 0;
   return greeting;
 }
 

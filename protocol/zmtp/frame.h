@@ -22,8 +22,11 @@ inline constexpr std::size_t first_of_greeting = 11;
 inline constexpr std::size_t longest_header = 9;
 inline constexpr std::size_t longest_command = 2048;  // that either end takes
 
+/// End of a connection, as CURVE has them.
+enum class End { client, server };
+
 /// Greeting that each end sends first. @param mechanism  "NULL" or "CURVE"
-std::string greeting(std::string_view mechanism, bool is_server);
+std::string greeting(std::string_view mechanism, End end);
 enum class Greeting {
   incomplete,
   wrong,  ///< of something else, such as HTTP, or of a version before 3; found before all of it is

@@ -5,9 +5,7 @@
 #include <utility>
 
 #include "channels/exchanged.h"
-#include "channels/foxglove_cameras.h"
-#include "channels/foxglove_scene.h"
-#include "channels/robots.h"
+#include "channels/foxglove.h"
 #include "channels/world_message.h"
 #include "wire/response.h"
 

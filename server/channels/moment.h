@@ -10,7 +10,6 @@
 
 #include "scene/scene.h"
 #include "world/commands.h"
-#include "world/contact.h"
 #include "world/layout.h"
 #include "world/state.h"
 

@@ -12,7 +12,7 @@
 #include "processes/scripts.h"
 #include "reports/console.h"
 #include "run/loading.h"
-#include "scene/tag_pattern.h"
+#include "scene/devices.h"
 #include "scene/values.h"
 #include "simulation/scene_warnings.h"
 #include "simulation/simulation.h"

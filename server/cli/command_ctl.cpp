@@ -330,8 +330,7 @@ int execute_ctl(const Arguments& arguments) {
   const Request request = verb.read(given);
   const std::string endpoint = take_endpoint(where);
   reports::Console console;
-  const auto server =
-      connect(supervisor_options(endpoint, parsed.values, false, "ziggurat ctl"), console);
+  const auto server = connect(supervisor_options(endpoint, parsed.values, "ziggurat ctl"), console);
   request({*server, console, given.values.has("json")});
   console.flush();
   return reports::exit_code::finished;

@@ -4,9 +4,7 @@
 #include <sstream>
 
 #include "cli/commands.h"
-#include "cli/sweep_cluster.h"
 #include "cli/sweep_options.h"
-#include "cli/sweep_results.h"
 #include "reports/console.h"
 #include "sweep/folder.h"
 #include "sweep/slurm.h"

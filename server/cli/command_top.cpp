@@ -70,7 +70,8 @@ int execute_top(const Arguments& arguments, processes::Signals& signals) {
     }
   }
   reports::Console console;
-  SupervisorOptions options = supervisor_options(endpoint, parsed.values, true, "ziggurat top");
+  SupervisorOptions options = supervisor_options(endpoint, parsed.values, "ziggurat top");
+  options.only_observes = true;
   bool is_interrupted = false;
   options.is_interrupted = [&] { return is_interrupted |= signals.take().interruptions > 0; };
   const bool redraws = !once && !json && isatty(STDOUT_FILENO) != 0;

@@ -19,10 +19,10 @@
 #include "reports/console.h"
 #include "run/build.h"
 #include "scene/reader.h"
+#include "text/buffered_stream.h"
 #include "text/numbers.h"
 #include "text/printable.h"
 #include "text/shortened.h"
-#include "text/standard_streams.h"
 #include "ziggurat/error.h"
 
 namespace ziggurat::cli {

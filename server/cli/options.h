@@ -5,9 +5,12 @@
 #include <boost/program_options/options_description.hpp>
 #include <boost/program_options/variables_map.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "cli/commands.h"
 #include "run/options.h"
+#include "scene/scene.h"
 
 namespace ziggurat::cli {
 
@@ -30,5 +33,11 @@ void check_time(const char* option, double seconds);
 /// @throws UsageError
 run::Options parse_options(const Arguments& arguments,
                            const boost::program_options::options_description& known);
+
+/// @param settings    of --set: `PATH=VALUE`
+/// @param parameters  of --param: `NAME=VALUE`
+/// @throws text::UsageError
+scene::Variation to_variation(const std::vector<std::string>& settings,
+                              const std::vector<std::string>& parameters);
 
 }  // namespace ziggurat::cli

@@ -73,7 +73,7 @@ std::string take_endpoint(std::vector<std::string>& words) {
 
 SupervisorOptions supervisor_options(const std::string& endpoint,
                                      const boost::program_options::variables_map& values,
-                                     bool only_observes, std::string name) {
+                                     std::string name) {
   const auto value = [&](const char* option) {
     return values.count(option) > 0 ? values[option].as<std::string>() : std::string();
   };
@@ -81,7 +81,6 @@ SupervisorOptions supervisor_options(const std::string& endpoint,
   options.server_key = value("server-key");
   options.curve_secret = value("curve-secret");
   options.endpoint = endpoint;
-  options.only_observes = only_observes;
   options.name = std::move(name);
   options.version = run::version;
   return options;

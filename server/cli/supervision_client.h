@@ -21,7 +21,7 @@ std::string take_endpoint(std::vector<std::string>& words);
 
 SupervisorOptions supervisor_options(const std::string& endpoint,
                                      const boost::program_options::variables_map& values,
-                                     bool only_observes, std::string name);
+                                     std::string name);
 
 /// Connects; if nothing answers for a moment, a notice says so while it goes on trying.
 std::unique_ptr<Supervisor> connect(SupervisorOptions options, reports::Console& console);

@@ -1,9 +1,8 @@
-#include "cli/sweep_cluster.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
 
+#include "cli/sweep_options.h"
 #include "outputs/output_file.h"
 #include "outputs/output_name.h"
 #include "reports/console.h"

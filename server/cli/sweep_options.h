@@ -1,5 +1,6 @@
 #pragma once
-// The command line of `ziggurat sweep`: which experiment, and how it is run.
+// `ziggurat sweep`: its command line (which experiment, and how it is run), and its further
+// commands.
 
 #include <boost/program_options/options_description.hpp>
 #include <cstddef>
@@ -47,5 +48,18 @@ struct TaskOptions {
   std::optional<std::size_t> task;  ///< none: as the environment says
 };
 TaskOptions parse_task(const Arguments& arguments);
+
+/// Submits the runs that have no result yet to a cluster. @returns an exit code
+int submit_sweep(const SweepOptions& options);
+
+/// `ziggurat sweep task DIR`: the runs of one task that have no result yet.
+/// @returns an exit code: 0 also if runs failed, because that is a result
+int sweep_task(const Arguments& arguments, processes::Signals& signals);
+
+/// `ziggurat sweep status`, `results` and `plot`, of a folder of results. Each gets the arguments
+/// behind its own name. @returns an exit code
+int sweep_status(const Arguments& arguments);
+int sweep_results(const Arguments& arguments);
+int sweep_plot(const Arguments& arguments);
 
 }  // namespace ziggurat::cli

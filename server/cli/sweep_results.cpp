@@ -1,5 +1,3 @@
-#include "cli/sweep_results.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <numeric>
 
 #include "cli/arguments.h"
+#include "cli/sweep_options.h"
 #include "outputs/output_file.h"
 #include "outputs/output_name.h"
 #include "reports/console.h"

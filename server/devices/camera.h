@@ -1,11 +1,13 @@
 #pragma once
-// Line of sight between a camera and the things that it detects.
+// Line of sight between a camera and the things that it detects, and the pictures it takes.
 
 #include <cstddef>
 #include <span>
 #include <vector>
 
 #include "physics/collision/ray.h"
+#include "render/renderer.h"
+#include "world/layout.h"
 #include "world/state.h"
 
 namespace ziggurat::devices {
@@ -25,5 +27,8 @@ struct OcclusionTest {
   /// @throws std::runtime_error if none is left
   bool clear(const math::Vector3& eye, const math::Vector3& target) const;
 };
+
+/// View of a camera. @param pose  X_WC
+render::View view_of(const world::CameraLayout& camera, const math::Pose& pose);
 
 }  // namespace ziggurat::devices

@@ -58,10 +58,10 @@ class Joints final : public Kind {
         const std::size_t joint = by_id.at(sensor.joint);
         if (sensor.mode == scene::JointMode::disabled ||
             !scene::has_coordinate(entity.joints[joint].type)) {
-          sensors_.push_back({{}, false, true});
+          sensors_.push_back({.disabled = true});
         } else {
-          sensors_.push_back({setting.physics.joint(robot.entity, joint),
-                              sensor.mode == scene::JointMode::velocity, false});
+          sensors_.push_back({.joint = setting.physics.joint(robot.entity, joint),
+                              .velocity = sensor.mode == scene::JointMode::velocity});
         }
       }
     }
@@ -89,7 +89,7 @@ class Joints final : public Kind {
 
  private:
   struct Sensor {
-    physics::JointIndex joint;
+    physics::JointIndex joint = {};
     bool velocity = false;
     bool disabled = false;
   };

@@ -15,14 +15,15 @@ namespace beast = boost::beast;
 using Field = beast::http::field;
 
 /// @param request  may be half read
-Response make_response(const Request& request, bool keeps_open, Answer from) {
+/// It closes the connection.
+Response make_response(const Request& request, Answer from) {
   Response response(static_cast<beast::http::status>(from.status), 11);
   response.set(Field::server, "ziggurat");
   response.set(Field::content_type, from.type);
   response.set("X-Content-Type-Options", "nosniff");
   response.set(Field::cache_control, from.etag.empty() ? "no-store" : "no-cache");
   if (!from.etag.empty()) response.set(Field::etag, from.etag);
-  response.keep_alive(keeps_open && from.status < 400);
+  response.keep_alive(false);
   const std::size_t size = from.body.size();
   if (request.method() != beast::http::verb::head) response.body() = std::move(from.body);
   response.content_length(size);
@@ -69,7 +70,8 @@ Answer answer_of(const Request& request, const Service& service) {
 
 Response respond(const Request& request, const Service& service) {
   const bool keeps_open = service.keeps_open && request.keep_alive() && !has_body(request);
-  Response response = make_response(request, keeps_open, answer_of(request, service));
+  Response response = make_response(request, answer_of(request, service));
+  response.keep_alive(keeps_open && response.result_int() < 400);
   if (service.decorate) service.decorate(request, response);
   return response;
 }
@@ -108,7 +110,7 @@ void Exchange::parse() {
     error = beast::http::error::header_limit;
   }
   if (error && error != beast::http::error::need_more) {
-    return write(make_response({}, false, refusal(error)));
+    return write(make_response({}, refusal(error)));
   }
   stream_.async_read_some(buffer_.prepare(longest_header - received_),
                           [self = shared_from_this()](Error ended, std::size_t count) {
@@ -125,7 +127,7 @@ void Exchange::handle(Request request) {
       (service_.any_host || allows_host(service_.host, view_of(request[Field::host])));
   if (is_allowed && service_.upgrade && beast::websocket::is_upgrade(request)) {
     if (auto refused = service_.refuse_upgrade(request)) {
-      return write(make_response(request, false, *std::move(refused)));
+      return write(make_response(request, *std::move(refused)));
     }
     stream_.expires_never();
     return service_.upgrade(std::move(stream_), request);
@@ -153,7 +155,7 @@ std::string answer_to(std::string_view request, const Service& service) {
   if (parser.is_header_done()) {
     out << respond(parser.get(), service);
   } else {
-    out << make_response({}, false, refusal(error));
+    out << make_response({}, refusal(error));
   }
   return out.str();
 }

@@ -11,12 +11,11 @@
 namespace ziggurat::http {
 namespace {
 
-Service service_of(const std::string& host, bool any_host, const Port::Read& read,
-                   const Port::Limits& limits) {
+Service service_of(const std::string& host, const Port::Read& read, const PortOptions& options) {
   Service service;
   service.host = host;
-  service.any_host = any_host;
-  service.time = limits.time;
+  service.any_host = options.any_host;
+  service.time = options.time;
   service.keeps_open = false;
   service.get = [read](std::string_view target, std::string_view) {
     return read(target.substr(0, target.find('?')));
@@ -27,10 +26,10 @@ Service service_of(const std::string& host, bool any_host, const Port::Read& rea
 }  // namespace
 
 struct Port::State {
-  State(std::string_view option, const Address& address, bool any_host, const Read& read,
-        const Limits& limits)
-      : service(service_of(address.host, any_host, read, limits)),
-        most_clients(limits.clients),
+  State(std::string_view option, const Address& address, const Read& read,
+        const PortOptions& options)
+      : service(service_of(address.host, read, options)),
+        most_clients(options.clients),
         listening(io, option, address, [this](Tcp::socket socket) { take(std::move(socket)); }),
         thread(serve(io)) {}
 
@@ -53,9 +52,8 @@ struct Port::State {
   std::thread thread;
 };
 
-Port::Port(std::string_view option, const Address& address, bool any_host, Read read,
-           const Limits& limits)
-    : state_(std::make_unique<State>(option, address, any_host, read, limits)) {}
+Port::Port(std::string_view option, const Address& address, Read read, const PortOptions& options)
+    : state_(std::make_unique<State>(option, address, read, options)) {}
 
 Port::~Port() {
   state_->io.stop();
@@ -64,9 +62,9 @@ Port::~Port() {
 
 std::uint16_t Port::number() const { return state_->listening.port(); }
 
-std::string answer_at_port(std::string_view request, const std::string& host, bool any_host,
-                           const Port::Read& read) {
-  return answer_to(request, service_of(host, any_host, read, {}));
+std::string answer_at_port(std::string_view request, const std::string& host,
+                           const Port::Read& read, const PortOptions& options) {
+  return answer_to(request, service_of(host, read, options));
 }
 
 }  // namespace ziggurat::http

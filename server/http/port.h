@@ -17,23 +17,20 @@
 
 namespace ziggurat::http {
 
+struct PortOptions {
+  bool any_host = false;     ///< clients may call it by any name; else see allows_host()
+  std::size_t clients = 16;  ///< at a time; the oldest makes place
+  std::chrono::milliseconds time{5000};  ///< of a client, for its request and the answer
+};
+
 class Port {
  public:
   /// Answer for a path. It is called on the port's thread.
   using Read = std::function<Answer(std::string_view path)>;
 
-  struct Limits {
-    std::size_t clients = 16;              ///< at a time; the oldest makes place
-    std::chrono::milliseconds time{5000};  ///< of a client, for its request and the answer
-  };
-
   /// @param option  of the program, for messages
-  /// @param any_host  clients may call it by any name; otherwise see allows_host()
   /// @throws std::runtime_error if it can't listen
-  Port(std::string_view option, const Address& address, bool any_host, Read read,
-       const Limits& limits);
-  Port(std::string_view option, const Address& address, bool any_host, Read read)
-      : Port(option, address, any_host, std::move(read), Limits()) {}
+  Port(std::string_view option, const Address& address, Read read, const PortOptions& options = {});
   /// At once, whatever clients do.
   ~Port();
   Port(const Port&) = delete;
@@ -47,7 +44,7 @@ class Port {
 };
 
 /// The bytes that such a port sends for those of a request.
-std::string answer_at_port(std::string_view request, const std::string& host, bool any_host,
-                           const Port::Read& read);
+std::string answer_at_port(std::string_view request, const std::string& host,
+                           const Port::Read& read, const PortOptions& options = {});
 
 }  // namespace ziggurat::http

@@ -1,7 +1,5 @@
 #include "magnetism/kernel.h"
 
-#include "magnetism/kernel_avx2.h"
-
 namespace ziggurat::magnetism {
 
 const Kernel& best_kernel() {

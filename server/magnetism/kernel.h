@@ -95,4 +95,7 @@ const Kernel& baseline_kernel();
 /// The widest one that this processor has.
 const Kernel& best_kernel();
 
+/// Nothing where the processor has no AVX2.
+const Kernel* avx2_kernel();
+
 }  // namespace ziggurat::magnetism

@@ -6,7 +6,6 @@
 #endif
 
 #include "magnetism/kernel.h"
-#include "magnetism/kernel_avx2.h"
 
 #if defined(__x86_64__)
 #define ZIGGURAT_AVX2  // neither compiler defines __AVX2__ for its pragma

@@ -46,4 +46,7 @@ inline Pose inverse(const Pose& a_b) {
   return {-(inverted * a_b.position), inverted};
 }
 
+/// Principal axes of an inertia as a rotation; none where the inertia is diagonal already.
+Quaternion principal_axes(const Eigen::Matrix3d& inertia);
+
 }  // namespace ziggurat::math

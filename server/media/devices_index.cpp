@@ -11,11 +11,9 @@ constexpr double rounding = 1e-9;                                     // [m]
 constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();  // never found
 
 template <class List>
-world::Range append(const List& list, bool wanted, std::vector<world::Mount>& mounts) {
-  const world::Range range{mounts.size(), wanted ? list.size() : 0};
-  if (wanted) {
-    for (const auto& device : list) mounts.push_back(device.mount);
-  }
+world::Range append(const List& list, std::vector<world::Mount>& mounts) {
+  const world::Range range{mounts.size(), list.size()};
+  for (const auto& device : list) mounts.push_back(device.mount);
   return range;
 }
 
@@ -33,18 +31,18 @@ double reach(const world::CameraLayout& camera) {
 bool reaches(double range, double distance) { return distance < range - rounding; }
 
 DevicesIndex::DevicesIndex(const world::Layout& layout) {
-  const auto detected = [&](auto detector) {
-    return std::ranges::any_of(layout.cameras, [&](const world::CameraLayout& camera) {
-      return (camera.*detector).has_value();
-    });
-  };
   using Camera = world::CameraLayout;
-  radios = append(layout.radios, true, mounts_);
-  range_and_bearing = append(layout.range_and_bearing, true, mounts_);
+  const auto append_detected = [&](const auto& list, auto detector) {
+    const bool is_detected = std::ranges::any_of(
+        layout.cameras, [&](const Camera& camera) { return (camera.*detector).has_value(); });
+    return is_detected ? append(list, mounts_) : world::Range{mounts_.size(), 0};
+  };
+  radios = append(layout.radios, mounts_);
+  range_and_bearing = append(layout.range_and_bearing, mounts_);
   senders_ = mounts_.size();
-  leds = append(layout.leds, detected(&Camera::leds), mounts_);
-  directional_leds = append(layout.directional_leds, detected(&Camera::directional_leds), mounts_);
-  tags = append(layout.tags, detected(&Camera::tags), mounts_);
+  leds = append_detected(layout.leds, &Camera::leds);
+  directional_leds = append_detected(layout.directional_leds, &Camera::directional_leds);
+  tags = append_detected(layout.tags, &Camera::tags);
   positions_.resize(mounts_.size());
   for (const auto& radio : layout.radios) ranges_.push_back(radio.range);
   for (const auto& device : layout.range_and_bearing) ranges_.push_back(device.range);

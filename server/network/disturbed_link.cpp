@@ -56,9 +56,9 @@ DisturbedLink::Line* DisturbedLink::find(const std::string& connection) {
 /// One for each controller, and for the director, that the session has and that is disturbed.
 std::vector<DisturbedLink::Path> DisturbedLink::paths_of(const v1::Welcome& welcome) const {
   std::vector<Path> paths;
-  const auto add = [&](const std::string& id, bool is_director, const std::string& name) {
+  const auto add = [&](const Target& wanted, const std::string& name) {
     const auto target = std::ranges::find_if(targets_, [&](const Target& each) {
-      return each.is_director == is_director && each.id == id;
+      return each.is_director == wanted.is_director && each.id == wanted.id;
     });
     if (target == targets_.end() || !target->injection.any()) return;
     const auto index = static_cast<std::size_t>(target - targets_.begin());
@@ -66,9 +66,12 @@ std::vector<DisturbedLink::Path> DisturbedLink::paths_of(const v1::Welcome& welc
       paths.push_back({index, name});
   };
   for (const v1::RobotDescription& robot : welcome.robots()) {
-    add(robot.controller(), false, robot.controller() + "/" + robot.id());
+    add({.id = robot.controller()}, robot.controller() + "/" + robot.id());
   }
-  if (welcome.has_director()) add(welcome.director().id(), true, welcome.director().id());
+  if (welcome.has_director()) {
+    const std::string& id = welcome.director().id();
+    add({.id = id, .is_director = true}, id);
+  }
   return paths;
 }
 
@@ -113,7 +116,7 @@ Delivery DisturbedLink::send(const std::string& connection, const wire::Outbox& 
   const v1::ServerMessage& message = out.message();
   if (message.has_welcome()) begin(connection, message.welcome());
   Line* line = find(connection);
-  if (line == nullptr) return send_(connection, bytes_of(out), out.is_observation());
+  if (line == nullptr) return send_(connection, bytes_of(out), kind_of(out));
   Effect effect;
   if (message.has_observation()) {
     effect = draw(*line, Direction::observations, message.observation().tick());
@@ -122,7 +125,7 @@ Delivery DisturbedLink::send(const std::string& connection, const wire::Outbox& 
   }
   if (effect.is_lost) return Delivery::sent;
   const Delivery delivery =
-      pass(connection, *line, {bytes_of(out), out.is_observation()}, now + effect.delay, now);
+      pass(connection, *line, {bytes_of(out), kind_of(out)}, now + effect.delay, now);
   if (delivery == Delivery::unreachable) {
     lines_.erase(connection);
   } else if (message.has_end() || is_fatal(message)) {
@@ -136,7 +139,7 @@ Delivery DisturbedLink::pass(const std::string& connection, Line& line, Outgoing
                              Time arrival, Time now) {
   if (line.is_broken) return Delivery::unreachable;
   if (arrival <= now && line.outgoing.empty()) {
-    return send_(connection, message.bytes, message.is_observation);
+    return send_(connection, message.bytes, message.kind);
   }
   if (line.outgoing.size() >= most_held_back) return Delivery::congested;
   line.outgoing.push(arrival, std::move(message));
@@ -148,7 +151,7 @@ Delivery DisturbedLink::pass(const std::string& connection, Line& line, Outgoing
 void DisturbedLink::end(const std::string& connection, Line& line, bool is_orderly, Time now) {
   line.paths.clear();
   while (const auto message = line.outgoing.pop(never)) {
-    send_(connection, message->bytes, message->is_observation);
+    send_(connection, message->bytes, message->kind);
   }
   if (is_orderly && !line.incoming.empty()) return line.incoming.hurry(now);
   lines_.erase(connection);
@@ -195,7 +198,7 @@ std::optional<Received> DisturbedLink::next(Time now) {
 void DisturbedLink::release(Time now) {
   for (auto& [connection, line] : lines_) {
     while (const auto message = line.outgoing.pop(now)) {
-      const Delivery delivery = send_(connection, message->bytes, message->is_observation);
+      const Delivery delivery = send_(connection, message->bytes, message->kind);
       // The barrier learns of it with its next message, a heartbeat if nothing else.
       const bool is_lost = delivery == Delivery::congested && line.may_lose;
       if (delivery == Delivery::sent || is_lost) continue;

@@ -28,11 +28,11 @@ class DisturbedLink {
   /// The link behind: sends bytes over a connection. Of Observations that wait there the newest
   /// wins.
   using SendBytes = std::function<Delivery(const std::string& connection, std::string_view bytes,
-                                           bool is_observation)>;
+                                           MessageKind kind)>;
 
   struct Target {
     std::string id;  ///< in the scene: of a controller or director
-    Injection injection;
+    Injection injection = {};
     bool is_director = false;
   };
   /// @param targets     all controllers of the scene, then its directors
@@ -72,7 +72,7 @@ class DisturbedLink {
   };
   struct Outgoing {
     std::string bytes;
-    bool is_observation = false;
+    MessageKind kind = MessageKind::other;
   };
   /// A target that drives robots of a session.
   struct Path {

@@ -31,7 +31,8 @@ struct Roles {
            (role == wire::Role::observer && observer) || (role == wire::Role::director && director);
   }
 };
-inline constexpr Roles all_roles{true, true, true, true};
+inline constexpr Roles all_roles{
+    .controller = true, .supervisor = true, .observer = true, .director = true};
 
 /// Rights of a connection, and the key that gives them.
 struct Access {

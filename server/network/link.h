@@ -23,6 +23,12 @@ enum class Delivery {
   congested,    ///< the peer does not read; the message was dropped
 };
 
+/// Kinds of messages that wait: a newer observation takes an older one's place.
+enum class MessageKind { observation, other };
+inline MessageKind kind_of(const wire::Outbox& message) {
+  return message.is_observation() ? MessageKind::observation : MessageKind::other;
+}
+
 /// Sends a message over this connection, without waiting.
 using Send = std::function<Delivery(const std::string& connection, const wire::Outbox& message)>;
 
@@ -31,7 +37,7 @@ struct Received {
   std::string connection;
   std::string_view bytes;       ///< valid until the next message is received
   bool is_single_frame = true;  ///< a message of the protocol is one ZeroMQ frame
-  Access access;                ///< that the connection has
+  Access access = {};           ///< that the connection has
   /// Bytes of the message that were not kept, because a frame was too long or not its last: there
   /// are no others.
   std::size_t skipped = 0;

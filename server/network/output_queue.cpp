@@ -40,13 +40,14 @@ Buffer OutputQueue::kept(Buffer& frame, std::size_t size) {
   return copy;
 }
 
-void OutputQueue::send(Buffer& frame, std::size_t size, bool is_observation) {
+void OutputQueue::send(Buffer& frame, std::size_t size, MessageKind kind) {
   const std::size_t sent = waiting_.empty() ? write({frame.bytes.get(), size}) : 0;
   if (sent == size || has_failed_) return;
-  Parcel parcel{kept(frame, size), size, sent, is_observation};
-  if (is_observation) {
-    std::erase_if(waiting_,
-                  [](const Parcel& each) { return each.is_observation && each.sent == 0; });
+  Parcel parcel{kept(frame, size), size, sent, kind};
+  if (kind == MessageKind::observation) {
+    std::erase_if(waiting_, [](const Parcel& each) {
+      return each.kind == MessageKind::observation && each.sent == 0;
+    });
   } else {
     const bool is_alone = waiting_bytes_ == 0;
     is_congested_ = !is_alone && waiting_bytes_ - alone_ + parcel.memory() > most_waiting;
@@ -66,7 +67,7 @@ void OutputQueue::flush() {
     left -= sent;
     if (first.sent < first.size && sent < wanted) return;
     if (first.sent < first.size) continue;
-    if (!first.is_observation) {
+    if (first.kind != MessageKind::observation) {
       waiting_bytes_ -= first.memory();
       alone_ = 0;
     }

@@ -7,6 +7,8 @@
 #include <memory>
 #include <span>
 
+#include "network/link.h"
+
 namespace ziggurat::network {
 
 /// Bytes without a value of their own at first.
@@ -26,7 +28,7 @@ class OutputQueue {
   /// Sends bytes now, or as soon as the client reads. A newer Observation takes the place of one
   /// that waits.
   /// @param frame  is taken if it has to wait
-  void send(Buffer& frame, std::size_t size, bool is_observation);
+  void send(Buffer& frame, std::size_t size, MessageKind kind);
   /// Sends a part of what waits, as far as that is possible.
   void flush();
 
@@ -45,7 +47,7 @@ class OutputQueue {
   struct Parcel {
     Buffer frame;
     std::size_t size = 0, sent = 0;
-    bool is_observation = false;
+    MessageKind kind = MessageKind::other;
 
     /// Memory that the frame takes, at least [bytes].
     std::size_t memory() const { return frame.capacity + 128; }

@@ -25,11 +25,11 @@ std::size_t kept_when_idle(Standing standing) {
 }  // namespace
 
 PeerSocket::PeerSocket(std::string name, posix::Descriptor descriptor, const zmtp::CurveKeys* keys,
-                       bool is_trusted, Time now)
+                       Trust trust, Time now)
     : name_(std::move(name)),
       descriptor_(std::move(descriptor)),
       engine_(keys),
-      is_trusted_(is_trusted),
+      trust_(trust),
       since_(now),
       reply_(engine_.greeting()),
       output_(descriptor_.number()) {
@@ -152,15 +152,15 @@ bool PeerSocket::next(std::size_t limit, Received& received) {
   return false;
 }
 
-void PeerSocket::send(Buffer& frame, std::size_t content, bool is_observation) {
+void PeerSocket::send(Buffer& frame, std::size_t content, MessageKind kind) {
   const std::size_t size = engine_.content_at(content) + content;
   engine_.seal({frame.bytes.get(), size}, content);
-  send_bytes(frame, size, is_observation);
+  send_bytes(frame, size, kind);
 }
 
-void PeerSocket::send_bytes(Buffer& frame, std::size_t size, bool is_observation) {
+void PeerSocket::send_bytes(Buffer& frame, std::size_t size, MessageKind kind) {
   if (is_over_) return;
-  output_.send(frame, size, is_observation);
+  output_.send(frame, size, kind);
   is_over_ = output_.has_failed() || output_.is_congested();
 }
 
@@ -168,7 +168,7 @@ void PeerSocket::send_reply() {
   Buffer frame;
   frame.reserve(reply_.size());
   std::memcpy(frame.bytes.get(), reply_.data(), reply_.size());
-  send_bytes(frame, reply_.size(), false);
+  send_bytes(frame, reply_.size(), MessageKind::other);
   reply_.clear();
 }
 

@@ -15,6 +15,9 @@
 
 namespace ziggurat::network {
 
+/// Limits of connections without session do not hold for those of this user.
+enum class Trust { none, own_user };
+
 class PeerSocket {
  public:
   /// Whether input is left that next() has not looked at.
@@ -25,13 +28,12 @@ class PeerSocket {
   /// Sends the first bytes of the handshake.
   /// @param name  of the connection
   /// @param keys  must outlive the connection; null: it is not encrypted
-  /// @param is_trusted  of this user: limits of connections without session do not hold
   PeerSocket(std::string name, posix::Descriptor descriptor, const zmtp::CurveKeys* keys,
-             bool is_trusted, Time now);
+             Trust trust, Time now);
 
   const std::string& name() const { return name_; }
   int number() const { return descriptor_.number(); }
-  bool is_trusted() const { return is_trusted_; }
+  bool is_trusted() const { return trust_ == Trust::own_user; }
   Standing standing() const { return standing_; }
   /// When it came to have no session.
   Time since() const { return since_; }
@@ -58,7 +60,7 @@ class PeerSocket {
   /// Sends a frame with its content in place, now or as soon as the client reads. The connection is
   /// over if too much waits for it. A newer Observation takes the place of one that waits.
   /// @param frame  is taken if it has to wait
-  void send(Buffer& frame, std::size_t content, bool is_observation);
+  void send(Buffer& frame, std::size_t content, MessageKind kind);
   /// Sends what waits, as far as that is possible.
   void flush();
   const OutputQueue& output() const { return output_; }
@@ -70,13 +72,13 @@ class PeerSocket {
   void let_go();
   bool take_frame(std::size_t limit, Received& received);
   bool end_message(bool goes_on, Received& received);
-  void send_bytes(Buffer& frame, std::size_t size, bool is_observation);
+  void send_bytes(Buffer& frame, std::size_t size, MessageKind kind);
   void send_reply();
 
   const std::string name_;
   posix::Descriptor descriptor_;
   zmtp::Engine engine_;
-  const bool is_trusted_;
+  const Trust trust_;
   Standing standing_ = Standing::none;
   std::size_t longest_ = longest_without_session;
   Time since_;

@@ -20,13 +20,13 @@ std::uint64_t id_of(const std::string& name) {
 
 PeerTable::PeerTable(const Shared& most) : most_(most) {}
 
-void PeerTable::add(posix::Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_trusted,
+void PeerTable::add(posix::Descriptor descriptor, const zmtp::CurveKeys* keys, Trust trust,
                     Time now) {
   const std::uint64_t id = ++last_id_;
   auto& peer = peers_[id];
-  peer = std::make_unique<PeerSocket>(name_of(id), std::move(descriptor), keys, is_trusted, now);
+  peer = std::make_unique<PeerSocket>(name_of(id), std::move(descriptor), keys, trust, now);
   ++without_session_;
-  others_.add(peer->number(), id, !peer->output().is_empty());
+  others_.add(peer->number(), id, {.write = !peer->output().is_empty()});
   settle(*peer, {0, 0, !peer->output().is_empty()});
 }
 
@@ -51,7 +51,7 @@ void PeerTable::settle(PeerSocket& peer, const Account& before) {
                          : peer.fault());
   }
   if (after.has_waiting != before.has_waiting) {
-    list_of(peer).change(peer.number(), id_of(peer.name()), true, after.has_waiting);
+    list_of(peer).change(peer.number(), id_of(peer.name()), {.write = after.has_waiting});
   }
   if (unfinished_ > most_.unfinished && after.unfinished > mebibyte) {
     end(peer, "A client was disconnected: too much of clients' messages has arrived in part.");
@@ -88,7 +88,7 @@ void PeerTable::set_standing(const std::string& name, Standing standing, std::si
   ReadyList& after = list_of(*peer);
   if (&before == &after) return;
   before.remove(peer->number());
-  after.add(peer->number(), id_of(name), !peer->output().is_empty());
+  after.add(peer->number(), id_of(name), {.write = !peer->output().is_empty()});
 }
 
 /// The connection is over. What waits for it goes at once, because many can end before the next

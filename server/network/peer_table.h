@@ -23,7 +23,7 @@ class PeerTable {
   explicit PeerTable(const Shared& most = {});
 
   /// A client has connected.
-  void add(posix::Descriptor descriptor, const zmtp::CurveKeys* keys, bool is_trusted, Time now);
+  void add(posix::Descriptor descriptor, const zmtp::CurveKeys* keys, Trust trust, Time now);
   /// Null if its connection is over. Pointers hold until remove_ended().
   PeerSocket* find(std::uint64_t id) const;
   PeerSocket* find(const std::string& name) const;

@@ -7,9 +7,9 @@
 namespace ziggurat::network {
 namespace {
 
-epoll_event event_of(std::uint64_t id, bool wants_to_read, bool wants_to_write) {
+epoll_event event_of(std::uint64_t id, ReadyList::Wanted wanted) {
   epoll_event event{};
-  event.events = (wants_to_read ? EPOLLIN | EPOLLRDHUP : 0U) | (wants_to_write ? EPOLLOUT : 0U);
+  event.events = (wanted.read ? EPOLLIN | EPOLLRDHUP : 0U) | (wanted.write ? EPOLLOUT : 0U);
   event.data.u64 = id;
   return event;
 }
@@ -20,13 +20,13 @@ ReadyList::ReadyList() : epoll_(::epoll_create1(EPOLL_CLOEXEC)) {
   if (!epoll_.is_open()) throw std::system_error(errno, std::generic_category(), "epoll_create1");
 }
 
-void ReadyList::add(int descriptor, std::uint64_t id, bool wants_to_write) {
-  epoll_event event = event_of(id, true, wants_to_write);
+void ReadyList::add(int descriptor, std::uint64_t id, Wanted wanted) {
+  epoll_event event = event_of(id, wanted);
   ::epoll_ctl(number(), EPOLL_CTL_ADD, descriptor, &event);
 }
 
-void ReadyList::change(int descriptor, std::uint64_t id, bool wants_to_read, bool wants_to_write) {
-  epoll_event event = event_of(id, wants_to_read, wants_to_write);
+void ReadyList::change(int descriptor, std::uint64_t id, Wanted wanted) {
+  epoll_event event = event_of(id, wanted);
   ::epoll_ctl(number(), EPOLL_CTL_MOD, descriptor, &event);
 }
 

@@ -23,8 +23,12 @@ class ReadyList {
   /// @throws std::system_error
   ReadyList();
 
-  void add(int descriptor, std::uint64_t id, bool wants_to_write = false);
-  void change(int descriptor, std::uint64_t id, bool wants_to_read, bool wants_to_write);
+  /// Events that a descriptor is waited for.
+  struct Wanted {
+    bool read = true, write = false;
+  };
+  void add(int descriptor, std::uint64_t id, Wanted wanted);
+  void change(int descriptor, std::uint64_t id, Wanted wanted);
   void remove(int descriptor);
 
   /// Whether one is ready. It does not wait.

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "network/answer_times.h"
 #include "network/delays.h"
+#include "network/latencies.h"
 #include "network/link.h"
 #include "network/reactions.h"
 #include "scene/deadline.h"

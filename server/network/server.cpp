@@ -28,13 +28,14 @@ constexpr milliseconds noticeable{
 
 std::vector<DisturbedLink::Target> targets_of(const Config& config, const wire::Run& run) {
   std::vector<DisturbedLink::Target> targets;
-  const auto add = [&](const std::string& id, bool is_director) {
-    const bool is_given = targets.size() < config.injections.size();
-    targets.push_back(
-        {id, is_given ? config.injections[targets.size()] : Injection{}, is_director});
+  const auto add = [&](DisturbedLink::Target target) {
+    if (targets.size() < config.injections.size())
+      target.injection = config.injections[targets.size()];
+    targets.push_back(std::move(target));
   };
-  for (const scene::Controller& controller : run.controllers) add(controller.id, false);
-  for (const scene::Director& director : run.directors) add(director.id, true);
+  for (const scene::Controller& controller : run.controllers) add({.id = controller.id});
+  for (const scene::Director& director : run.directors)
+    add({.id = director.id, .is_director = true});
   return targets;
 }
 
@@ -177,8 +178,8 @@ void Server::open(const wire::Run& run, const Config& config) {
   if (std::ranges::any_of(config.injections, &Injection::any)) {
     state.link.emplace(
         targets_of(config, run), run.seed, 2 * config.max_message_bytes,
-        [&state](const std::string& connection, std::string_view bytes, bool is_observation) {
-          return state.socket.send(connection, bytes, is_observation);
+        [&state](const std::string& connection, std::string_view bytes, MessageKind kind) {
+          return state.socket.send(connection, bytes, kind);
         });
   }
   state.barrier.now = Clock::now();

@@ -45,7 +45,10 @@ Socket::Socket(const Config& config)
       others_time_(share_, next_tending_) {
   if (config.curve) keys_.emplace(*config.curve);
   const bool allows_any = config.insecure || config.curve;
-  for (const std::string& endpoint : config.endpoints) listen(endpoint, false, allows_any);
+  for (const std::string& endpoint : config.endpoints) {
+    check_endpoint(endpoint, allows_any);
+    listen(endpoint, Trust::none);
+  }
 }
 
 Socket::~Socket() {
@@ -60,37 +63,37 @@ Socket::~Socket() {
 }
 
 void Socket::add_private(const Config& config) {
-  listen(config.private_endpoint, true, false);
+  check_endpoint(config.private_endpoint, config.insecure);
+  listen(config.private_endpoint, Trust::own_user);
   std::rotate(endpoints_.begin(), endpoints_.end() - 1, endpoints_.end());
 }
 
-void Socket::listen(const std::string& endpoint, bool is_private, bool allows_any) {
-  check_endpoint(endpoint, allows_any);
+void Socket::listen(const std::string& endpoint, Trust trust) {
   const std::uint64_t id = entrances_.size();
-  const Entrance& entrance = entrances_.emplace_back(Entrance{Listener(endpoint), id, is_private});
+  const Entrance& entrance = entrances_.emplace_back(Entrance{Listener(endpoint), id, trust});
   endpoints_.push_back(entrance.listener.endpoint());
-  peers_.others().add(entrance.listener.number(), id);
+  peers_.others().add(entrance.listener.number(), id, {});
 }
 
 /// @param write  writes the content, `size` bytes
-Delivery Socket::send(const std::string& connection, std::size_t size, bool is_observation,
+Delivery Socket::send(const std::string& connection, std::size_t size, MessageKind kind,
                       const auto& write) {
   PeerSocket* peer = peers_.find(connection);
   if (peer == nullptr || !peer->is_open()) return Delivery::unreachable;
   const std::size_t at = peer->content_at(size);
   frame_.reserve(at + size);
   write(frame_.bytes.get() + at);
-  peers_.act(*peer, [&](PeerSocket& to) { to.send(frame_, size, is_observation); });
+  peers_.act(*peer, [&](PeerSocket& to) { to.send(frame_, size, kind); });
   return peer->is_over() ? Delivery::unreachable : Delivery::sent;
 }
 
 Delivery Socket::send(const std::string& connection, const wire::Outbox& message) {
-  return send(connection, message.size(), message.is_observation(),
+  return send(connection, message.size(), kind_of(message),
               [&](std::uint8_t* to) { message.write(to); });
 }
 
-Delivery Socket::send(const std::string& connection, std::string_view bytes, bool is_observation) {
-  return send(connection, bytes.size(), is_observation,
+Delivery Socket::send(const std::string& connection, std::string_view bytes, MessageKind kind) {
+  return send(connection, bytes.size(), kind,
               [&](std::uint8_t* to) { std::memcpy(to, bytes.data(), bytes.size()); });
 }
 
@@ -194,14 +197,15 @@ void Socket::read_from(const ReadyList::Ready& ready) {
 /// Accepts one connection. Those without session take no places of those over the private entrance.
 void Socket::accept(Entrance& entrance) {
   const Time now = Clock::now();
-  const bool are_many = !entrance.is_private && peers_.without_session() >= most_without_session_;
+  const bool are_many =
+      entrance.trust == Trust::none && peers_.without_session() >= most_without_session_;
   const bool is_full = are_many || peers_.size() >= most_peers_;
   if (is_full && !peers_.make_place(now)) return entrance.set_accepting(peers_.others(), false);
   peers_.remove_ended();
   posix::Descriptor client = entrance.listener.accept();
   if (client.is_open()) {
-    const bool has_keys = keys_ && !entrance.is_private;
-    return peers_.add(std::move(client), has_keys ? &*keys_ : nullptr, entrance.is_private, now);
+    const bool has_keys = keys_ && entrance.trust == Trust::none;
+    return peers_.add(std::move(client), has_keys ? &*keys_ : nullptr, entrance.trust, now);
   }
   const bool lacks_descriptors = errno == EMFILE || errno == ENFILE;
   if (lacks_descriptors && !peers_.make_place(now)) entrance.set_accepting(peers_.others(), false);
@@ -210,7 +214,7 @@ void Socket::accept(Entrance& entrance) {
 void Socket::Entrance::set_accepting(ReadyList& list, bool accepts) {
   if (is_accepting == accepts) return;
   is_accepting = accepts;
-  list.change(listener.number(), id, accepts, false);
+  list.change(listener.number(), id, {.read = accepts});
 }
 
 void Socket::tend() {

@@ -6,12 +6,14 @@
 // share of the rest.
 
 #include <poll.h>
+#include <time.h>
 
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <ratio>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,11 +24,24 @@
 #include "network/link.h"
 #include "network/listener.h"
 #include "network/peer_table.h"
-#include "network/thread_clock.h"
 #include "network/token_bucket.h"
 #include "wire/outbox.h"
 
 namespace ziggurat::network {
+
+/// The processor time of this thread: one that other programs keep from running uses none.
+struct ThreadClock {
+  using rep = std::int64_t;
+  using period = std::nano;
+  using duration = std::chrono::duration<rep, period>;
+  using time_point = std::chrono::time_point<ThreadClock>;
+  static constexpr bool is_steady = true;
+  static time_point now() {
+    timespec time{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return time_point(std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec));
+  }
+};
 
 class Socket {
  public:
@@ -46,7 +61,7 @@ class Socket {
 
   // Neither waits.
   Delivery send(const std::string& connection, const wire::Outbox& message);
-  Delivery send(const std::string& connection, std::string_view bytes, bool is_observation);
+  Delivery send(const std::string& connection, std::string_view bytes, MessageKind kind);
 
   /// Sets the standing of a connection.
   /// @param longest  length of its longest message [bytes]
@@ -79,7 +94,7 @@ class Socket {
   struct Entrance {
     Listener listener;
     std::uint64_t id = 0;  ///< in the list of what is ready
-    bool is_private = false;
+    Trust trust = Trust::none;
     bool is_accepting = true;
 
     /// Accepts connections, or leaves new ones waiting in the system.
@@ -95,8 +110,8 @@ class Socket {
     void give_turn(PeerSocket& peer);
   };
 
-  void listen(const std::string& endpoint, bool is_private, bool allows_any);
-  Delivery send(const std::string& connection, std::size_t size, bool is_observation,
+  void listen(const std::string& endpoint, Trust trust);
+  Delivery send(const std::string& connection, std::size_t size, MessageKind kind,
                 const auto& write);
   bool may_serve_others() const { return !is_ticking_ || Clock::now() >= others_wait_until_; }
   Group* next_group();

@@ -1,6 +1,6 @@
 #include "physics/welding.h"
 
-#include "math/principal_axes.h"
+#include "math/pose.h"
 
 namespace ziggurat::physics {
 namespace {

@@ -11,7 +11,6 @@
 #include "physics/bodies/values.h"
 #include "scene/scene.h"
 #include "world/commands.h"
-#include "world/contact.h"
 #include "world/state.h"
 
 namespace ziggurat::math {

@@ -20,7 +20,7 @@
 #include <system_error>
 #include <vector>
 
-#include "processes/folder_removal.h"
+#include "processes/private_folder.h"
 
 namespace ziggurat::processes {
 namespace {

@@ -159,11 +159,11 @@ void Canvas::set_frame(const Drawing& drawing, const Model& model, const View& v
   context_.gl().named_buffer_data(frame_, sizeof frame, &frame, GL_DYNAMIC_DRAW);
 }
 
-void Canvas::draw_bodies(const Drawing& drawing, bool with_hidden) {
+void Canvas::draw_bodies(const Drawing& drawing, Bodies which) {
   const OpenGl& gl = context_.gl();
   gl.bind_vertex_array(body_arrays_);
   for (const Batch& batch : drawing.batches) {
-    const std::size_t count = with_hidden ? batch.all : batch.visible;
+    const std::size_t count = which == Bodies::all ? batch.all : batch.visible;
     if (count == 0) continue;
     gl.draw_elements(GL_TRIANGLES, static_cast<GLsizei>(batch.mesh.indices), GL_UNSIGNED_INT,
                      offset(batch.mesh.first_index * sizeof(std::uint32_t)),
@@ -184,7 +184,7 @@ void Canvas::draw_shadows(const Drawing& drawing) {
   gl.enable(GL_POLYGON_OFFSET_FILL);
   gl.polygon_offset(1.5f, 0);
   gl.use_program(shadow_program_);
-  draw_bodies(drawing, true);
+  draw_bodies(drawing, Bodies::all);
   gl.disable(GL_POLYGON_OFFSET_FILL);
 }
 
@@ -234,7 +234,7 @@ void Canvas::draw_tile(const Drawing& drawing, const Tile& tile, unsigned oversa
   gl.enable(GL_CULL_FACE);
   gl.front_face(GL_CW);  // with v downwards, the picture is a mirror image to OpenGL
   gl.use_program(body_program_);
-  draw_bodies(drawing, false);
+  draw_bodies(drawing, Bodies::visible);
   draw_background(with_floor);
   draw_marks_and_lines(drawing);
 

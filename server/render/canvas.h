@@ -35,7 +35,8 @@ class Canvas {
   void draw_shadows(const Drawing& drawing);
   void draw_tile(const Drawing& drawing, const Tile& tile, unsigned oversampling, bool with_floor,
                  Picture& picture);
-  void draw_bodies(const Drawing& drawing, bool with_hidden);
+  enum class Bodies { all, visible };
+  void draw_bodies(const Drawing& drawing, Bodies which);
   void draw_background(bool with_floor);
   void draw_marks_and_lines(const Drawing& drawing);
   void check() const;

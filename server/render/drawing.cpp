@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "render/tag36h11.h"
-#include "scene/tag_pattern.h"
+#include "scene/devices.h"
 
 namespace ziggurat::render {
 namespace {

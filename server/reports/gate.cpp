@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "text/numbers.h"
-#include "text/trim.h"
+#include "text/shortened.h"
 
 namespace ziggurat::reports {
 namespace {

@@ -152,8 +152,9 @@ MetricsPort::MetricsPort(const std::string& address, bool insecure)
   }
   State& state = *state_;
   // Other machines may know this one by any name.
-  state.port.emplace("--metrics", place, insecure,
-                     [&state](std::string_view path) { return state.read(path); });
+  state.port.emplace(
+      "--metrics", place, [&state](std::string_view path) { return state.read(path); },
+      http::PortOptions{.any_host = insecure});
   state.url =
       fmt::format("http://{}:{}", address.substr(0, address.rfind(':')), state.port->number());
 }

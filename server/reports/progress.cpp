@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "text/duration.h"
+#include "text/numbers.h"
 
 namespace ziggurat::reports {
 namespace {

@@ -53,11 +53,13 @@ void take_id(Draft& draft, const Element& element, const Controller& controller)
   refuse_id(element, "controller", draft.scene.controllers[earlier->second].where);
 }
 
-void read_controller(Draft& draft, Element& element, bool included,
+enum class Origin { scene, included };
+
+void read_controller(Draft& draft, Element& element, Origin origin,
                      const std::optional<DeadlinePolicy>& usual) {
   Controller controller;
   ControllerUse use;
-  if (included) draft.missing_parts = &use.missing_parts;
+  if (origin == Origin::included) draft.missing_parts = &use.missing_parts;
   controller.where = controller.params_where = element.where();  // until there is <params>
   controller.type = element.name();
   controller.lua = element.name() == "lua_controller";
@@ -164,7 +166,8 @@ struct Check {
     draft.report.fault(where, std::move(text), std::move(causes));
   }
 
-  void check_joint(const std::string& id, Location where, bool actuated,
+  enum class Device { sensor, actuator };
+  void check_joint(const std::string& id, Location where, Device device,
                    const std::unordered_map<std::string_view, const Joint*>& joints) const {
     const auto found = joints.find(id);
     if (found == joints.end()) {
@@ -182,7 +185,7 @@ struct Check {
     const JointType type = found->second->type;
     if (has_coordinate(type)) return;
     const std::string_view is = type == JointType::fixed ? "fixed" : "spherical";
-    if (actuated) {
+    if (device == Device::actuator) {
       blame(where, fmt::format("joint {} of {} {} is {}; only prismatic and revolute joints "
                                "have an actuator",
                                in_quotes(id), kind_of(entity), in_quotes(entity.id), is));
@@ -209,13 +212,13 @@ struct Check {
     std::unordered_map<std::string_view, const Joint*> joints;
     for (const Joint& joint : entity.joints) joints.emplace(joint.id, &joint);
     for (const JointActuator& a : devices.joints.actuators) {
-      check_joint(a.joint, a.where, true, joints);
+      check_joint(a.joint, a.where, Device::actuator, joints);
       if (const auto found = joints.find(a.joint); found != joints.end()) {
         check_strength(a, *found->second);
       }
     }
     for (const JointSensor& s : devices.joints.sensors)
-      check_joint(s.joint, s.where, false, joints);
+      check_joint(s.joint, s.where, Device::sensor, joints);
   }
 
   void check_anchors() const {
@@ -280,7 +283,7 @@ void check_use(Draft& draft, const Entity& entity) {
 
 namespace {
 
-void read_list(Draft& draft, Element& controllers, bool included) {
+void read_list(Draft& draft, Element& controllers, Origin origin) {
   const auto deadline = read_deadline(controllers, std::nullopt);
   for (Element& element : controllers.children()) {
     if (element.name().size() > longest_type) {
@@ -291,7 +294,7 @@ void read_list(Draft& draft, Element& controllers, bool included) {
       draft.report.fault(element.where(),
                          fmt::format("<{}> is not supported; {}", element.name(), *why));
     } else {
-      read_controller(draft, element, included, deadline);
+      read_controller(draft, element, origin, deadline);
     }
   }
   controllers.done();
@@ -308,9 +311,9 @@ void report_missing(Draft& draft, std::vector<PendingFault>& missing_parts) {
 
 void read_controllers(Draft& draft, Element& root, std::span<Element> included) {
   if (auto controllers = root.required_child("controllers")) {
-    read_list(draft, *controllers, false);
+    read_list(draft, *controllers, Origin::scene);
   }
-  for (Element& controllers : included) read_list(draft, controllers, true);
+  for (Element& controllers : included) read_list(draft, controllers, Origin::included);
 }
 
 std::optional<ControllerChoice> read_controller_choice(Draft& draft, Element& element) {

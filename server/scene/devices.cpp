@@ -1,6 +1,7 @@
 // <devices> of a prototype, and <leds> of a box or cylinder.
 
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -365,6 +366,16 @@ void read_devices(Draft& draft, Element& element, Entity& entity) {
     read_device_container(draft, container, entity);
   }
   devices->done();
+}
+
+std::optional<unsigned> tag_pattern(std::string_view payload) {
+  constexpr unsigned ids = 587;
+  unsigned id = ids;
+  const auto [end, error] = std::from_chars(payload.data(), payload.data() + payload.size(), id);
+  if (error != std::errc() || end != payload.data() + payload.size() || id >= ids) {
+    return std::nullopt;
+  }
+  return id;
 }
 
 }  // namespace ziggurat::scene

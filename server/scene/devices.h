@@ -6,10 +6,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "math/pose.h"
-#include "scene/location.h"
+#include "scene/problem.h"
 
 namespace ziggurat::scene {
 
@@ -284,5 +285,8 @@ struct ControllerDevices {
   /// About what those that are fixed to an anchor take in each robot [bytes].
   std::size_t mounted_memory = 0;
 };
+
+/// The id of AprilTag's family 36h11 that a payload stands for: all of it is an integer 0 to 586.
+std::optional<unsigned> tag_pattern(std::string_view payload);
 
 }  // namespace ziggurat::scene

@@ -9,8 +9,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "scene/location.h"
 #include "scene/parameters.h"
+#include "scene/problem.h"
 #include "scene/report.h"
 #include "scene/settings.h"
 #include "scene/values.h"

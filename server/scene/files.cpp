@@ -35,10 +35,13 @@ struct Includes {
   std::set<std::string> known;     ///< identities of all files so far
   unsigned count = 0;
 
-  void read_root(Element& root, bool included) {
+  void read_scene(Element& root) {
     for (Element& element : root.children("include")) include(element);
     if (auto models = root.child("models")) parts.models.push_back(*models);
-    if (!included) return;
+  }
+
+  void read_included(Element& root) {
+    read_scene(root);
     if (auto controllers = root.child("controllers")) parts.controllers.push_back(*controllers);
     root.done(
         "a file that is included may have <include>, <models> and <controllers>; write "
@@ -90,7 +93,7 @@ struct Includes {
     names.push_back(name);
     if (document.root()) {
       Element root(document, document.root());
-      read_root(root, true);
+      read_included(root);
     }
     open.pop_back();
     names.pop_back();
@@ -151,7 +154,7 @@ std::variant<File, std::string> open_no_file(const fs::path&, std::size_t) {
 
 Parts read_includes(Draft& draft, Element& root, const std::string& identity) {
   Includes includes{draft, {}, {identity}, {draft.scene.files[0]}, {identity}};
-  includes.read_root(root, false);
+  includes.read_scene(root);
   return std::move(includes.parts);
 }
 

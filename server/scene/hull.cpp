@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "math/principal_axes.h"
+#include "math/pose.h"
 #include "scene/geometry.h"
 
 namespace ziggurat::scene {

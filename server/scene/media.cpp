@@ -18,7 +18,7 @@ std::optional<MediumKind> kind_of(std::string_view name) {
 }
 
 void read_medium_element(Draft& draft, Element& element, MediumKind kind) {
-  Medium medium{element.required("id", identifier), kind, true, element.where()};
+  Medium medium{.id = element.required("id", identifier), .kind = kind, .where = element.where()};
   element.optional("index", Words{"grid"});
   element.without_effect("grid_size", cells, "media need no grid, and devices may leave the arena");
   if (kind == MediumKind::range_and_bearing) {

@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "scene/location.h"
+#include "scene/problem.h"
 
 namespace ziggurat::scene {
 

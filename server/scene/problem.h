@@ -1,11 +1,19 @@
 #pragma once
 // A fault, a warning or a notice about a scene file.
 
+#include <compare>
+#include <cstddef>
 #include <string>
 
-#include "scene/location.h"
-
 namespace ziggurat::scene {
+
+/// A place in one of the files of a scene.
+struct Location {
+  std::size_t file = 0;  ///< index into Scene::files
+  unsigned line = 0;     ///< from 1; 0 = nowhere in particular
+  unsigned column = 0;   ///< from 1
+  auto operator<=>(const Location&) const = default;
+};
 
 struct Problem {
   enum class Severity {

@@ -13,7 +13,6 @@
 #include "scene/files.h"
 #include "scene/problem.h"
 #include "scene/scene.h"
-#include "scene/variation.h"
 
 namespace ziggurat::scene {
 

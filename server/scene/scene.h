@@ -18,10 +18,26 @@
 #include "scene/deadline.h"
 #include "scene/devices.h"
 #include "scene/geometry.h"
-#include "scene/location.h"
-#include "scene/variation.h"
+#include "scene/problem.h"
 
 namespace ziggurat::scene {
+
+// --- variation --------------------------------------------------------------------------------
+
+/// A value for all attributes that a path names: `--set`.
+struct Setting {
+  std::string path;  ///< XPath from the root element: `physics_engines/dynamics3d/@iterations`
+  std::string value;
+};
+
+/// Variation of a run against its scene file, apart from options with a name of their own.
+struct Variation {
+  std::vector<Setting> settings;                                ///< in order: later ones win
+  std::vector<std::pair<std::string, std::string>> parameters;  ///< names and values: `--param`
+};
+
+/// One line for each, for hashes; empty if there are none.
+std::string to_text(const Variation& variation);
 
 // --- time -------------------------------------------------------------------------------------
 
@@ -199,7 +215,7 @@ struct Medium {
   std::string id;
   MediumKind kind;
   bool checks_occlusions = true;  ///< range_and_bearing: bodies in between stop packets
-  Location where;
+  Location where = {};
 };
 
 struct Arena {

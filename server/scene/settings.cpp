@@ -145,13 +145,15 @@ void add(std::vector<Attribute>& to, const pugi::xml_node& element, const std::s
   to.push_back({node, attribute});
 }
 
-std::vector<std::string> names_in(const pugi::xpath_node_set& nodes, bool of_attributes) {
+enum class NodeKind { element, attribute };
+
+std::vector<std::string> names_in(const pugi::xpath_node_set& nodes, NodeKind kind) {
   std::vector<std::string> names;
   const auto add_name = [&](const char* name) {
     if (*name != 0 && std::ranges::find(names, name) == names.end()) names.emplace_back(name);
   };
   for (const pugi::xpath_node& found : nodes) {
-    if (of_attributes) {
+    if (kind == NodeKind::attribute) {
       for (const pugi::xml_attribute each : found.node().attributes()) add_name(each.name());
     } else {
       for (const pugi::xml_node each : found.node().children()) add_name(each.name());
@@ -229,10 +231,11 @@ std::string why_nothing(const pugi::xml_node& root, const std::string& path) {
     const bool is_attribute = step.starts_with('@');
     if (is_attribute) step.remove_prefix(1);
     const std::string_view name = step.substr(0, step.find('['));
-    const auto known = names_in(std::get<0>(parents), is_attribute);
+    const auto known =
+        names_in(std::get<0>(parents), is_attribute ? NodeKind::attribute : NodeKind::element);
     const bool is_known = std::ranges::find(known, name) != known.end();
     if (end == path.size() && ending_of(path).name.empty()) {
-      const auto attributes = names_in(std::get<0>(parents), true);
+      const auto attributes = names_in(std::get<0>(parents), NodeKind::attribute);
       const bool is_one = std::ranges::find(attributes, name) != attributes.end();
       return fmt::format(
           "matches nothing: {} {}", in_quotes(step),

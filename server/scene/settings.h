@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "scene/values.h"
-#include "scene/variation.h"
 
 namespace ziggurat::scene {
 

@@ -14,7 +14,7 @@
 #include "math/pose.h"
 #include "scene/devices.h"
 #include "scene/scene.h"
-#include "text/trim.h"
+#include "text/shortened.h"
 
 namespace ziggurat::scene {
 

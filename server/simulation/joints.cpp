@@ -65,7 +65,7 @@ std::optional<JointFault> fault_of(const Simulation& world, std::size_t entity,
 }
 
 void set_joint(Simulation& to, std::size_t entity, const JointMotion& wanted) {
-  Simulation::Parts& parts = *to.parts_;
+  Parts& parts = to.parts();
   const auto& joints = parts.entities[entity].joints;
   const auto joint = std::ranges::find(joints, wanted.joint, &scene::Joint::id);
   const physics::JointIndex index =

@@ -1,5 +1,5 @@
 #pragma once
-// Parts of a simulation.
+// State of a simulation, which the functions of this folder work on.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,12 +15,12 @@
 
 namespace ziggurat::simulation {
 
-struct Simulation::Parts {
+struct Parts {
   Parts(const scene::Scene& scene, const Options& options, world::Layout& layout);
 
   /// All or nothing.
-  void spawn(const scene::Scene& scene, const scene::Entity& entity, world::Layout& grown);
-  void grow(const scene::Scene& scene, const scene::Entity& entity, world::Layout& grown);
+  void spawn(const scene::Scene& scene, const scene::Entity& entity);
+  void grow(const scene::Scene& scene, const scene::Entity& entity);
   void remove(std::size_t entity);
   devices::Tick tick() {
     if (looks_are_old) look_around();
@@ -38,9 +38,9 @@ struct Simulation::Parts {
   void archive(math::Archive& archive);
   /// Does again what was done to a world that began as this one did. With another seed than the
   /// snapshot's random streams stay at their begin.
-  void repeat(const scene::Scene& scene, const Snapshot& snapshot, world::Layout& grown);
+  void repeat(const scene::Scene& scene, const Snapshot& snapshot);
   std::vector<std::byte> with_own_streams(const std::vector<std::byte>& given);
-  void repeat_edit(const scene::Scene& scene, const WorldEdit& edit, world::Layout& grown);
+  void repeat_edit(const scene::Scene& scene, const WorldEdit& edit);
 
   std::uint64_t seed;
   unsigned ticks_per_second;
@@ -48,7 +48,7 @@ struct Simulation::Parts {
   double substep;  // [s]
   physics::World physics;
   physics::Rays rays;
-  const world::Layout& layout;
+  world::Layout& layout;
   world::State state;
   world::Observations observations;
   world::Commands commands;
@@ -63,5 +63,8 @@ struct Simulation::Parts {
   History history;
   std::size_t archive_size = 0;  // of the last snapshot [bytes]
 };
+
+/// The first entity with a pose or a velocity that is not finite, into Layout::entities.
+std::optional<std::size_t> first_not_finite(const world::Layout& layout, const world::State& state);
 
 }  // namespace ziggurat::simulation

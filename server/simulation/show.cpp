@@ -4,13 +4,12 @@
 
 #include <cmath>
 
-#include "simulation/finite.h"
 #include "simulation/parts.h"
 
 namespace ziggurat::simulation {
 
 void show(Simulation& to, std::uint64_t tick, std::span<const world::LinkState> links) {
-  Simulation::Parts& p = *to.parts_;
+  Parts& p = to.parts();
   world::State& state = p.state;
   if (links.size() != state.links.size()) {
     throw SnapshotError(fmt::format("there are poses of {} links, and the world has {}",
@@ -38,8 +37,8 @@ void show(Simulation& to, std::uint64_t tick, std::span<const world::LinkState> 
 }
 
 void repeat(Simulation& to, const scene::Scene& scene, const WorldEdit& edit) {
-  to.parts_->repeat_edit(scene, edit, *to.layout_);
-  to.parts_->history.edits.push_back(edit);
+  to.parts().repeat_edit(scene, edit);
+  to.parts().history.edits.push_back(edit);
 }
 
 }  // namespace ziggurat::simulation

@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "simulation/finite.h"
 #include "simulation/layout.h"
 #include "simulation/parts.h"
 #include "simulation/placement.h"
@@ -23,16 +22,22 @@ double substep_length(const scene::Scene& scene) {
   return slow ? tick / (iterations * iterations) : tick / iterations;
 }
 
-}  // namespace
+/// 0 for finite numbers, otherwise NaN; so that one comparison does for many numbers.
+double excess(const math::Pose& pose) {
+  return 0.0 * (pose.position.sum() + pose.orientation.coeffs().sum());
+}
+
+double excess(const world::LinkState& link) {
+  return excess(link.pose) + 0.0 * (link.velocity.sum() + link.angular_velocity.sum());
+}
 
 /// The world before an entity is added to it; puts it back unless told to keep the new one. Putting
 /// back moves and shrinks only, so that it can't fail.
-class Simulation::Growing {
+class Growing {
  public:
-  Growing(Parts& parts, world::Layout& layout)
+  explicit Growing(Parts& parts)
       : parts_(parts),
-        layout_now_(layout),
-        layout_(layout),
+        layout_(parts.layout),
         state_(parts.state),
         observations_(parts.observations),
         commands_(parts.commands),
@@ -43,7 +48,7 @@ class Simulation::Growing {
   ~Growing() {
     if (kept_) return;
     const std::size_t count = layout_.entities.size();
-    layout_now_ = std::move(layout_);
+    parts_.layout = std::move(layout_);
     parts_.state = std::move(state_);
     parts_.observations = std::move(observations_);
     parts_.commands = std::move(commands_);
@@ -60,7 +65,6 @@ class Simulation::Growing {
 
  private:
   Parts& parts_;
-  world::Layout& layout_now_;
   world::Layout layout_;
   world::State state_;
   world::Observations observations_;
@@ -70,16 +74,18 @@ class Simulation::Growing {
   bool kept_ = false;
 };
 
-Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, world::Layout& made)
+}  // namespace
+
+Parts::Parts(const scene::Scene& scene, const Options& options, world::Layout& into)
     : seed(options.seed),
       ticks_per_second(scene.experiment.ticks_per_second),
       substeps(scene.physics.iterations),
       substep(substep_length(scene)),
       physics(scene.physics, substep),
       rays(scene.physics),
-      layout(made) {
+      layout(into) {
   entities = place_entities(scene, options.seed, options.tell);
-  made = make_layout(scene, entities, substep);
+  layout = make_layout(scene, entities, substep);
   constexpr std::size_t between_messages = 100;
   for (std::size_t i = 0; i < entities.size(); ++i) {
     physics.add(entities[i]);
@@ -96,23 +102,21 @@ Simulation::Parts::Parts(const scene::Scene& scene, const Options& options, worl
   devices.start(first);
 }
 
-void Simulation::Parts::look_around() {
+void Parts::look_around() {
   if (devices.casts_rays()) rays.update(state);
   if (devices.needs_index()) index->build(state);
   looks_are_old = false;
 }
 
-void Simulation::Parts::spawn(const scene::Scene& scene, const scene::Entity& entity,
-                              world::Layout& grown) {
-  Growing before(*this, grown);
-  grow(scene, entity, grown);
+void Parts::spawn(const scene::Scene& scene, const scene::Entity& entity) {
+  Growing before(*this);
+  grow(scene, entity);
   before.keep();
 }
 
-void Simulation::Parts::grow(const scene::Scene& scene, const scene::Entity& entity,
-                             world::Layout& grown) {
-  const std::size_t first_entity = grown.entities.size(), first_robot = grown.robots.size();
-  append(scene, entity, devices, substep, grown);
+void Parts::grow(const scene::Scene& scene, const scene::Entity& entity) {
+  const std::size_t first_entity = layout.entities.size(), first_robot = layout.robots.size();
+  append(scene, entity, devices, substep, layout);
   entities.push_back(entity);
   physics.add(entity);
   ++in_physics;
@@ -127,7 +131,7 @@ void Simulation::Parts::grow(const scene::Scene& scene, const scene::Entity& ent
   devices.start(first);
 }
 
-void Simulation::Parts::remove(std::size_t entity) {
+void Parts::remove(std::size_t entity) {
   physics.remove(entity);
   rays.remove(entity);
   state.absent.resize(layout.entities.size());
@@ -155,13 +159,13 @@ void Simulation::reset(const scene::Scene& scene, const Options& options) {
   }
 }
 
-void Simulation::Parts::list_contacts(bool wanted) {
+void Parts::list_contacts(bool wanted) {
   lists_contacts = wanted;
   contacts.clear();
   if (wanted) physics.list_contacts(contacts);
 }
 
-void Simulation::Parts::move(std::size_t entity, const math::Pose& pose) {
+void Parts::move(std::size_t entity, const math::Pose& pose) {
   physics.move(entity, pose);
   physics.read(entity, state);
   looks_are_old = true;
@@ -172,7 +176,7 @@ void Simulation::move(std::size_t entity, const math::Pose& pose) { parts_->move
 std::optional<std::size_t> overlapped_by(const Simulation& in, const scene::Entity& entity,
                                          const math::Pose& pose,
                                          std::optional<std::size_t> except) {
-  return in.parts_->physics.overlapped_by(entity, pose, except);
+  return in.parts().physics.overlapped_by(entity, pose, except);
 }
 
 void Simulation::spawn(const scene::Scene& scene, const scene::Entity& entity, std::string xml) {
@@ -189,7 +193,7 @@ void Simulation::spawn(const scene::Scene& scene, const scene::Entity& entity, s
   auto& edits = parts_->history.edits;
   if (edits.size() == edits.capacity())
     edits.reserve(2 * edits.size() + 1);  // what is done can be written down
-  parts_->spawn(scene, entity, *layout_);
+  parts_->spawn(scene, entity);
   edits.push_back(std::move(edit));
 }
 
@@ -206,7 +210,22 @@ world::Commands& Simulation::commands() { return parts_->commands; }
 
 void Simulation::step() { parts_->step(); }
 
-void Simulation::Parts::step() {
+std::optional<std::size_t> first_not_finite(const world::Layout& layout,
+                                            const world::State& state) {
+  double sum = 0;
+  for (const math::Pose& origin : state.origins) sum += excess(origin);
+  for (const world::LinkState& link : state.links) sum += excess(link);
+  if (sum == 0) return std::nullopt;
+  for (std::size_t i = 0; i < layout.entities.size(); ++i) {
+    double of_entity = excess(state.origins[i]);
+    const world::Range links = layout.entities[i].links;
+    for (std::size_t l = links.begin; l < links.end(); ++l) of_entity += excess(state.links[l]);
+    if (of_entity != 0) return i;
+  }
+  return std::nullopt;
+}
+
+void Parts::step() {
   devices::Tick now = tick();
   state.rays.clear();
   all_rays.clear();
@@ -259,7 +278,7 @@ std::vector<std::string> Simulation::notices() const {
 
 std::optional<std::string> slow_notice(const Simulation& simulation) {
   constexpr std::size_t often = 100;  // substeps
-  const Simulation::Parts& parts = *simulation.parts_;
+  const Parts& parts = simulation.parts();
   const physics::Convergence convergence = parts.physics.convergence();
   if (convergence.divided < often) return std::nullopt;
   return fmt::format(

@@ -15,14 +15,12 @@
 #include "simulation/placement.h"
 #include "simulation/snapshot.h"
 #include "world/commands.h"
-#include "world/contact.h"
 #include "world/layout.h"
 #include "world/state.h"
 
 namespace ziggurat::simulation {
 
-struct JointFault;
-struct JointMotion;
+struct Parts;
 
 struct Options {
   std::uint64_t seed = 1;  ///< of every random stream; not 0
@@ -114,23 +112,11 @@ class Simulation {
   double tick_length() const;      ///< simulated time per tick by the clock on the wall [s]
   double physical_length() const;  ///< physical time per tick: shorter under beta50 [s]
 
-  // show.h
-  friend void show(Simulation& to, std::uint64_t tick, std::span<const world::LinkState> links);
-  friend void repeat(Simulation& to, const scene::Scene& scene, const WorldEdit& act);
-
-  // joints.h
-  friend std::optional<JointFault> fault_of(const Simulation& world, std::size_t entity,
-                                            const JointMotion& wanted);
-  friend void set_joint(Simulation& to, std::size_t entity, const JointMotion& wanted);
-
-  friend std::optional<std::size_t> overlapped_by(const Simulation& in, const scene::Entity& entity,
-                                                  const math::Pose& pose,
-                                                  std::optional<std::size_t> except);
-  friend std::optional<std::string> slow_notice(const Simulation& simulation);
+  /// The state that free functions of this folder read and change (parts.h).
+  Parts& parts() { return *parts_; }
+  const Parts& parts() const { return *parts_; }
 
  private:
-  struct Parts;
-  class Growing;
   std::unique_ptr<world::Layout> layout_;  // others keep references to it
   std::unique_ptr<Parts> parts_;
 };

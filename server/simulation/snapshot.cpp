@@ -54,7 +54,7 @@ std::size_t Snapshot::size() const {
   return size;
 }
 
-void Simulation::Parts::archive(math::Archive& archive) {
+void Parts::archive(math::Archive& archive) {
   archive("physics", physics);
   world::archive(archive, layout, state);
   world::archive(archive, layout, state, observations);
@@ -83,19 +83,18 @@ Snapshot Simulation::snapshot() const {
   return snapshot;
 }
 
-void Simulation::Parts::repeat_edit(const scene::Scene& scene, const WorldEdit& edit,
-                                    world::Layout& grown) {
-  const std::size_t entities = grown.entities.size();
+void Parts::repeat_edit(const scene::Scene& scene, const WorldEdit& edit) {
+  const std::size_t entities = layout.entities.size();
   const bool spawns = edit.kind == WorldEdit::Kind::spawn;
   if (spawns ? edit.entity != entities || !edit.spawned
              : edit.entity >= entities || state.is_absent(edit.entity)) {
     throw SnapshotError("An entity of the snapshot is not in the scene.");
   }
-  spawns ? grow(scene, *edit.spawned, grown) : remove(edit.entity);
+  spawns ? grow(scene, *edit.spawned) : remove(edit.entity);
 }
 
 /// A state with the random streams that this world has now.
-std::vector<std::byte> Simulation::Parts::with_own_streams(const std::vector<std::byte>& given) {
+std::vector<std::byte> Parts::with_own_streams(const std::vector<std::byte>& given) {
   const auto write = [this](std::vector<math::Archive::Place>& streams) {
     std::vector<std::byte> bytes;
     auto archive = math::Archive::writer(bytes, &streams);
@@ -120,9 +119,8 @@ std::vector<std::byte> Simulation::Parts::with_own_streams(const std::vector<std
   return mixed;
 }
 
-void Simulation::Parts::repeat(const scene::Scene& scene, const Snapshot& snapshot,
-                               world::Layout& grown) {
-  for (const WorldEdit& edit : snapshot.history.edits) repeat_edit(scene, edit, grown);
+void Parts::repeat(const scene::Scene& scene, const Snapshot& snapshot) {
+  for (const WorldEdit& edit : snapshot.history.edits) repeat_edit(scene, edit);
   std::vector<std::byte> mixed;
   if (seed != snapshot.seed) mixed = with_own_streams(snapshot.state);
   auto archive = math::Archive::reader(mixed.empty() ? snapshot.state : mixed);
@@ -144,7 +142,7 @@ void Simulation::restore(const scene::Scene& scene, const Snapshot& snapshot,
   try {
     auto fresh =
         std::make_unique<Parts>(scene, Options{seed.value_or(snapshot.seed), {}}, *layout_);
-    fresh->repeat(scene, snapshot, *layout_);
+    fresh->repeat(scene, snapshot);
     if (world::hash(fresh->state, fresh->observations) != snapshot.hash) {
       throw SnapshotError("The snapshot's state is not the one that its hash is of.");
     }

@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "supervision/moves.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::supervision {
 

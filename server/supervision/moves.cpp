@@ -8,7 +8,7 @@
 #include <string>
 
 #include "simulation/joints.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::supervision {
 

@@ -16,8 +16,7 @@
 #include "processes/spawned_scripts.h"
 #include "scene/names.h"
 #include "supervision/moves.h"
-#include "supervision/opener.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::supervision {
 

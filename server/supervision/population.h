@@ -16,6 +16,7 @@
 #include "processes/spawned_scripts.h"
 #include "reports/console.h"
 #include "scene/additions.h"
+#include "scene/files.h"
 #include "supervision/callers.h"
 #include "supervision/world.h"
 #include "supervision/world_change.h"
@@ -90,5 +91,12 @@ class Population {
   std::size_t size_left_;    ///< for more entities [bytes]
   std::unordered_map<std::string, std::size_t> sizes_;  ///< of the elements spawned [bytes]
 };
+
+/// Opens files below the allowed folders: as an element of the scene file would name them,
+/// otherwise relative to one of these folders.
+/// @param allowed  must outlive what is returned
+/// @param spawned  gets the files, and must outlive it, too; may be null
+scene::OpenFile opener(const processes::AllowedFiles& allowed, const std::string& scene_file,
+                       Spawned* spawned = nullptr);
 
 }  // namespace ziggurat::supervision

@@ -7,9 +7,9 @@
 #include <variant>
 
 #include "processes/spawned_scripts.h"
-#include "supervision/opener.h"
+#include "supervision/population.h"
 #include "supervision/supervision.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::supervision {
 

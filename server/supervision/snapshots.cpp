@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::supervision {
 

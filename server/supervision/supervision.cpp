@@ -12,7 +12,7 @@
 #include "math/hash.h"
 #include "network/glob.h"
 #include "supervision/moves.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::supervision {
 

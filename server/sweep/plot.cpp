@@ -12,6 +12,8 @@
 #include "reports/plot.h"
 #include "sweep/means.h"
 #include "text/numbers.h"
+#include "text/printable.h"
+#include "text/shortened.h"
 
 namespace ziggurat::sweep {
 namespace {

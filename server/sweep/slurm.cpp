@@ -10,7 +10,7 @@
 #include "processes/child_process.h"
 #include "text/numbers.h"
 #include "text/quoting.h"
-#include "text/trim.h"
+#include "text/shortened.h"
 
 namespace ziggurat::sweep {
 namespace {

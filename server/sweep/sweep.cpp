@@ -9,7 +9,7 @@
 #include <set>
 #include <system_error>
 
-#include "text/duration.h"
+#include "text/numbers.h"
 
 namespace ziggurat::sweep {
 namespace {

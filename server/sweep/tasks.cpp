@@ -7,7 +7,7 @@
 
 #include "sweep/sweep.h"
 #include "text/numbers.h"
-#include "text/trim.h"
+#include "text/shortened.h"
 
 namespace ziggurat::sweep {
 namespace {

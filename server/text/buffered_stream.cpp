@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <limits.h>
 #include <poll.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -79,5 +80,18 @@ int BufferedStream::finish(std::chrono::milliseconds most) {
 }
 
 std::uint64_t BufferedStream::take_dropped() { return std::exchange(dropped_, 0); }
+
+void prepare_output() {
+  open_standard_streams();
+  ::signal(SIGXFSZ, SIG_IGN);
+}
+
+void open_standard_streams() {
+  int file = 0;
+  do {
+    file = ::open("/dev/null", O_RDWR);  // the lowest number that is free
+  } while (file >= 0 && file <= STDERR_FILENO);
+  if (file > STDERR_FILENO) ::close(file);
+}
 
 }  // namespace ziggurat::text

@@ -1,6 +1,6 @@
 #pragma once
 // stdout or stderr: writing never waits for its reader. What the reader does not take waits in
-// memory up to a limit; lines beyond it are dropped and counted.
+// memory up to a limit; lines beyond it are dropped and counted. Preparation of these streams.
 
 #include <chrono>
 #include <cstddef>
@@ -46,5 +46,13 @@ class BufferedStream {
   std::size_t begin_ = 0;  // of what is not yet written
   std::uint64_t dropped_ = 0;
 };
+
+/// Prepares the output of main(), which calls it first. It calls open_standard_streams(). A file
+/// that grows beyond `ulimit -f` becomes an error of write() instead of SIGXFSZ.
+void prepare_output();
+
+/// Opens /dev/null for each of stdin, stdout and stderr that the parent has closed (`>&-`):
+/// otherwise the first file or socket that is opened would get its number, and what is printed.
+void open_standard_streams();
 
 }  // namespace ziggurat::text

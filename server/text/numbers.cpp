@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace ziggurat::text {
@@ -65,6 +67,13 @@ std::size_t to_size(std::string_view option, const std::string& text) {
     throw UsageError(fmt::format("{} is '{}', which is too large", option, text));
   }
   return static_cast<std::size_t>(number) << shift;
+}
+
+std::string to_duration(double seconds) {
+  const auto whole = static_cast<std::uint64_t>(std::min(std::ceil(seconds), 1e15));
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
 }
 
 }  // namespace ziggurat::text

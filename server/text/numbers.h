@@ -1,5 +1,5 @@
 #pragma once
-// Numbers as people write them, for example on a command line.
+// Numbers as people write them, for example on a command line, and durations as they read them.
 
 #include <cstddef>
 #include <cstdint>
@@ -35,5 +35,9 @@ std::optional<double> seconds_in(std::string_view unit);
 
 /// Bytes, with an optional K, M or G (powers of 1024) behind the number.
 std::size_t to_size(std::string_view option, const std::string& text);
+
+/// A time that is left, rounded up: `45 s`, `3 min 20 s` or `2 h 5 min`.
+/// @param seconds  0 or more
+std::string to_duration(double seconds);
 
 }  // namespace ziggurat::text

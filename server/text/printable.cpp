@@ -82,7 +82,9 @@ std::string shown(std::string_view character, bool is_json = false) {
   return escaped.data();
 }
 
-std::string all_shown(std::string_view text, bool is_json) {
+enum class Form { plain, json };
+
+std::string all_shown(std::string_view text, Form form) {
   std::string result;
   result.reserve(text.size());
   while (!text.empty()) {
@@ -91,7 +93,7 @@ std::string all_shown(std::string_view text, bool is_json) {
     text.remove_prefix(static_cast<std::size_t>(plain));
     if (text.empty()) break;
     const std::size_t length = length_of_character(text);
-    result += shown(text.substr(0, length), is_json);
+    result += shown(text.substr(0, length), form == Form::json);
     text.remove_prefix(std::max<std::size_t>(length, 1));
   }
   return result;
@@ -117,9 +119,9 @@ std::string indented(std::string_view text) {
   return result;
 }
 
-std::string printable(std::string_view text) { return all_shown(text, false); }
+std::string printable(std::string_view text) { return all_shown(text, Form::plain); }
 
-std::string printable_json(std::string_view json) { return all_shown(json, true); }
+std::string printable_json(std::string_view json) { return all_shown(json, Form::json); }
 
 std::string printable_part(std::string_view text, std::size_t most) {
   constexpr std::string_view more = "\u2026";

@@ -50,4 +50,11 @@ std::string shortened_message(std::string_view message) {
   return result.size() > longest_message ? both_ends(result, 3000, 900) : result;
 }
 
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view white_space = " \t\r\n\v\f";
+  const std::size_t begin = text.find_first_not_of(white_space);
+  if (begin == std::string_view::npos) return text.substr(0, 0);
+  return text.substr(begin, text.find_last_not_of(white_space) - begin + 1);
+}
+
 }  // namespace ziggurat::text

@@ -62,7 +62,8 @@ Hub::Hub(Introduction introduction, std::vector<Parameter> parameters, ViewerReq
       parameters_(std::move(parameters)),
       requests_(requests) {}
 
-Viewer& Hub::add(bool may_steer) {
+Viewer& Hub::add(Permission permission) {
+  const bool may_steer = permission == Permission::steer;
   auto viewer = std::make_unique<Viewer>();
   viewer->id = next_viewer_++;
   viewer->may_steer = may_steer;
@@ -99,8 +100,8 @@ void Hub::send(Viewer& viewer, Item item) {
   if (!viewer.send_queue.add_answer(std::move(item))) viewer.is_over = true;
 }
 
-void Hub::receive(Viewer& viewer, std::string_view message, bool is_text) {
-  const Incoming incoming = is_text ? read_text(message) : read_binary(message);
+void Hub::receive(Viewer& viewer, std::string_view message, Frame frame) {
+  const Incoming incoming = frame == Frame::text ? read_text(message) : read_binary(message);
   if (!std::holds_alternative<Wrong>(incoming)) viewer.faults = 0;
   std::visit([&](const auto& each) { handle(viewer, each); }, incoming);
 }
@@ -284,12 +285,12 @@ void Hub::set_parameter(const Parameter& parameter) {
   }
 }
 
-void Hub::answer(const ViewerCall& call, bool is_done, const std::string& text) {
+void Hub::answer(const ViewerCall& call, Outcome outcome, const std::string& text) {
   Viewer* viewer = find(call.viewer);
   if (!viewer) return;
   --viewer->unanswered;
-  send(*viewer, is_done ? service_answer(call.service, call.number, text)
-                        : service_failure(call.service, call.number, text));
+  send(*viewer, outcome == Outcome::done ? service_answer(call.service, call.number, text)
+                                         : service_failure(call.service, call.number, text));
 }
 
 }  // namespace ziggurat::view

@@ -13,6 +13,7 @@
 
 #include "channels/channel.h"
 #include "channels/message.h"
+#include "view/access.h"
 #include "view/known_channels.h"
 #include "view/messages.h"
 #include "view/send_queue.h"
@@ -46,12 +47,14 @@ class Hub {
   /// @param requests  must outlive this
   Hub(Introduction introduction, std::vector<Parameter> parameters, ViewerRequests& requests);
 
-  Viewer& add(bool may_steer);
+  /// @param permission  not `refused`
+  Viewer& add(Permission permission);
   void remove(std::uint64_t viewer);
   Viewer* find(std::uint64_t viewer);
   std::size_t size() const { return viewers_.size(); }
 
-  void receive(Viewer& viewer, std::string_view message, bool is_text);
+  enum class Frame { text, binary };
+  void receive(Viewer& viewer, std::string_view message, Frame frame);
   /// Next item to send to the viewer: answers, changes of the channels, then ticks.
   std::optional<Item> next(Viewer& viewer);
 
@@ -61,7 +64,8 @@ class Hub {
   void show(std::int64_t time_ns, std::span<const channels::Message> messages);
   void set_parameter(const Parameter& parameter);
   /// @param text  JSON of an answer, or a sentence why it was refused
-  void answer(const ViewerCall& call, bool is_done, const std::string& text);
+  enum class Outcome { done, refused };
+  void answer(const ViewerCall& call, Outcome outcome, const std::string& text);
 
   /// Calls visit(viewer) for each.
   template <class Visit>

@@ -10,7 +10,7 @@
 
 #include "channels/channel.h"
 #include "posix/descriptor.h"
-#include "view/call.h"
+#include "view/messages.h"
 
 namespace ziggurat::view {
 

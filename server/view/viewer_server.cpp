@@ -87,7 +87,8 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
     --shared_.connections;
   }
 
-  void start(const http::Request& request, bool may_steer) {
+  void start(const http::Request& request, Permission permission) {
+    const bool may_steer = permission == Permission::steer;
     websocket::stream_base::timeout times{request_time, shared_.silence, true};
     socket_.set_option(times);
     socket_.read_message_max(may_steer ? longest_message_to_steer : longest_message_to_look);
@@ -97,8 +98,8 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
       response.set(Field::sec_websocket_protocol, protocol);
       response.set(Field::server, "ziggurat");
     }));
-    socket_.async_accept(request, [self = shared_from_this(), may_steer](Error error) {
-      if (!error) self->opened(may_steer);
+    socket_.async_accept(request, [self = shared_from_this(), permission](Error error) {
+      if (!error) self->opened(permission);
     });
   }
 
@@ -143,14 +144,15 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
   }
 
  private:
-  void opened(bool may_steer) {
+  void opened(Permission permission) {
+    const bool may_steer = permission == Permission::steer;
     const std::size_t most = may_steer ? ViewerServer::most_viewers : ViewerServer::most_lookers;
     if (shared_.is_closing || shared_.hub.size() >= most) {
       shared_.refused.push_back(weak_from_this());
       return socket_.async_close(websocket::close_code::try_again_later,
                                  [self = shared_from_this()](Error) {});
     }
-    viewer_ = &shared_.hub.add(may_steer);
+    viewer_ = &shared_.hub.add(permission);
     shared_.open.insert(this);
     read();
     pump();
@@ -163,7 +165,7 @@ class ViewerConnection : public std::enable_shared_from_this<ViewerConnection> {
       const auto data = self->buffer_.cdata();
       self->shared_.hub.receive(*self->viewer_,
                                 {static_cast<const char*>(data.data()), data.size()},
-                                self->socket_.got_text());
+                                self->socket_.got_text() ? Hub::Frame::text : Hub::Frame::binary);
       self->buffer_.consume(self->buffer_.size());
       self->pump();
       if (self->viewer_) self->read_in_time();
@@ -238,8 +240,8 @@ http::Service service_of(Shared& shared) {
     return refusal_of(shared.rules, request);
   };
   service.upgrade = [&shared](http::Stream stream, const http::Request& request) {
-    const bool may_steer = permission_of(shared.rules, head_of(request)) == Permission::steer;
-    std::make_shared<ViewerConnection>(std::move(stream), shared)->start(request, may_steer);
+    const Permission permission = permission_of(shared.rules, head_of(request));
+    std::make_shared<ViewerConnection>(std::move(stream), shared)->start(request, permission);
   };
   return service;
 }
@@ -429,12 +431,13 @@ void ViewerServer::set_parameter(Parameter parameter) {
 }
 
 void ViewerServer::answer(const ViewerCall& call, std::uint64_t tick) {
-  state_->post(
-      [call, tick](Hub& hub) { hub.answer(call, true, fmt::format("{{\"tick\":{}}}", tick)); });
+  state_->post([call, tick](Hub& hub) {
+    hub.answer(call, Hub::Outcome::done, fmt::format("{{\"tick\":{}}}", tick));
+  });
 }
 
 void ViewerServer::refuse(const ViewerCall& call, const std::string& why) {
-  state_->post([call, why](Hub& hub) { hub.answer(call, false, why); });
+  state_->post([call, why](Hub& hub) { hub.answer(call, Hub::Outcome::refused, why); });
 }
 
 }  // namespace ziggurat::view

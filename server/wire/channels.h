@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "wire/fault.h"
+#include "wire/messages.h"
 #include "wire/roster.h"
 #include "world/commands.h"
 #include "world/devices.h"

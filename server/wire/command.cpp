@@ -2,8 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
 #include "wire/devices.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::wire {
 namespace {
@@ -68,6 +76,81 @@ void append(const google::protobuf::RepeatedPtrField<v1::LogLine>& log, const Ro
   for (const v1::LogLine& line : log) {
     if (roster.taken[line.robot()]) continue;
     lines.push_back({roster.robots[line.robot()], line.error(), line.text()});
+  }
+}
+
+void reset_commands(const world::Layout& layout, std::size_t robot, world::Commands& commands) {
+  world::for_each_channel(world::commanded, [&](auto i) {
+    const auto& channel = std::get<i>(world::commanded);
+    if (channel.released == world::Released::kept) return;
+    auto& values = commands.*channel.values;
+    const world::Range range = channel.devices(layout, layout.robots[robot]);
+    std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(range.begin), range.count,
+                typename std::decay_t<decltype(values)>::value_type{});
+  });
+}
+
+void forget_radio_messages(const Roster& roster, world::RadioMessages& messages) {
+  if (messages.entries.empty()) return;
+  const auto& pieces = roster.radios.stretches;  // ascending
+  const auto is_own = [&](std::size_t radio) {
+    const auto after = std::ranges::upper_bound(pieces, radio, {}, &Packing::Stretch::flat);
+    if (after == pieces.begin()) return false;
+    const Packing::Stretch& piece = *std::prev(after);
+    if (radio >= piece.flat + piece.count) return false;
+    return !roster.taken[roster.radios.owner(piece.packed + radio - piece.flat)];
+  };
+  world::RadioMessages others;  // without the bytes of those that are forgotten
+  for (const world::RadioMessages::Entry& entry : messages.entries) {
+    if (!is_own(entry.radio)) others.add(entry.radio, messages.payload(entry));
+  }
+  messages = std::move(others);
+}
+
+namespace {
+
+constexpr std::size_t longest_name = 64;  // [bytes]
+
+bool is_name(std::string_view text) {
+  const auto may_stand = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-' || c == '.';
+  };
+  return !text.empty() && text.size() <= longest_name && std::ranges::all_of(text, may_stand);
+}
+
+}  // namespace
+
+std::optional<Fault> check(const google::protobuf::RepeatedPtrField<v1::Metric>& metrics,
+                           const Roster& roster) {
+  for (const v1::Metric& metric : metrics) {
+    if (auto found = check_position(metric.robot(), roster, "metrics")) return found;
+  }
+  return check_names_and_values(metrics);
+}
+
+std::optional<Fault> check_names_and_values(
+    const google::protobuf::RepeatedPtrField<v1::Metric>& metrics) {
+  for (const v1::Metric& metric : metrics) {
+    if (!is_name(metric.name())) {
+      return make_fault(ErrorCode::bad_value, "metrics",
+                        fmt::format("The name of a metric must have 1 to {} letters, digits, '_', "
+                                    "'-' or '.'.",
+                                    longest_name));
+    }
+    if (!std::isfinite(metric.value())) {
+      return make_fault(ErrorCode::bad_value, "metrics",
+                        fmt::format("The metric '{}' must be finite.", metric.name()));
+    }
+  }
+  return std::nullopt;
+}
+
+void append(const google::protobuf::RepeatedPtrField<v1::Metric>& metrics, const Roster& roster,
+            std::vector<Metric>& to) {
+  for (const v1::Metric& metric : metrics) {
+    if (roster.taken[metric.robot()]) continue;
+    to.push_back({roster.robots[metric.robot()], metric.name(), metric.value()});
   }
 }
 

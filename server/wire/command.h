@@ -1,7 +1,9 @@
 #pragma once
-// Command -> world::Commands, and Leave. A message is checked whole before anything of it has
-// effect. The part of radios is in command_radios.cpp, that of channels in devices.cpp.
+// Command -> world::Commands, Leave, and the commands of robots that left. A message is checked
+// whole before anything of it has effect. The part of radios is in command_radios.cpp, that of
+// channels in devices.cpp.
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -39,5 +41,25 @@ std::optional<Fault> check_radio_messages(const v1::Command& command, const Rost
 /// Appends checked messages. Those of robots that are gone are skipped.
 void apply_radio_messages(const v1::Command& command, const Roster& roster,
                           world::RadioMessages& messages);
+
+/// Joint targets, currents of magnets, speeds of wheels and turrets and data of range and bearing
+/// become 0. LEDs, tags and a turret's mode stay as they are.
+/// @param robot  into the layout's robots
+void reset_commands(const world::Layout& layout, std::size_t robot, world::Commands& commands);
+
+/// Takes back the radio messages that the robots of a session have sent at this tick.
+void forget_radio_messages(const Roster& roster, world::RadioMessages& messages);
+
+/// Checks the metrics of a session.
+std::optional<Fault> check(const google::protobuf::RepeatedPtrField<v1::Metric>& metrics,
+                           const Roster& roster);
+
+/// The same for their names and values only.
+std::optional<Fault> check_names_and_values(
+    const google::protobuf::RepeatedPtrField<v1::Metric>& metrics);
+
+/// Appends checked metrics. Those of robots that were taken over are skipped.
+void append(const google::protobuf::RepeatedPtrField<v1::Metric>& metrics, const Roster& roster,
+            std::vector<Metric>& to);
 
 }  // namespace ziggurat::wire

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "wire/cost.h"
 #include "world/limits.h"
+#include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::wire {
 namespace {
@@ -66,6 +66,22 @@ CommandLimits command_limits(const Roster& roster, const world::Layout& layout, 
   }
   const std::size_t most = is_json ? std::min(bytes + by_radio, longest_json) : bytes + by_radio;
   return {most, std::min(most_fields, bytes / bytes_per_field + by_radio / radio_bytes_per_field)};
+}
+
+std::size_t count_fields(std::string_view bytes) {
+  return v1::count_fields(bytes, *v1::ClientMessage::descriptor(), most_fields);
+}
+
+std::size_t count_json_values(std::string_view text) {
+  std::size_t values = 0;
+  bool is_text = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char each = text[i];
+    if (each == '"') is_text = !is_text;
+    if (is_text && each == '\\') ++i;
+    if (!is_text && (each == ',' || each == '[' || each == '{')) ++values;
+  }
+  return values;
 }
 
 }  // namespace ziggurat::wire

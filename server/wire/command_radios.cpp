@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "wire/command.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 #include "world/limits.h"
 
 namespace ziggurat::wire {

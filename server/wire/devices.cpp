@@ -220,6 +220,19 @@ void describe(const Run& run, std::size_t robot, v1::RobotDescription& descripti
   }
 }
 
+bool fit_into_welcome(const Run& run, std::span<const std::size_t> robots) {
+  constexpr std::size_t most_bytes = std::size_t{64} << 20, header = 16;
+  std::size_t bytes = 0;
+  v1::RobotDescription description;
+  for (const std::size_t robot : robots) {
+    description.Clear();
+    describe(run, robot, description);
+    bytes += description.ByteSizeLong() + header;
+    if (bytes > most_bytes) return false;
+  }
+  return true;
+}
+
 // --- values -------------------------------------------------------------------------------------
 
 void add_channels(const Roster& roster, const world::Observations& from, v1::Observation& to) {

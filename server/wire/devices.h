@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 
 #include "wire/messages.h"
 #include "wire/roster.h"
@@ -15,6 +16,8 @@ namespace ziggurat::wire {
 
 /// @param robot  into the layout's robots
 void describe(const Run& run, std::size_t robot, v1::RobotDescription& description);
+/// Whether a Welcome has place for the descriptions of these robots (docs/protocol.md, H9).
+bool fit_into_welcome(const Run& run, std::span<const std::size_t> robots);
 
 /// Writes the readings of a session's robots.
 void add_channels(const Roster& roster, const world::Observations& from, v1::Observation& to);

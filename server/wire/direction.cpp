@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "wire/fault.h"
-#include "wire/metrics.h"
+#include "wire/command.h"
+#include "wire/messages.h"
 #include "wire/response.h"
 #include "world/commands.h"
 #include "ziggurat/v1/protocol.pb.h"

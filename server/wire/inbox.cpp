@@ -8,8 +8,7 @@
 #include <new>
 
 #include "wire/command.h"
-#include "wire/fault.h"
-#include "wire/metrics.h"
+#include "wire/messages.h"
 #include "wire/read_json.h"
 #include "wire/response.h"
 #include "ziggurat/v1/envelope.h"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "wire/cost.h"
+#include "wire/command_limits.h"
 #include "wire/direction.h"
 #include "wire/messages.h"
 #include "wire/request.h"

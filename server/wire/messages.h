@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "scene/deadline.h"
@@ -208,5 +209,16 @@ struct Run {
 
 /// The name in docs/protocol.md, for example "ROBOT_TAKEN".
 const char* to_string(ErrorCode code);
+
+/// A fault that discards the message and leaves the session as it is.
+inline Fault make_fault(ErrorCode code, std::string field, std::string message,
+                        std::string robot = {}) {
+  Fault fault;
+  fault.code = code;
+  fault.robot = std::move(robot);
+  fault.field = std::move(field);
+  fault.message = std::move(message);
+  return fault;
+}
 
 }  // namespace ziggurat::wire

@@ -5,7 +5,6 @@
 #include <span>
 
 #include "wire/devices.h"
-#include "ziggurat/v1/extent.h"
 
 namespace ziggurat::wire {
 namespace {
@@ -65,15 +64,14 @@ ReadingSize size_of_readings(const Roster& roster, const world::Observations& fr
   for_each(
       roster.radios, from.radio_messages.entries, [](const auto& entry) { return entry.radio; },
       [&](const world::RadioMessages::Entry& entry, std::size_t) {
-        size.add(1, size_of_message, v1::counted_radio_message);
+        size.size += size_of_message;
         size.add_payload(entry.size);
       });
   for_each(
       roster.range_and_bearing, from.range_and_bearing,
       [](const auto& packet) { return packet.receiver; },
       [&](const world::RangeAndBearingPacket& packet, std::size_t) {
-        size.add(1, size_of_packet, v1::counted_packet);
-        size.add_content(packet.data.count);
+        size.size += size_of_packet + packet.data.count;
       });
   count_cameras(roster, from, tag_payloads, size);
   return size;

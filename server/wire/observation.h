@@ -5,12 +5,23 @@
 #include <span>
 #include <string>
 
-#include "wire/reading_size.h"
 #include "wire/roster.h"
 #include "world/state.h"
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::wire {
+
+/// Readings of a session at a tick, counted before there is a message with them (docs/protocol.md,
+/// D5).
+struct ReadingSize {
+  std::size_t payloads = 0;  ///< content of radio messages and tags [bytes]
+  std::size_t size = 0;      ///< of its share of the message, with these payloads [bytes]
+
+  void add_payload(std::size_t bytes) {
+    payloads += bytes;
+    size += bytes;
+  }
+};
 
 /// Readings of a session's robots from radios, tags and cameras.
 /// @param tag_payloads  of the same tick, for each of Layout::tags

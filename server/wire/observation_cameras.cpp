@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "wire/observation.h"
-#include "ziggurat/v1/extent.h"
 
 namespace ziggurat::wire {
 namespace {
@@ -63,18 +62,16 @@ void count_cameras(const Roster& roster, const world::Observations& from,
                    std::span<const std::string> tag_payloads, ReadingSize& to) {
   constexpr std::size_t size_of_led = 1 + 2 * sizeof(double), size_of_tag = 2 + 10 * sizeof(double);
   const auto count_leds = [&](const auto& cameras, const auto& readings) {
-    for_each_camera(cameras, readings,
-                    [&](auto seen) { to.add(seen.size(), size_of_led, v1::counted_led); });
+    for_each_camera(cameras, readings, [&](auto seen) { to.size += seen.size() * size_of_led; });
   };
   count_leds(roster.led_cameras, from.leds);
   count_leds(roster.directional_led_cameras, from.directional_leds);
   for_each_camera(roster.tag_cameras, from.tags, [&](std::span<const world::TagReading> seen) {
-    to.add(seen.size(), size_of_tag, v1::counted_tag);
+    to.size += seen.size() * size_of_tag;
     for (const world::TagReading& tag : seen) to.add_payload(tag_payloads[tag.tag].size());
   });
   for_each_camera(roster.image_cameras, from.images, [&](std::span<const world::Image> taken) {
-    to.add(1, 1, v1::counted_payload);
-    if (!taken.empty()) to.add_content(taken.front().rgb.size());
+    to.size += 1 + (taken.empty() ? 0 : taken.front().rgb.size());
   });
 }
 

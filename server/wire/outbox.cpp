@@ -7,7 +7,6 @@
 #include "wire/observation.h"
 #include "wire/response.h"
 #include "ziggurat/v1/envelope.h"
-#include "ziggurat/v1/extent.h"
 #include "ziggurat/v1/json.h"
 #include "ziggurat/v1/protocol.pb.h"
 
@@ -187,7 +186,7 @@ bool Outbox::observation(const Roster& roster, const world::Observations& observ
                          std::span<const std::string> tag_payloads, std::size_t limit,
                          std::optional<std::uint64_t> epoch) {
   const ReadingSize needed = size_of_readings(roster, observations, tag_payloads);
-  if (needed.size > limit || needed.memory > v1::most_counted) return false;
+  if (needed.size > limit) return false;
   message_->forget(needed.payloads);
   v1::Observation& observation = *message_->message.mutable_observation();
   observation.Clear();
@@ -204,12 +203,7 @@ bool world_layout(Outbox& outbox, const Run& run, const Truth& truth, WorldView&
   const bool is_short = fill(view, truth, run.controllers, limit, layout);
   outbox.finish();
   const std::size_t size = outbox.message_->size;
-  bool fits = is_short && size <= limit;
-  if (fits) {
-    view.laid_out += v1::decoded_size(layout.SerializeAsString(), *v1::WorldLayout::descriptor(),
-                                      v1::most_laid_out);
-    fits = view.laid_out <= v1::most_laid_out;
-  }
+  const bool fits = is_short && size <= limit;
   if (!fits) layout.Clear();
   outbox.message_->forget(size);
   return fits;
@@ -218,7 +212,7 @@ bool world_layout(Outbox& outbox, const Run& run, const Truth& truth, WorldView&
 bool world_state(Outbox& outbox, const Truth& truth, const WorldView& view, std::size_t limit,
                  std::uint64_t epoch) {
   const ReadingSize needed = size_of_readings(view, truth);
-  if (needed.size > limit || needed.memory > v1::most_counted) return false;
+  if (needed.size > limit) return false;
   outbox.message_->forget(needed.payloads);
   v1::WorldState& state = *outbox.message_->message.mutable_world_state();
   state.Clear();

@@ -41,8 +41,7 @@ class Outbox {
 
   void welcome(const Run& run, const Roster& roster, const Welcome& session);
   void refusal(const Refusal& refusal);
-  /// False if it would have more than `limit` bytes in binary form, or take more memory than
-  /// v1::most_counted when it is decoded; then there is no message.
+  /// False if it would have more than `limit` bytes in binary form; then there is no message.
   /// @param tag_payloads  of the same tick, for each of Layout::tags
   /// @param epoch         of the tick; none: the session knows of no epochs
   bool observation(const Roster& roster, const world::Observations& observations,

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::wire {
 namespace {

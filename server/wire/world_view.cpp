@@ -4,7 +4,6 @@
 
 #include "scene/joint_coordinates.h"
 #include "ziggurat/v1/envelope.h"
-#include "ziggurat/v1/extent.h"
 #include "ziggurat/v1/protocol.pb.h"
 
 namespace ziggurat::wire {
@@ -180,17 +179,16 @@ ReadingSize size_of_readings(const WorldView& view, const Truth& truth) {
   if (wanted.radio_messages) {
     for (const auto& entry : truth.observations.radio_messages.entries) {
       if (view.radio_places[entry.radio] < 0) continue;
-      size.add(1, 2, v1::counted_radio_message);
+      size.size += 2;
       size.add_payload(entry.size);
     }
   }
   for (const std::size_t index : view.entities) {
     const world::EntityLayout& entity = truth.layout.entities[index];
-    if (wanted.leds)
-      size.add(entity.leds.count + entity.directional_leds.count, 1, v1::counted_color);
+    if (wanted.leds) size.size += entity.leds.count + entity.directional_leds.count;
     const world::Range& tags = entity.tags;
     for (std::size_t t = tags.begin; wanted.tags && t < tags.end(); ++t) {
-      size.add(1, 2, v1::counted_payload);
+      size.size += 2;
       size.add_payload(truth.state.tag_payloads[t].size());
     }
   }

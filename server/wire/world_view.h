@@ -8,8 +8,7 @@
 
 #include "scene/scene.h"
 #include "wire/messages.h"
-#include "wire/reading_size.h"
-#include "world/contact.h"
+#include "wire/observation.h"
 #include "world/layout.h"
 #include "world/state.h"
 
@@ -42,7 +41,6 @@ struct WorldView {
   std::vector<std::int32_t> radio_places;  ///< likewise
   std::vector<std::size_t> magnets, radios;  ///< into the layout's lists
   std::int32_t link_count = 0;
-  std::size_t laid_out = 0;  ///< of all that was told, as v1::decoded_size() says it [bytes]
 
   static constexpr std::int32_t the_floor = -1, elsewhere = -2;
 };

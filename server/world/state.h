@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -87,5 +88,14 @@ math::Vector3 position_of(const State& state, const Mount& mount);
 
 /// Hash of a state and what was sensed in it: equal for equal runs, whatever the transport.
 std::uint64_t hash(const State& state, const Observations& observations);
+
+/// Two links, or a link and the floor, that touch.
+struct Contact {
+  std::size_t link = 0;                          ///< into State::links
+  std::optional<std::size_t> other;              ///< likewise; none: the floor
+  math::Vector3 point = math::Vector3::Zero();   ///< the middle of the contact points, in W [m]
+  math::Vector3 normal = math::Vector3::Zero();  ///< unit, from the other one to `link`, in W
+  math::Vector3 force = math::Vector3::Zero();   ///< on `link`, normal and friction, in W [N]
+};
 
 }  // namespace ziggurat::world

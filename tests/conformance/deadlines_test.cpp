@@ -11,16 +11,6 @@ using scene::DeadlineAction;
 using std::chrono::milliseconds;
 using Membership = RobotStatus::Membership;
 
-TEST(Deadline, HoldKeepsWhatWasCommanded) {
-  Pair pair(with_deadline(DeadlineAction::hold, 50));
-  pair.peers.pass(milliseconds{49});
-  EXPECT_FALSE(pair.peers.is_complete());
-  pair.peers.pass(milliseconds{1});
-  EXPECT_TRUE(pair.peers.is_complete());
-  EXPECT_EQ(pair.target(), 3);
-  EXPECT_EQ(pair.peers.barrier.deadlines.missed_ticks(), (std::vector<std::uint64_t>{1, 0}));
-}
-
 TEST(Deadline, DropIsReportedDespiteManyOtherNotices) {
   Pair pair(with_deadline(DeadlineAction::drop, 50));
   for (int i = 0; i < 500; ++i) pair.peers.send_bytes("unknown", "\xff");
@@ -79,28 +69,6 @@ TEST(Deadline, W1_ASessionWhoseRobotsHaveAllLeftIsNotLateForThat) {
     if (waits) pair.peers.say("p", Peers::command(5));
     EXPECT_TRUE(pair.peers.is_complete());
   }
-}
-
-TEST(Deadline, W2_ADeadConnectionIsUnderTheSamePolicy) {
-  Pair pair(with_deadline(DeadlineAction::hold, 50));
-  pair.peers.unreachable.insert("p");
-  pair.peers.pass(milliseconds{50});  // it is told of its miss, and so found dead
-  EXPECT_EQ(pair.peers.status()[0].membership, Membership::free);
-  EXPECT_TRUE(pair.peers.is_complete()) << "a tick is missed once";
-  EXPECT_EQ(pair.peers.barrier.deadlines.missed_ticks()[0], 1U);
-  pair.peers.publish(6);
-  pair.peers.say("q", Peers::command(6));
-  pair.peers.pass(milliseconds{0});
-  EXPECT_TRUE(pair.peers.is_complete()) << "no tick waits for it any more";
-  EXPECT_EQ(pair.target(), 3);
-  // A session takes it: the current tick waits again, and the robot obeys.
-  pair.peers.publish(7);
-  pair.peers.say("q", Peers::command(7));
-  pair.peers.join("heir", "robot0");
-  EXPECT_FALSE(pair.peers.is_complete());
-  pair.peers.say("heir", Peers::command(7, {9}));
-  EXPECT_TRUE(pair.peers.is_complete());
-  EXPECT_EQ(pair.target(), 9);
 }
 
 TEST(Deadline, W2_ATickThatWasMissedIsNotAwaitedOnceMoreWhenTheConnectionGoes) {
@@ -248,16 +216,6 @@ TEST(Deadline, H8_AWishIsGrantedUnlessThePolicyIsFixed) {
   EXPECT_EQ(peers.told("q").refusal().error().code(), v1::Error::FORBIDDEN);
   peers.say("q", wish("robot1", v1::DeadlinePolicy::DROP, 70, 3));
   EXPECT_EQ(peers.told("q").welcome().deadline_policy().action(), v1::DeadlinePolicy::DROP);
-}
-
-TEST(Deadline, H15_AWishThatIsNeverGrantedIsToldBeforeATakenRobot) {
-  const SmallRun small(1);
-  Peers peers(small, with_deadline(DeadlineAction::hold, 50));
-  peers.join("p", "robot0");
-  peers.say("q", wish("robot0", v1::DeadlinePolicy::WAIT, 0));
-  const auto error = peers.told("q").refusal().error();
-  EXPECT_EQ(error.code(), v1::Error::FORBIDDEN);
-  EXPECT_FALSE(error.retryable());
 }
 
 }  // namespace

@@ -15,8 +15,8 @@ namespace {
 /// Three robots with a radio each; that of robot2 only receives. "p" holds robot0 and robot2 and
 /// owes tick 5, "q" holds robot1.
 struct Radios : ::testing::Test {
-  explicit Radios(bool in_json = false) : small(3), peers(equipped()) {
-    peers.json = in_json;
+  explicit Radios(wire::Encoding encoding = wire::Encoding::binary) : small(3), peers(equipped()) {
+    peers.json = encoding == wire::Encoding::json;
     peers.join("p", "robot[02]");
     peers.join("q", "robot1");
     peers.publish(5);
@@ -76,7 +76,7 @@ TEST(Transport, T4_AControllerMaySendWhatItsRobotsNeed) {
 }
 
 struct RadiosInJson : Radios {
-  RadiosInJson() : Radios(true) {}
+  RadiosInJson() : Radios(wire::Encoding::json) {}
 };
 
 TEST_F(Radios, K5_SmallMessagesInGreatNumbersAreTooLarge) { expect_at_most(15'000); }

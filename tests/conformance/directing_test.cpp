@@ -34,21 +34,6 @@ struct DirectingByOptions : Directing {
   DirectingByOptions() : Directing(make_config()) {}
 };
 
-TEST_F(Directing, R1_AHelloNamesADirectorOfTheScene) {
-  EXPECT_EQ(refused(peers, director("")).code(), v1::Error::BAD_VALUE);
-  EXPECT_EQ(refused(peers, director("other")).code(), v1::Error::FORBIDDEN);
-  auto with_robots = director("judge");
-  with_robots.mutable_hello()->add_robots("*");
-  EXPECT_EQ(refused(peers, with_robots).code(), v1::Error::BAD_VALUE);
-  peers.say("p", director("judge"));
-  const v1::Welcome welcome = peers.told("p").welcome();
-  EXPECT_EQ(welcome.role(), v1::ROLE_DIRECTOR);
-  EXPECT_EQ(welcome.director().id(), "judge");
-  EXPECT_EQ(welcome.director().script(), "/scenes/judge.lua");
-  EXPECT_EQ(welcome.director().params(0).value(), "0.3");
-  EXPECT_TRUE(welcome.robots().empty());
-}
-
 TEST_F(DirectingFromOutside, R1_OneThatHasLeftMakesPlaceForAnother) {
   begin();
   const auto come = [&](const std::string& peer, const std::string& id) {
@@ -116,59 +101,6 @@ TEST_F(Directing, R2_TheWorldWaitsForTheDirectorsOfItsScene) {
   EXPECT_FALSE(peers.is_gathered());
   peers.say("q", director("hasty"));
   EXPECT_TRUE(peers.is_gathered());
-}
-
-TEST_F(Directing, R2_ADeadlineEndsTheWaitAndThenTheDirector) {
-  begin();
-  peers.say("p", direction(5));
-  EXPECT_FALSE(peers.is_complete());
-  for (std::uint64_t tick = 5; tick < 8; ++tick) {
-    SCOPED_TRACE(tick);
-    if (tick > 5) {
-      publish(tick);
-      peers.say("c", Peers::command(tick));
-      peers.say("p", direction(tick));
-    }
-    peers.inboxes.clear();
-    peers.pass(milliseconds(50));
-    EXPECT_TRUE(peers.is_complete());
-    EXPECT_EQ(answered(), Ids{"judge"}) << "who has missed the tick has no acts in it";
-    const v1::ServerMessage missed = peers.told("q");
-    EXPECT_EQ(missed.error().code(), v1::Error::DEADLINE_MISSED);
-    EXPECT_EQ(missed.error().severity(), v1::Error::WARNING);
-  }
-  EXPECT_EQ(peers.take_report().dropped.size(), 1U);
-  publish(8);
-  peers.say("c", Peers::command(8));
-  peers.say("p", direction(8));
-  EXPECT_TRUE(peers.is_complete()) << "its budget of two is spent: it is dropped";
-}
-
-TEST_F(Directing, R2_ALostDirectorIsWaitedForAndResumesWithItsToken) {
-  peers.say("p", director("judge"));
-  const std::string token = peers.told("p").welcome().session_token();
-  peers.say("q", director("hasty"));
-  publish(5);
-  peers.say("c", Peers::command(5));
-  peers.say("q", direction(5));
-  peers.unreachable.insert("p");
-  peers.probe();
-  EXPECT_FALSE(peers.is_complete());
-  auto hello = director("");
-  hello.mutable_hello()->set_session_token(token);
-  hello.mutable_hello()->clear_subscription();
-  auto as_controller = hello;
-  as_controller.mutable_hello()->set_role(v1::ROLE_CONTROLLER);
-  peers.say("r", as_controller);
-  EXPECT_EQ(peers.told("r").refusal().error().code(), v1::Error::NO_SUCH_SESSION);
-  peers.say("r", hello);
-  const auto told = std::exchange(peers.inboxes["r"], {});
-  ASSERT_EQ(told.size(), 3U);
-  EXPECT_TRUE(told[0].welcome().has_resumed());
-  EXPECT_EQ(told[1].world_layout().entities_size(), 2);
-  EXPECT_EQ(told[2].world_state().poses_size(), 14) << "it keeps its subscription";
-  peers.say("r", direction(5));
-  EXPECT_TRUE(peers.is_complete());
 }
 
 TEST_F(Directing, R2_AnAnswerThatIsSentAgainReplacesTheOneBefore) {

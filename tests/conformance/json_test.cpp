@@ -29,7 +29,7 @@ struct Twin : ::testing::Test {
   }
 
   void say(const std::string& peer, const std::string& bytes) {
-    receive(barrier, {peer, bytes, true, all_roles}, &commands);
+    receive(barrier, {.connection = peer, .bytes = bytes}, &commands);
   }
   void publish(std::uint64_t tick) {
     observations = small.observations(tick);
@@ -53,45 +53,6 @@ struct Twin : ::testing::Test {
   const std::vector<std::string> payloads;
   Barrier barrier;
 };
-
-TEST_F(Twin, T6_AWholeExchange) {
-  join("p");
-  const json welcome = told("p")["welcome"];
-  EXPECT_EQ(welcome["tickNs"], "100000000") << "64-bit integers are strings";
-  EXPECT_EQ(welcome["mode"], "MODE_LOCK_STEP") << "enumerations are names";
-  EXPECT_EQ(welcome["robots"][1]["jointActuators"][0]["maxImpulse"], 0.005);
-  EXPECT_EQ(welcome["robots"][1]["radios"], json::array()) << "empty arrays are there";
-  EXPECT_EQ(welcome["wallLeaseMs"], 0) << "zeros are there";
-  EXPECT_FALSE(welcome["robots"][1].contains("rangeAndBearing")) << "absent messages are not";
-  publish(0);
-  const json observation = told("p")["observation"];
-  EXPECT_EQ(observation["tick"], "0");
-  EXPECT_EQ(observation["jointReadings"], (json{0.0, 1.0}));
-  say("p", R"({"command": {"tick": "0", "jointTargets": [0.5, -1e-3],
-               "log": [{"robot": 1, "text": "h\u00e9"}]}})");
-  EXPECT_TRUE(barrier.gate.is_complete());
-  EXPECT_EQ(commands.joint_targets, (std::vector<double>{0.5, -0.001}));
-  EXPECT_EQ(barrier.journal.take().log.at(0).text, "h\xc3\xa9");
-  finish(barrier, {});
-  EXPECT_EQ(told("p")["end"]["reason"], "FINISHED");
-}
-
-TEST_F(Twin, T6_OtherSpellingsOfTheSame) {
-  join("p");
-  publish(7);
-  // Numbers for strings, names as in the .proto, numbers of enumerations, unknown fields, null.
-  say("p", R"({"command":{"tick":7,"joint_targets":["1.5",2],"colour":[{"x":null}],"log":null}})");
-  EXPECT_TRUE(barrier.gate.is_complete());
-  EXPECT_EQ(commands.joint_targets, (std::vector<double>{1.5, 2}));
-  say("p", R"({"leave":{"reason":1}})");
-  EXPECT_EQ(barrier.sessions.size(), 0U);
-}
-
-TEST_F(Twin, H8_AnActionThatTheProtocolDoesNotHaveIsRefused) {
-  say("p", R"({"hello":{"version":{"major":1},"role":"ROLE_CONTROLLER","robots":["*"],
-               "deadlinePolicy":{"action":"STOPP","wallDeadlineMs":100}}})");
-  EXPECT_EQ(told("p")["refusal"]["error"]["code"], "BAD_VALUE");
-}
 
 TEST_F(Twin, T6_MalformedTextIsAnsweredInJson) {
   std::string deep = R"({"hello":{"x":)" + std::string(100'000, '[');
@@ -176,22 +137,25 @@ TEST_F(Twin, T6_DepthIsBounded) {
 
 TEST_F(Twin, T6_SeveralFramesAreAnsweredInTheFormOfTheFirst) {
   for (const auto form : {wire::Encoding::json, wire::Encoding::binary}) {
-    receive(barrier, {"unknown", "x", false, Access{}, 0, form}, &commands);
+    receive(
+        barrier,
+        {.connection = "unknown", .bytes = "x", .is_single_frame = false, .several_frames = form},
+        &commands);
     EXPECT_EQ(inboxes["unknown"].back().starts_with('{'), form == wire::Encoding::json);
   }
   join("p");
-  receive(barrier, {"p", "x", false, Access{}, 0, wire::Encoding::binary}, &commands);
+  receive(barrier, {.connection = "p", .bytes = "x", .is_single_frame = false}, &commands);
   EXPECT_EQ(told("p")["error"]["code"], "MALFORMED") << "in the session's form";
 }
 
 TEST_F(Twin, T6_ABinarySessionMayResumeInJson) {
-  say("p", bytes_of(Peers::hello("*"), false));
+  say("p", bytes_of(Peers::hello("*"), wire::Encoding::binary));
   const auto token = message_of(inboxes["p"].at(0)).welcome().session_token();
   publish(4);
   dead = "p";
   v1::ClientMessage hello = Peers::hello("*");
   hello.mutable_hello()->set_session_token(token);
-  say("q", bytes_of(hello, true));
+  say("q", bytes_of(hello, wire::Encoding::json));
   ASSERT_EQ(inboxes["q"].size(), 2U);
   EXPECT_EQ(told("q")["observation"]["tick"], "4");
   say("q", R"({"command":{"tick":"4"}})");

@@ -79,7 +79,8 @@ TEST(LaterVersions, L13_BeforeTheFirstTickNothingWasCommanded) {
   Peers peers(small);
   const auto token = peers.join("p", "robot0").session_token();
   // While the server gathers, it does not collect commands.
-  receive(peers.barrier, {"new", bytes_of(hello("*", 1, token), peers.json), true, Access{}},
+  receive(peers.barrier,
+          {.connection = "new", .bytes = bytes_of(hello("*", 1, token), peers.encoding())},
           nullptr);
   const auto welcome = peers.told("new").welcome();
   EXPECT_TRUE(welcome.has_resumed());
@@ -167,7 +168,8 @@ TEST(LaterVersions, L13_ASessionThatIsResumedRightAfterARestoreIsToldWhatWasComm
   // While the server gathers, it does not collect commands.
   const auto resume = [&](const std::string& peer) {
     receive(run.peers.barrier,
-            {peer, bytes_of(hello("*", 2, run.token), run.peers.json), true, Access{}}, nullptr);
+            {.connection = peer, .bytes = bytes_of(hello("*", 2, run.token), run.peers.encoding())},
+            nullptr);
     return run.peers.told(peer).welcome();
   };
   const v1::Welcome welcome = resume("q");

@@ -11,7 +11,8 @@ namespace {
 using std::chrono::milliseconds;
 
 struct Loading : ::testing::Test {
-  explicit Loading(const Config& config = {}) : small(2), peers(small, config, true) {
+  explicit Loading(const Config& config = {})
+      : small(2), peers(small, config, Peers::World::loading) {
     peers.barrier.progress = {0.5, "half of it is there"};
   }
   v1::Error refused(const std::string& peer) { return peers.told(peer).refusal().error(); }
@@ -19,18 +20,6 @@ struct Loading : ::testing::Test {
   SmallRun small;
   Peers peers;
 };
-
-TEST_F(Loading, H12_AHelloWaitsAndIsWelcomedWithoutAnother) {
-  peers.say("p", Peers::hello("*"));
-  const auto loading = peers.told("p").loading();
-  EXPECT_EQ(loading.progress(), 0.5);
-  EXPECT_EQ(loading.message(), "half of it is there");
-  peers.open();
-  ASSERT_EQ(peers.inboxes["p"].size(), 2U);
-  EXPECT_EQ(peers.inboxes["p"][0].loading().progress(), 1);
-  EXPECT_EQ(peers.inboxes["p"][1].welcome().robots_size(), 2);
-  EXPECT_TRUE(peers.is_gathered());
-}
 
 TEST_F(Loading, H12_ToldAgainAboutEverySecond) {
   peers.say("p", Peers::hello("*"));
@@ -48,18 +37,6 @@ TEST_F(Loading, H12_InTheOrderOfArrival) {
   ASSERT_GE(peers.inboxes["first"].size(), 2U);
   EXPECT_TRUE(peers.inboxes["first"][1].has_welcome());
   EXPECT_EQ(peers.inboxes["second"].back().refusal().error().code(), v1::Error::ROBOT_TAKEN);
-}
-
-TEST_F(Loading, H12_LeaveTakesTheHelloBack) {
-  peers.say("p", Peers::hello("*"));
-  peers.say("p", Peers::leave());
-  EXPECT_EQ(peers.barrier.sessions.size(), 0U);
-  peers.inboxes.clear();
-  peers.say("p", Peers::heartbeat(7));
-  EXPECT_EQ(peers.told("p").error().code(), v1::Error::OUT_OF_STATE) << "it is NEW again";
-  peers.open();
-  EXPECT_TRUE(peers.inboxes["p"].empty());
-  EXPECT_FALSE(peers.is_gathered());
 }
 
 TEST_F(Loading, H12_RefusedIfThereIsNoWorldInTheEnd) {
@@ -90,14 +67,6 @@ TEST_F(Loading, T9_BadMessagesInHelloAreDiscardedAndTheHelloWaits) {
   EXPECT_EQ(peers.told("p").heartbeat().sequence(), 7U);
   peers.open();
   EXPECT_TRUE(peers.inboxes["p"].back().has_welcome());
-}
-
-TEST_F(Loading, T6_AnsweredInTheFormOfTheHello) {
-  peers.json = true;
-  peers.say("p", Peers::hello("*"));
-  peers.open();
-  EXPECT_TRUE(peers.inboxes["p"].back().has_welcome());
-  EXPECT_TRUE(peers.told_otherwise.empty());
 }
 
 TEST_F(Loading, M4_TooManyBadMessagesTakeTheHelloBack) {

@@ -31,10 +31,9 @@ inline v1::Error faulted(Peers& peers, const v1::ClientMessage& message) {
 }
 
 /// A Hello that resumes a session.
-inline v1::ClientMessage with_token(const std::string& token, bool takeover = false) {
+inline v1::ClientMessage with_token(const std::string& token) {
   auto hello = Peers::hello("*");
   hello.mutable_hello()->set_session_token(token);
-  hello.mutable_hello()->set_takeover(takeover);
   return hello;
 }
 

@@ -32,7 +32,7 @@ struct Outcome {
 const network::zmtp::CurveKeys& keys() {
   static const network::zmtp::CurveKeys keys(
       {"JTKVSB%%)wK0E.X)V>+}o?pNmC{O&4W4b!Ni{Lh6",
-       {{"rq:rM>}U?@Lns47E1%kR.o@n%FcmmsL/@{H8]yf7", {true, false, false}, ""}}});
+       {{"rq:rM>}U?@Lns47E1%kR.o@n%FcmmsL/@{H8]yf7", {.controller = true}, ""}}});
   return keys;
 }
 
@@ -77,7 +77,7 @@ void ask(const std::string& request) {
   const auto read = [](std::string_view path) {
     return http::Answer{path == "/" ? 200u : 404u, "text/plain", {}, "text"};
   };
-  const std::string answer = http::answer_at_port(request, "localhost", false, read);
+  const std::string answer = http::answer_at_port(request, "localhost", read);
   require(answer.starts_with("HTTP/1.1 "));
 }
 

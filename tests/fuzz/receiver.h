@@ -25,14 +25,16 @@ inline world::Layout make_layout() {
       *range = {devices, count};
     }
     robot.range_and_bearing = {layout.range_and_bearing.size(), count == 0 ? 0U : 1U};
-    if (count > 0) layout.range_and_bearing.push_back({{}, 1, 0, {devices, count}, true, true});
+    if (count > 0)
+      layout.range_and_bearing.push_back(
+          {.mount = {}, .range = 1, .data = {devices, count}, .sends = true, .receives = true});
     if (count > 0) {
       robot.wheels = robot.turrets = {layout.wheels.size(), 1};
-      layout.wheels.push_back({0, 0.14, true, true});
-      layout.turrets.push_back({0, true, true});
+      layout.wheels.push_back({.entity = 0, .axle_length = 0.14, .drives = true, .measures = true});
+      layout.turrets.push_back({.entity = 0, .drives = true, .measures = true});
     } else {
-      layout.wheels.push_back({0, 0.14, false, true});
-      layout.turrets.push_back({0, false, true});
+      layout.wheels.push_back({.entity = 0, .axle_length = 0.14, .measures = true});
+      layout.turrets.push_back({.entity = 0, .measures = true});
     }
     layout.robots.push_back(robot);
     devices += count;

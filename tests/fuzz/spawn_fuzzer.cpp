@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t max_size = 8192;  // of the added text [bytes]
 
-ReadResult read_small_scene(bool is_lenient) {
+ReadResult read_small_scene(ReadOptions options) {
   static const std::string text = [] {
     std::string whole = before;
     whole.insert(whole.find("<framework>"), "<include file=\"models\"/>");
@@ -23,8 +23,6 @@ ReadResult read_small_scene(bool is_lenient) {
         "<box id=\"b\" size=\"1,1,1\" movable=\"true\" mass=\"1\"><body position=\"0,0,0\"/></box>";
     return whole + after;
   }();
-  ReadOptions options;
-  options.lenient = is_lenient;
   options.open = [](const std::filesystem::path& path, std::size_t) {
     std::string included = models;
     const std::string itself = "<include file=\"models\"/>";  // a cycle would be a fault
@@ -39,7 +37,8 @@ ReadResult read_small_scene(bool is_lenient) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const ReadResult strict = read_small_scene(false), lenient = read_small_scene(true);
+  static const ReadResult strict = read_small_scene({}),
+                          lenient = read_small_scene({.lenient = true});
   const ReadResult& small = size % 2 == 1 ? lenient : strict;
   const std::size_t files = small.scene.files.size();
   const std::string text(reinterpret_cast<const char*>(data), size);

@@ -21,11 +21,11 @@ using fuzz::require;
 
 const channels::Schema schema{"ziggurat.v1.Poses", "descriptors"};
 
-std::vector<channels::Channel> channel_list(bool is_later) {
+std::vector<channels::Channel> channel_list(Kind second) {
   std::vector<channels::Channel> list{{1, "/world", Kind::world, &schema, 0},
                                       {2, "/poses", Kind::poses, &schema, 0},
                                       {3, "/log", Kind::log, &schema, 0}};
-  if (is_later) list[1] = {4, "/rays", Kind::rays, &schema, 0};
+  if (second == Kind::rays) list[1] = {4, "/rays", Kind::rays, &schema, 0};
   std::ranges::sort(list, {}, &channels::Channel::id);
   return list;
 }
@@ -33,15 +33,17 @@ std::vector<channels::Channel> channel_list(bool is_later) {
 class Play {
  public:
   Play() {
-    hub_.set_channels(channel_list(false));
-    for (const bool may_steer : {false, true, true}) ids_.push_back(hub_.add(may_steer).id);
+    hub_.set_channels(channel_list(Kind::poses));
+    using enum view::Permission;
+    for (const auto each : {look, steer, steer}) ids_.push_back(hub_.add(each).id);
   }
 
   /// @param what  its lowest two bits: the viewer, the third: text
   void receive(std::uint8_t what, std::string_view message) {
     view::Viewer* viewer = hub_.find(ids_[what % 3]);
     if (!viewer) return;
-    hub_.receive(*viewer, message, (what & 4) != 0);
+    hub_.receive(*viewer, message,
+                 (what & 4) != 0 ? view::Hub::Frame::text : view::Hub::Frame::binary);
     require(viewer->unanswered <= view::Hub::most_unanswered);
     require(viewer->may_steer || viewer->unanswered == 0);
     if (viewer->send_queue.size() >
@@ -53,8 +55,10 @@ class Play {
 
   void happen(std::uint8_t what) {
     if ((what & 8) != 0) show();
-    if ((what & 16) != 0) hub_.set_channels(channel_list((what & 1) != 0));
-    if ((what & 32) != 0) answer((what & 2) != 0);
+    if ((what & 16) != 0)
+      hub_.set_channels(channel_list((what & 1) != 0 ? Kind::rays : Kind::poses));
+    if ((what & 32) != 0)
+      answer((what & 2) != 0 ? view::Hub::Outcome::done : view::Hub::Outcome::refused);
     if ((what & 64) != 0) read();
   }
 
@@ -68,12 +72,12 @@ class Play {
     hub_.show(++time_, messages);
   }
 
-  void answer(bool is_done) {
+  void answer(view::Hub::Outcome outcome) {
     const view::ViewerRequests::Changes news = requests_.take();
     require(std::ranges::is_sorted(news.wanted));
     for (const view::ViewerCall& call : news.calls) {
       require(call.viewer != ids_[0]);
-      hub_.answer(call, is_done, "{}");
+      hub_.answer(call, outcome, "{}");
     }
     for (const view::Parameter& parameter : news.parameters) hub_.set_parameter(parameter);
   }

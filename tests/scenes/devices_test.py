@@ -175,38 +175,6 @@ class Ring(DeviceTest):
 
 
 class Radio(DeviceTest):
-    def test_empty_long_and_many_messages_arrive_in_order(self):
-        scene = self.two(
-            """
-            function init()
-              local long = {}
-              for i = 1, 65536 do long[i] = i end
-              robot.radios.a.tx_data({})
-              robot.radios.a.tx_data(long)
-              for i = 1, 1000 do robot.radios.b.tx_data({i, i / 256}) end
-            end
-            function step() end
-            """,
-            """
-            function init() assert(#robot.radios.a.rx_data == 0) end
-            function step()
-              for _, id in ipairs({"a", "b"}) do
-                local received = robot.radios[id].rx_data
-                assert(#received == 1002, #received)
-                assert(#received[1] == 0 and #received[2] == 65536)
-                for i = 1, 65536 do assert(received[2][i] == i % 256) end
-                for i = 1, 1000 do
-                  local message = received[i + 2]
-                  assert(#message == 2 and message[1] == i % 256 and message[2] == i // 256)
-                end
-              end
-              log("all")
-              function step() assert(#robot.radios.a.rx_data == 0 and #robot.radios.b.rx_data == 0) end
-            end
-            """)
-        outcome = self.run_scene("--ticks", 3, "--quiet", scene=scene)
-        self.assertEqual(outcome.lines, ["[1 l] all"])
-
     def test_a_message_that_no_robot_reads_is_dropped(self):
         scene = self.two(
             """
@@ -223,24 +191,6 @@ class Radio(DeviceTest):
         few = run(4)
         self.assertLess(run(44), few + 20 * 1024)
 
-    def test_exceeding_the_limit_is_an_error_that_the_script_can_catch(self):
-        scene = self.two(
-            """
-            function init()
-              local text = {}
-              for i = 1, 1048577 do text[i] = 0 end
-              local ok, message = pcall(robot.radios.a.tx_data, text)
-              assert(not ok)
-              log(message)
-              robot.radios.a.tx_data({1})
-            end
-            function step() end
-            """,
-            "function init() end function step() log(#robot.radios.a.rx_data) end")
-        outcome = self.run_scene("--ticks", 1, "--quiet", scene=scene)
-        self.assertRegex(outcome.lines[0], r"^\[0 t\] .*1048577 bytes; at most 1048576 are allowed")
-        self.assertEqual(outcome.lines[1], "[1 l] 1")
-
 
 class Errors(DeviceTest):
     def test_a_wrong_position_ends_the_script_with_a_clear_message(self):
@@ -253,75 +203,6 @@ class Errors(DeviceTest):
         outcome = self.run_scene("--ticks", 2, "--quiet", scene=scene, code=CONTROLLER_FAILED)
         self.assert_is_sentence(outcome, r"one\.lua:1:.*set_single_color.*no such position: 2; "
                                          r"this robot has 1 LEDs")
-
-    def test_devices_without_actuator_or_sensor_are_absent(self):
-        devices = """
-        <leds medium="leds"><led anchor="base" color="red" offset="0,0,.025" /></leds>
-        <magnets><magnet anchor="base" offset="0,0,0" passive_field="0,0,1" /></magnets>"""
-        scene = self.one("""
-            function init() assert(robot.leds == nil and robot.magnets.magnet_0.set_current) end
-            function step() end
-            """, devices, actuators='<magnets implementation="default" />')
-        self.run_scene("--ticks", 1, "--quiet", scene=scene)
-
-
-class Sensors(DeviceTest):
-    def test_proximity_measures_a_wall_in_front(self):
-        sensors = """
-        <proximity_sensors>
-          <sensor anchor="base" offset=".06,0,.0125" direction="1,0,0" range="2" />
-          <sensor anchor="base" offset="-.06,0,.0125" direction="-1,0,0" range="2" />
-        </proximity_sensors>"""
-        self.write("one.lua", """
-            function init() assert(#robot.proximity == 2 and robot.proximity[1] == 0) end
-            function step() log(string.format("%.4f %g", robot.proximity[1], robot.proximity[2])) end
-            """)
-        scene = self.scene_of(
-            [CONTROLLER.format(id="one", actuators="", script="one.lua",
-                               sensors='<proximity implementation="default" />')],
-            [ROBOT.format(id="r", controller="one", devices=sensors, x=0, y=0, yaw=0),
-             '<box id="wall" size=".1,1,1" movable="false">'
-             '<body position="1.11,0,0" orientation="0,0,0" /></box>'])
-        outcome = self.run_scene("--ticks", 1, "--quiet", scene=scene)
-        self.assertEqual(outcome.lines, [f"[1 r] {math.exp(-1):.4f} 0"])
-
-    def test_positioning_reads_the_pose(self):
-        self.write("one.lua", """
-            function init() assert(robot.positioning.orientation.axis.z == 1) end
-            function step()
-              local at, turned = robot.positioning.position, robot.positioning.orientation
-              log(string.format("%.2f %.2f %.2f", at.x, turned.angle, turned.axis.z))
-            end
-            """)
-        scene = self.scene_of(
-            [CONTROLLER.format(id="one", actuators="", script="one.lua",
-                               sensors='<positioning implementation="default" />')],
-            [ROBOT.format(id="r", controller="one", devices="", x=3, y=0, yaw=90)])
-        outcome = self.run_scene("--ticks", 1, "--quiet", scene=scene)
-        self.assertEqual(outcome.lines, ["[1 r] 3.00 1.57 1.00"])
-
-    def test_tags_and_lights_are_set_at_run_time(self):
-        devices = """
-        <leds medium="leds"><led anchor="base" color="red" offset="0,0,.025" /></leds>
-        <directional_leds medium="directional_leds">
-          <directional_led anchor="base" color="red" position="0,0,.03" orientation="0,0,0"
-                           observable_angle="90" />
-        </directional_leds>
-        <tags medium="tags">
-          <tag anchor="base" position="0,0,.03" orientation="0,0,0" observable_angle="90"
-               side_length=".02" payload="start" />
-        </tags>"""
-        scene = self.one("""
-            function init() end
-            function step()
-              robot.tags.set_all_payloads("new")
-              robot.directional_leds.set_single_color(1, "0,0,9,255")
-            end
-            """, devices, actuators=LEDS + """
-            <directional_leds implementation="default" /><tags implementation="default" />""")
-        changed = self.hash_of("--ticks", 3, scene=scene)
-        self.write("one.lua", "function init() end function step() end")
-        self.assertNotEqual(changed, self.hash_of("--ticks", 3, scene=scene))
 
 
 class Cameras(DeviceTest):

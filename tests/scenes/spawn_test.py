@@ -171,48 +171,6 @@ class Spawn(SceneTest):
         self.end(process)
         self.assertEqual(scripted[0].wait(60), 0)
 
-    def test_the_same_spawn_gives_the_same_states_and_a_reset_restores_the_scene(self):
-        process = self.begin_without_controllers("--seed", 5)
-        fresh = self.read()["hash"]
-        hashes = []
-        for _ in range(2):
-            self.ctl("step", 5)
-            self.spawn(BOX.format("crate", "0.05,0.08,0.2"))
-            self.spawn(self.arm("late", "0,2,0"))
-            self.ctl("step", 5)
-            self.ctl("remove", "box1")
-            self.ctl("step", 5)
-            state = self.read()
-            hashes.append(state["hash"])
-            self.assertEqual([e["id"] for e in state["entities"]][-2:], ["crate", "late"])
-            self.assertNotIn("box1", [e["id"] for e in state["entities"]])
-            self.ctl("reset")
-            self.assertEqual(self.read()["hash"], fresh)
-            self.assertIn("UNKNOWN_ENTITY", self.ctl("read", "crate", code=1))
-            self.assertEqual(len(self.read("box1")["entities"]), 1)
-        self.assertEqual(*hashes)
-        self.end(process)
-
-    def test_a_refused_spawn_has_a_reason_and_no_effect(self):
-        process = self.begin_without_controllers()
-        before = self.read()["hash"]
-        for text, reason in (
-                ("<box/>", "spawn:1:1: <box> lacks the attribute id"),
-                (BOX.format("r0", "0,3,0"), "is the id of another entity"),
-                (BOX.format("b", "0,0,0"), "spawn:1:1: 'b' overlaps 'r0' where it is placed"),
-                (self.arm("x", "0,3,0").replace('config="swing"', 'config="sing"'),
-                 'did you mean "swing"?'),
-                (self.arm("x", "0,3,0").replace(
-                    'config="swing" />', 'config="swing"><params script="no.lua"/></controller>'),
-                 "spawn:3:"),
-                ('<distribute/>', "unknown element <distribute> in <spawn>"),
-                (BOX.format("b", "0,3,0") + " " * (1 << 20), "has more than 1048576 bytes")):
-            with self.subTest(reason=reason):
-                self.assertIn(reason, self.spawn(text, code=1))
-        self.assertIn("UNKNOWN_ENTITY", self.ctl("remove", "unknown", code=1))
-        self.assertEqual(self.read()["hash"], before)
-        self.end(process)
-
     def scripted(self, script):
         """A copy of robot r1 that names this script."""
         return self.arm("x", "0,3,0").replace(

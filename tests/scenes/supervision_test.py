@@ -248,43 +248,6 @@ class Ctl(unittest.TestCase):
             self.assertEqual(1, stepping.returncode)
             self.assertIn("OUT_OF_STATE", stderr)
 
-    def test_a_reset_that_cannot_be_placed_is_refused(self):
-        box = 'size="1,1,1" movable="true" mass="1"'
-        text = f"""<argos><framework><experiment ticks_per_second="10" random_seed="{{seed}}"/></framework>
-<controllers/><arena size="9,9,9"><box id="fixed" {box}><body position="1,0,0"/></box>
-<distribute><position method="uniform" min="-2,0,0" max="2,0,0"/>
-<orientation method="constant" values="0,0,0"/>
-<entity quantity="1" max_trials="1"><box id="free" {box}/></entity></distribute></arena>
-<physics_engines><dynamics3d id="d"/></physics_engines><media/></argos>"""
-        with tempfile.TemporaryDirectory() as folder:
-            scene = pathlib.Path(folder, "narrow.argos")
-            fits = {}  # whether, by seed
-            for seed in range(1, 40):
-                scene.write_text(text.format(seed=seed))
-                checked = subprocess.run([BIN / "ziggurat", "check", scene], capture_output=True)
-                fits[seed] = checked.returncode == 0
-                if len(set(fits.values())) == 2:
-                    break
-            good = next(seed for seed in fits if fits[seed])
-            bad = next(seed for seed in fits if not fits[seed])
-            with Server(scene, "--seed", str(good), "--duration", "0") as server:
-                server.ask("ctl", "step", "3")
-                before = server.read()
-                refused = server.ask("ctl", "reset", "--seed", str(bad), check=False)
-                self.assertEqual(1, refused.returncode)
-                self.assertIn("BAD_VALUE", refused.stderr)
-                self.assertIn("narrow.argos", refused.stderr)
-                self.assertEqual(before, server.read())
-                server.ask("ctl", "step", "2")
-                self.assertNotEqual(before["hash"], server.read()["hash"])
-                status = json.loads(server.ask("ctl", "status", "--json").stdout)
-                self.assertEqual(("5", str(good)), (status["tick"], status["seed"]))
-
-    def test_shuts_down(self):
-        with Server(DROP) as server:
-            server.ask("ctl", "shutdown")
-            self.assertEqual(130, server.process.wait(HANG))
-
     def test_a_planned_shutdown_is_no_interruption(self):
         with tempfile.TemporaryDirectory() as folder:
             summary = pathlib.Path(folder, "summary.json")

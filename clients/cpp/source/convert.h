@@ -6,8 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
-#include "ziggurat/led.h"
+#include "ziggurat/actuators.h"
 #include "ziggurat/radio.h"
 #include "ziggurat/v1/protocol.pb.h"
 
@@ -30,5 +31,8 @@ inline Color color_of(std::uint32_t packed) {
 inline Bytes bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
+
+/// @throws std::invalid_argument that says what is allowed
+void check_metric(std::string_view name, double value);
 
 }  // namespace ziggurat

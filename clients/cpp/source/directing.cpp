@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "metric.h"
+#include "convert.h"
 #include "text/printable.h"
 #include "ziggurat/error.h"
 #include "ziggurat/v1/envelope.h"
@@ -115,14 +115,14 @@ v1::DirectorAct& Directing::add_act(std::size_t bytes) {
   return *draft_.add_acts();
 }
 
-void Directing::add_line(bool is_error, std::string_view text) {
+void Directing::add_line(Severity severity, std::string_view text) {
   if (draft_.log_size() == most_lines || log_bytes_ + text.size() > most_log_bytes) {
     throw std::length_error("a director logs at most " + std::to_string(most_lines) +
                             " lines of 1 MiB together at one tick");
   }
   log_bytes_ += text.size();
   v1::LogLine& line = *draft_.add_log();
-  line.set_error(is_error);
+  line.set_error(severity == Severity::error);
   line.set_text(v1::valid_utf8(text));
 }
 

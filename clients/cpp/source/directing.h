@@ -35,7 +35,8 @@ class Directing final : public Part {
   /// A fresh act. @throws std::length_error if there are too many
   /// @param bytes  of its texts
   v1::DirectorAct& add_act(std::size_t bytes);
-  void add_line(bool is_error, std::string_view text);
+  enum class Severity { info, error };
+  void add_line(Severity severity, std::string_view text);
   void set_metric(std::string_view name, double value);
   void finish(std::string_view result);
   bool wants_finish() const { return draft_.has_finish(); }

@@ -189,8 +189,12 @@ void Director::set_tags(std::string_view entity, std::span<const std::string> pa
 }
 
 void Director::metric(std::string_view name, double value) { state_->part.set_metric(name, value); }
-void Director::log(std::string_view text) { state_->part.add_line(false, text); }
-void Director::log_error(std::string_view text) { state_->part.add_line(true, text); }
+void Director::log(std::string_view text) {
+  state_->part.add_line(Directing::Severity::info, text);
+}
+void Director::log_error(std::string_view text) {
+  state_->part.add_line(Directing::Severity::error, text);
+}
 void Director::finish(std::string_view result) { state_->part.finish(result); }
 
 }  // namespace ziggurat

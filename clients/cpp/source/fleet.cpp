@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "convert.h"
 #include "layout.h"
-#include "metric.h"
 
 namespace ziggurat {
 
@@ -99,7 +99,7 @@ void Fleet::move_log_to(google::protobuf::RepeatedPtrField<v1::LogLine>& lines) 
   for (Robot::Line& from : log_.lines) {
     v1::LogLine& line = *lines.Add();
     line.set_robot(from.robot);
-    line.set_error(from.error);
+    line.set_error(from.severity == Robot::Severity::error);
     line.set_text(std::move(from.text));
   }
   log_.lines.clear();

@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
+#include "convert.h"
 #include "find.h"
-#include "metric.h"
 #include "text/printable.h"
 #include "ziggurat/v1/envelope.h"
 
@@ -27,10 +27,10 @@ Magnet& Robot::magnet(std::string_view id) {
   return find(magnets_, id, "robot '" + id_ + "'", "magnet");
 }
 
-void Robot::log(std::string_view text) { add_line(false, text); }
-void Robot::log_error(std::string_view text) { add_line(true, text); }
+void Robot::log(std::string_view text) { add_line(Severity::info, text); }
+void Robot::log_error(std::string_view text) { add_line(Severity::error, text); }
 
-void Robot::add_line(bool error, std::string_view text) {
+void Robot::add_line(Severity severity, std::string_view text) {
   constexpr std::size_t overhead = 64;  // of a line, besides its text: it has four fields [bytes]
   std::string line = v1::valid_utf8(text);
   if (log_->bytes + line.size() + overhead > log_->max_bytes) {
@@ -38,7 +38,7 @@ void Robot::add_line(bool error, std::string_view text) {
                             " bytes at one tick");
   }
   log_->bytes += line.size() + overhead;
-  log_->lines.push_back({position_, error, std::move(line)});
+  log_->lines.push_back({position_, severity, std::move(line)});
 }
 
 void Robot::metric(std::string_view name, double value) {

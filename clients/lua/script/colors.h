@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "ziggurat/led.h"
+#include "ziggurat/actuators.h"
 
 namespace ziggurat::lua {
 

@@ -16,7 +16,7 @@
 #include "network/barrier/timeouts.h"
 #include "wire/command_limits.h"
 #include "wire/direction.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::network {
 

@@ -2,7 +2,7 @@
 // The lock-step barrier without sockets and clocks: messages of peers and the time in, messages to
 // peers out. It is a set of parts, each of which stands alone. The rules of docs/protocol.md are
 // functions that act on them together: dispatch.h (which message is handled in which state),
-// admission.h, exchange.h, departure.h, population.h, timing.h.
+// admission.h, exchange.h, departure.h, population.h, timeouts.h.
 
 #include <cstdint>
 #include <functional>
@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "network/answer_times.h"
 #include "network/barrier/calls.h"
 #include "network/barrier/connections.h"
 #include "network/barrier/deadlines.h"
@@ -21,6 +20,7 @@
 #include "network/barrier/sessions.h"
 #include "network/barrier/tick_gate.h"
 #include "network/config.h"
+#include "network/latencies.h"
 #include "network/limits.h"
 #include "network/link.h"
 #include "network/reactions.h"
@@ -44,7 +44,7 @@ struct Begin {
   std::optional<world::Commands> commands = {};  ///< that hold there; none: nothing was commanded
 };
 
-/// When timing.h has something to do next.
+/// When timeouts.h has something to do next.
 struct Timers {
   Time deadline = never;
   Time heartbeat;

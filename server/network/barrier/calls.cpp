@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "network/glob.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::network {
 
@@ -75,7 +75,9 @@ std::optional<wire::Fault> Calls::add(SessionId session, const std::string& conn
   }
   ++unanswered.requests;
   unanswered.bytes += bytes;
-  calls_.push_back({connection, std::move(request), false, static_cast<std::uint64_t>(session)});
+  calls_.push_back({.peer = connection,
+                    .request = std::move(request),
+                    .session = static_cast<std::uint64_t>(session)});
   return std::nullopt;
 }
 

@@ -11,19 +11,19 @@
 #include "network/barrier/exchange.h"
 #include "network/barrier/peer_messages.h"
 #include "network/barrier/timeouts.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::network {
 
 namespace {
 
 /// Frees a robot that the session holds.
-/// @param may_resume  the session may have the robot back
-void release(Barrier& barrier, const Session& holder, std::size_t robot, bool may_resume) {
+void release(Barrier& barrier, const Session& holder, std::size_t robot, Claim claim) {
   const bool is_skipped =
       barrier.gate.has_missed(holder.pending_answer);  // waited for once, not twice
   const Time since = is_skipped ? holder.pending_answer.waiting_since : barrier.now;
-  barrier.ownership.release(robot, may_resume ? holder.id : SessionId::none, since, is_skipped,
+  barrier.ownership.release(robot, claim == Claim::kept ? holder.id : SessionId::none, since,
+                            is_skipped ? InTick::skipped : InTick::awaited,
                             barrier.gate.waited(holder.pending_answer, barrier.now));
   if (!is_skipped) expect_answer(barrier, robot);
 }
@@ -34,10 +34,10 @@ std::size_t position_of(const Session& session, std::size_t robot) {
   return static_cast<std::size_t>(std::ranges::lower_bound(robots, robot) - robots.begin());
 }
 
-void release_all(Barrier& barrier, Session& holder, bool may_resume) {
-  release_director(barrier, holder, may_resume);
+void release_all(Barrier& barrier, Session& holder, Claim claim) {
+  release_director(barrier, holder, claim);
   for (const std::size_t robot : holder.roster.robots) {
-    if (barrier.ownership[robot].holder == holder.id) release(barrier, holder, robot, may_resume);
+    if (barrier.ownership[robot].holder == holder.id) release(barrier, holder, robot, claim);
   }
 }
 
@@ -79,7 +79,8 @@ void take(Barrier& barrier, Session& session, std::span<const std::size_t> robot
           const std::string& by) {
   for (const std::size_t robot : robots) {
     const bool is_held = barrier.ownership[robot].holder == session.id;
-    is_held ? release(barrier, session, robot, false) : barrier.ownership.drop_claim(robot);
+    is_held ? release(barrier, session, robot, Claim::dropped)
+            : barrier.ownership.drop_claim(robot);
     session.roster.hand_over(position_of(session, robot));
   }
   note(barrier, &session,
@@ -139,7 +140,7 @@ void lose(Barrier& barrier, Session& session, std::string_view why) {
   give_up_answers(barrier, session);
   session.state = SessionState::lost;
   session.lease_end = barrier.now + barrier.config.lease;
-  release_all(barrier, session, true);
+  release_all(barrier, session, Claim::kept);
 }
 
 void disconnect(Barrier& barrier, const std::string& connection) {
@@ -175,7 +176,7 @@ void erase(Barrier& barrier, Session& session) {
   give_up_answers(barrier, session);
   barrier.gate.settle(session.pending_answer, barrier.now);
   if (session.state != SessionState::lost) unbind(barrier, session);
-  release_all(barrier, session, false);
+  release_all(barrier, session, Claim::dropped);
   for (const std::size_t robot : session.roster.robots) {
     if (barrier.ownership[robot].claimant == session.id) barrier.ownership.drop_claim(robot);
   }

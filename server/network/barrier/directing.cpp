@@ -13,8 +13,7 @@
 #include "network/barrier/peer_messages.h"
 #include "network/barrier/timeouts.h"
 #include "network/glob.h"
-#include "wire/fault.h"
-#include "wire/welcome_size.h"
+#include "wire/messages.h"
 
 namespace ziggurat::network {
 
@@ -105,7 +104,7 @@ void add_from_outside(Barrier& barrier, const std::string& id) {
   Directors& directors = barrier.directors;
   directors.all.emplace_back().id = id;
   directors.answers.emplace_back();
-  directors.ownership.add(barrier.now, true);
+  directors.ownership.add(barrier.now, InTick::skipped);
   directors.deadlines.grow(directors.deadline_of_others);
   sort_last(directors);
 }
@@ -229,7 +228,7 @@ void add_directors(Barrier& barrier, const std::vector<Config::Deadline>& deadli
             : Config::Deadline{director.deadline.value_or(scene::DeadlinePolicy{}), false});
     directors.all.push_back(director);
     directors.answers.emplace_back();
-    directors.ownership.add(barrier.now, false);
+    directors.ownership.add(barrier.now, InTick::awaited);
     sort_last(directors);
   }
 }
@@ -267,11 +266,6 @@ std::variant<Session*, wire::Refusal> begin_directing(Barrier& barrier, const wi
   if (director == barrier.directors.all.size()) {
     add_from_outside(barrier, hello.director);
   } else {
-    if (!wire::is_decoded(barrier.directors.all[director])) {
-      return refuse(
-          ErrorCode::too_large, "director",
-          "A Welcome with the <params> of this director would be longer than clients decode.");
-    }
     if (auto refusal = check_seat(barrier, director, hello.takeover)) return std::move(*refusal);
     displace(barrier, director, client);
   }
@@ -291,18 +285,19 @@ void take_director(Barrier& barrier, Session& session, const wire::Hello& hello)
   }
 }
 
-void release_director(Barrier& barrier, Session& session, bool may_resume) {
+void release_director(Barrier& barrier, Session& session, Claim claim) {
   if (!session.director) return;
   Ownership& ownership = barrier.directors.ownership;
   if (ownership[*session.director].holder != session.id) {
-    if (!may_resume && ownership[*session.director].claimant == session.id) {
+    if (claim == Claim::dropped && ownership[*session.director].claimant == session.id) {
       ownership.drop_claim(*session.director);
     }
     return;
   }
   const bool is_skipped = barrier.gate.has_missed(session.pending_answer);
   const Time since = is_skipped ? session.pending_answer.waiting_since : barrier.now;
-  ownership.release(*session.director, may_resume ? session.id : SessionId::none, since, is_skipped,
+  ownership.release(*session.director, claim == Claim::kept ? session.id : SessionId::none, since,
+                    is_skipped ? InTick::skipped : InTick::awaited,
                     barrier.gate.waited(session.pending_answer, barrier.now));
   if (!is_skipped) check_soon(barrier);
 }

@@ -25,8 +25,7 @@ std::optional<wire::Refusal> check_fixed(const Barrier& barrier, std::size_t dir
 /// It has its director from now on.
 void take_director(Barrier& barrier, Session& session, const wire::Hello& hello);
 /// It has none any more; the director is free. No effect without one.
-/// @param may_resume  the session may have it back
-void release_director(Barrier& barrier, Session& session, bool may_resume);
+void release_director(Barrier& barrier, Session& session, Claim claim);
 /// The director leaves the barrier for good, and its session goes on without it.
 void remove_director(Barrier& barrier, Session& session);
 

@@ -7,8 +7,8 @@
 #include "network/barrier/directing.h"
 #include "network/barrier/peer_messages.h"
 #include "network/barrier/timeouts.h"
-#include "wire/fault.h"
-#include "wire/reset_commands.h"
+#include "wire/command.h"
+#include "wire/messages.h"
 
 namespace ziggurat::network {
 

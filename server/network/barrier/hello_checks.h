@@ -10,6 +10,7 @@
 
 #include "network/barrier/barrier.h"
 #include "network/keys.h"
+#include "wire/messages.h"
 
 namespace ziggurat::network {
 

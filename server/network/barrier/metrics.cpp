@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::network {
 namespace {

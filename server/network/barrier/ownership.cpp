@@ -4,13 +4,13 @@
 
 namespace ziggurat::network {
 
-void Ownership::add(Time now, bool is_skipped) {
+void Ownership::add(Time now, InTick in_tick) {
   Entry& entry = entries_.emplace_back();
   entry.free_since = now;
-  entry.is_skipped = is_skipped;
+  entry.is_skipped = in_tick == InTick::skipped;
   has_changes_ = true;
   ++free_;
-  if (is_skipped) ++skipped_;
+  if (entry.is_skipped) ++skipped_;
 }
 
 /// The tick does not wait for the free robot any more.
@@ -30,14 +30,14 @@ void Ownership::take(std::size_t robot, SessionId session, Time now) {
   entry.claimant = SessionId::none;
 }
 
-void Ownership::release(std::size_t robot, SessionId claimant, Time since, bool is_skipped,
+void Ownership::release(std::size_t robot, SessionId claimant, Time since, InTick in_tick,
                         std::chrono::nanoseconds waited) {
   Entry& entry = entries_[robot];
   entry.waited += waited;
   has_changes_ = true;
   ++free_;
-  if (is_skipped) ++skipped_;
-  entry.is_skipped = is_skipped;
+  entry.is_skipped = in_tick == InTick::skipped;
+  if (entry.is_skipped) ++skipped_;
   entry.free_since = since;
   entry.holder = SessionId::none;
   entry.claimant = claimant;

@@ -9,6 +9,12 @@
 
 namespace ziggurat::network {
 
+/// Whether a session that frees a robot may have it back.
+enum class Claim { kept, dropped };
+
+/// Whether the current tick waits for a free robot.
+enum class InTick { awaited, skipped };
+
 class Ownership {
  public:
   struct Entry {
@@ -26,7 +32,7 @@ class Ownership {
   };
 
   /// One more robot, which is free.
-  void add(Time now, bool is_skipped);
+  void add(Time now, InTick in_tick);
   /// Forgets robots behind the first `count`, which must have left.
   void shrink(std::size_t count) { entries_.resize(count); }
 
@@ -38,9 +44,9 @@ class Ownership {
   /// @param robot     held
   /// @param claimant  the lost session that may resume; none: no session
   /// @param since     when it became free, as far as its deadline is concerned
-  /// @param is_skipped  its session has missed the current tick already
+  /// @param in_tick   skipped: its session has missed the current tick already
   /// @param waited    by the current tick for its session
-  void release(std::size_t robot, SessionId claimant, Time since, bool is_skipped,
+  void release(std::size_t robot, SessionId claimant, Time since, InTick in_tick,
                std::chrono::nanoseconds waited);
   void drop_claim(std::size_t robot) { entries_[robot].claimant = SessionId::none; }
   /// Takes the robot out of the barrier for good. No effect if it has left.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "network/barrier/departure.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::network {
 

@@ -9,7 +9,7 @@
 #include "network/barrier/directing.h"
 #include "network/barrier/exchange.h"
 #include "network/barrier/peer_messages.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::network {
 
@@ -61,7 +61,7 @@ void end_without_robots(Barrier& barrier, Session& session) {
   if (!is_told) return erase(barrier, session);
   for (const std::size_t robot : session.roster.robots) {
     if (barrier.ownership[robot].holder != session.id) continue;
-    barrier.ownership.release(robot, SessionId::none, barrier.now, false, {});
+    barrier.ownership.release(robot, SessionId::none, barrier.now, InTick::awaited, {});
   }
   session.roster = {};
 }
@@ -104,8 +104,9 @@ void add_robots(Barrier& barrier, std::span<const std::string> scripts,
   auto& known = barrier.run->scripts;
   known.resize(barrier.ownership.size());
   known.insert(known.end(), scripts.begin(), scripts.end());
+  const InTick in_tick = barrier.gate.tick() ? InTick::skipped : InTick::awaited;
   for (std::size_t robot = barrier.ownership.size(); robot < robots.size(); ++robot) {
-    barrier.ownership.add(barrier.now, barrier.gate.tick().has_value());
+    barrier.ownership.add(barrier.now, in_tick);
     barrier.deadlines.add(robots[robot].controller);
     tell_spawned(barrier, robot);
   }

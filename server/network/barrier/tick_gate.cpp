@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::network {
 

@@ -12,7 +12,7 @@
 #include "network/barrier/directing.h"
 #include "network/barrier/exchange.h"
 #include "network/barrier/peer_messages.h"
-#include "wire/fault.h"
+#include "wire/messages.h"
 
 namespace ziggurat::network {
 

@@ -188,13 +188,13 @@ std::optional<CurvePeer::Opened> CurvePeer::open(std::span<std::uint8_t> body) {
                 (content[0] & command_in_box) != 0};
 }
 
-void CurvePeer::seal(std::span<std::uint8_t> body, bool is_command) {
+void CurvePeer::seal(std::span<std::uint8_t> body, Content kind) {
   std::ranges::copy(message_name, body.begin());
   const auto number = bytes_of_number(++sent_);
   std::ranges::copy(number, body.begin() + message_name.size());
   const auto box = body.subspan(message_name.size() + number_size);
   const auto content = box.subspan(mac_size);
-  content[0] = is_command ? command_in_box : 0;
+  content[0] = kind == Content::command ? command_in_box : 0;
   ::crypto_box_easy_afternm(box.data(), content.data(), content.size(),
                             make_nonce("CurveZMQMESSAGES", number).data(), shared_.data());
 }

@@ -64,9 +64,10 @@ class CurvePeer {
   };
   /// Opens the box of a message in place.
   std::optional<Opened> open(std::span<std::uint8_t> body);
+  enum class Content { message, command };
   /// Closes the box of a message.
   /// @param body  its content stands behind the first `overhead` bytes, which are filled
-  void seal(std::span<std::uint8_t> body, bool is_command = false);
+  void seal(std::span<std::uint8_t> body, Content kind = Content::message);
 
  private:
   bool is_fresh(std::uint64_t nonce);

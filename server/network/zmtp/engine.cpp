@@ -28,12 +28,12 @@ Engine::Engine(const CurveKeys* keys) : keys_(keys) {
 }
 
 std::string Engine::greeting() const {
-  return zmtp::greeting(mechanism_for(keys_), true).substr(0, first_of_greeting);
+  return zmtp::greeting(mechanism_for(keys_), End::server).substr(0, first_of_greeting);
 }
 
 Taken Engine::fail(std::string why) {
   refusal_ = std::move(why);
-  return {Step::failed, 0, false, {}};
+  return {.step = Step::failed};
 }
 
 Access Engine::access() const {
@@ -50,14 +50,14 @@ Taken Engine::take_greeting(Bytes input, std::string& reply) {
                     ? "what it sends is not ZMTP 3, ZeroMQ's wire protocol"
                     : "it speaks ZMTP " + version + ", and ZMTP 3 is needed (libzmq 4)");
   }
-  if (found == Greeting::incomplete) return {Step::incomplete, greeting_size, false, {}};
+  if (found == Greeting::incomplete) return {.step = Step::incomplete, .size = greeting_size};
   // The rest follows the client's whole greeting: a client that breaks off at our mechanism has
   // told its own.
-  reply += zmtp::greeting(mechanism_for(keys_), true).substr(first_of_greeting);
+  reply += zmtp::greeting(mechanism_for(keys_), End::server).substr(first_of_greeting);
   const std::string mechanism(mechanism_of(input));
   if (mechanism == mechanism_for(keys_)) {
     stage_ = curve_ ? Stage::hello : Stage::ready;
-    return {Step::passed, greeting_size, false, {}};
+    return {.step = Step::passed, .size = greeting_size};
   }
   if (mechanism == "NULL")
     return fail("it has no key, and the endpoint is protected (--curve-clients)");
@@ -96,7 +96,7 @@ std::string Engine::take_handshake(Bytes body, std::string& reply) {
 Taken Engine::take(std::span<std::uint8_t> input, std::size_t limit, std::string& reply) {
   if (stage_ == Stage::greeting) return take_greeting(input, reply);
   const auto header = read_header(input);
-  if (!header) return {Step::incomplete, longest_header, false, {}};
+  if (!header) return {.step = Step::incomplete, .size = longest_header};
   if (!header->is_valid) return fail(not_a_frame);
   const std::size_t around = curve_ ? CurvePeer::overhead : 0;
   const bool is_traffic = is_open() && !header->is_command;
@@ -110,11 +110,11 @@ Taken Engine::take(std::span<std::uint8_t> input, std::size_t limit, std::string
             {}};
   }
   const std::size_t size = header->length + static_cast<std::size_t>(header->body);
-  if (input.size() < size) return {Step::incomplete, size, false, {}};
+  if (input.size() < size) return {.step = Step::incomplete, .size = size};
   const auto body = input.subspan(header->length, static_cast<std::size_t>(header->body));
   if (is_open()) return take_traffic(*header, body, size, reply);
   if (std::string why = take_handshake(body, reply); !why.empty()) return fail(std::move(why));
-  return {Step::passed, size, false, {}};
+  return {.step = Step::passed, .size = size};
 }
 
 Taken Engine::take_traffic(const Header& header, std::span<std::uint8_t> body, std::size_t size,
@@ -127,7 +127,7 @@ Taken Engine::take_traffic(const Header& header, std::span<std::uint8_t> body, s
   }
   if (!opened.is_command) return {Step::frame, size, opened.has_more, opened.content};
   take_command(opened.content, reply);
-  return {Step::passed, size, false, {}};
+  return {.step = Step::passed, .size = size};
 }
 
 /// A PING is answered, the others say nothing to a ROUTER.
@@ -143,7 +143,7 @@ void Engine::take_command(Bytes body, std::string& reply) {
   const std::span bytes(reinterpret_cast<std::uint8_t*>(frame.data()), frame.size());
   const std::size_t body_size = CurvePeer::overhead + pong.size();
   write_header(body_size, bytes.data());
-  curve_->seal(bytes.last(body_size), true);
+  curve_->seal(bytes.last(body_size), CurvePeer::Content::command);
   reply += frame;
 }
 

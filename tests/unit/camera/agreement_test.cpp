@@ -14,7 +14,6 @@
 #include "../simulation/small_scene.h"
 #include "camera/detectors.h"
 #include "devices/camera.h"
-#include "devices/picture.h"
 #include "physics/collision/ray.h"
 #include "simulation/layout.h"
 

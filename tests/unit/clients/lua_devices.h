@@ -65,11 +65,15 @@ class Devices : public ::testing::Test {
     EXPECT_FALSE(failure) << failure.value_or(""); \
   } while (false)
 
-inline void add_radio(v1::RobotDescription& robot, const char* id, bool receives, bool sends) {
+struct RadioUse {
+  bool receives = false, sends = false;
+};
+
+inline void add_radio(v1::RobotDescription& robot, const char* id, RadioUse use) {
   v1::RadioDescription& radio = *robot.add_radios();
   radio.set_id(id);
-  radio.set_receives(receives);
-  radio.set_sends(sends);
+  radio.set_receives(use.receives);
+  radio.set_sends(use.sends);
 }
 
 /// Wheels and a turret, each with sensor and actuator.

@@ -27,8 +27,8 @@ TEST_F(Devices, ExistOnlyIfTheControllerHasThem) {
 }
 
 TEST_F(Devices, HaveTheFunctionsAndReadingsThatAreEnabled) {
-  add_radio(robot_, "ears", true, false);
-  add_radio(robot_, "mouth", false, true);
+  add_radio(robot_, "ears", {.receives = true});
+  add_radio(robot_, "mouth", {.sends = true});
   robot_.mutable_range_and_bearing()->set_receives(true);
   EXPECT_RUNS(start(R"lua(
     assert(robot.radios.ears.tx_data == nil and #robot.radios.ears.rx_data == 0)
@@ -362,7 +362,7 @@ TEST_F(Devices, RangeAndBearingData) {
 // ---- memory -------------------------------------------------------------------------------------
 
 TEST_F(Devices, TablesAreMadeOnce) {
-  add_radio(robot_, "r", true, true);
+  add_radio(robot_, "r", {.receives = true, .sends = true});
   for (int i = 0; i < 4; ++i) robot_.add_leds();
   for (int i = 0; i < 24; ++i) robot_.add_proximity_sensors();
   robot_.set_positioning(true);

@@ -25,8 +25,8 @@ void add_received(v1::Observation& seen, std::uint32_t radio, const std::string&
 }
 
 TEST_F(Devices, RadioMessagesAreArraysOfIntegers) {
-  add_radio(robot_, "a", true, false);
-  add_radio(robot_, "b", true, false);
+  add_radio(robot_, "a", {.receives = true});
+  add_radio(robot_, "b", {.receives = true});
   EXPECT_RUNS(start(R"lua(
     a, b = robot.radios.a.rx_data, robot.radios.b.rx_data
     function step()
@@ -56,7 +56,7 @@ TEST_F(Devices, RadioMessagesAreArraysOfIntegers) {
 }
 
 TEST_F(Devices, RadioNumbersBecomeBytes) {
-  add_radio(robot_, "r", false, true);
+  add_radio(robot_, "r", {.sends = true});
   EXPECT_RUNS(start(R"lua(
     local tx = robot.radios.r.tx_data
     tx({0, 255, 256, 257, -1, -256, -257})
@@ -70,7 +70,7 @@ TEST_F(Devices, RadioNumbersBecomeBytes) {
 }
 
 TEST_F(Devices, RadioRefusesInvalidMessages) {
-  add_radio(robot_, "r", false, true);
+  add_radio(robot_, "r", {.sends = true});
   EXPECT_RUNS(start(R"lua(
     local tx = robot.radios.r.tx_data
     refused("tx_data%(table%) expected, got 0", tx)
@@ -87,7 +87,7 @@ TEST_F(Devices, RadioRefusesInvalidMessages) {
 }
 
 TEST_F(Devices, RadioMessagesMayBeLongAndMany) {
-  add_radio(robot_, "r", false, true);
+  add_radio(robot_, "r", {.sends = true});
   EXPECT_RUNS(start(R"lua(
     local long = {}
     for i = 1, 65536 do long[i] = i end
@@ -101,8 +101,8 @@ TEST_F(Devices, RadioMessagesMayBeLongAndMany) {
 }
 
 TEST_F(Devices, RadioLimitsAreErrorsThatAScriptMayCatch) {
-  add_radio(robot_, "r", false, true);
-  add_radio(robot_, "s", false, true);
+  add_radio(robot_, "r", {.sends = true});
+  add_radio(robot_, "s", {.sends = true});
   EXPECT_RUNS(start(R"lua(
     local r, s = robot.radios.r.tx_data, robot.radios.s.tx_data
     local long = {}

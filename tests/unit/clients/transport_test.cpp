@@ -115,7 +115,7 @@ class RawServer {
   }
   void shake_hands(Transport& transport) {
     client_ = ::accept(listener_, nullptr, nullptr);
-    std::string bytes = zmtp::greeting("NULL", false);
+    std::string bytes = zmtp::greeting("NULL", zmtp::End::client);
     zmtp::append_command(bytes, "READY", zmtp::metadata_of("ROUTER"));
     write(bytes);
     std::string heard;

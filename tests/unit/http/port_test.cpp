@@ -28,7 +28,7 @@ Answer read(std::string_view path) {
 }
 
 std::string answer(const std::string& request) {
-  return answer_at_port(request, "127.0.0.1", false, read);
+  return answer_at_port(request, "127.0.0.1", read);
 }
 
 TEST(Port, AnswersHeadWithoutTheText) {
@@ -106,7 +106,7 @@ TEST(Port, ItsThreadIsLessImportantThanOthers) {
     theirs = ::getpriority(PRIO_PROCESS, 0);
     return Answer{};
   };
-  const Port port("--metrics", {"127.0.0.1", 0}, false, note);
+  const Port port("--metrics", {"127.0.0.1", 0}, note);
   Client client(port.number());
   client.send("GET / HTTP/1.1\r\n\r\n");
   client.hear();
@@ -115,8 +115,8 @@ TEST(Port, ItsThreadIsLessImportantThanOthers) {
 }
 
 TEST(Port, AClientThatTakesTooLongIsDisconnected) {
-  EXPECT_EQ(Port::Limits().time, std::chrono::seconds(5));
-  const Port port("--metrics", {"127.0.0.1", 0}, false, read, {16, std::chrono::milliseconds(50)});
+  EXPECT_EQ(PortOptions().time, std::chrono::seconds(5));
+  const Port port("--metrics", {"127.0.0.1", 0}, read, {.time = std::chrono::milliseconds(50)});
   Client silent(port.number()), slow(port.number());
   slow.send("GET / HTTP/1.1\r\nHost: local");
   EXPECT_EQ(silent.hear(), "");
@@ -124,7 +124,7 @@ TEST(Port, AClientThatTakesTooLongIsDisconnected) {
 }
 
 TEST(Port, AClientThatSendsNowAndThenHasNoLongerTime) {
-  const Port port("--metrics", {"127.0.0.1", 0}, false, read, {16, std::chrono::milliseconds(300)});
+  const Port port("--metrics", {"127.0.0.1", 0}, read, {.time = std::chrono::milliseconds(300)});
   Client slow(port.number());
   slow.send("GET / HTTP/1.1\r\nX: ");
   EXPECT_TRUE(comes_true([&] {
@@ -134,10 +134,9 @@ TEST(Port, AClientThatSendsNowAndThenHasNoLongerTime) {
 }
 
 TEST(Port, OfTooManyClientsTheOldestMakesPlace) {
-  const auto most = static_cast<int>(Port::Limits().clients);
+  const auto most = static_cast<int>(PortOptions().clients);
   EXPECT_EQ(most, 16);
-  const Port port("--metrics", {"127.0.0.1", 0}, false, read,
-                  {Port::Limits().clients, std::chrono::hours(1)});
+  const Port port("--metrics", {"127.0.0.1", 0}, read, {.time = std::chrono::hours(1)});
   std::vector<std::unique_ptr<Client>> clients;
   for (int i = 0; i < most + 2; ++i) {
     clients.push_back(std::make_unique<Client>(port.number()));
@@ -152,7 +151,7 @@ TEST(Port, OfTooManyClientsTheOldestMakesPlace) {
 }
 
 TEST(Port, TakesSoManyConnectionsInAPeriod) {
-  const Port port("--metrics", {"127.0.0.1", 0}, false, read);
+  const Port port("--metrics", {"127.0.0.1", 0}, read);
   const auto begun = std::chrono::steady_clock::now();
   for (int i = 0; i < 2 * Listening::most_in_period + 1; ++i) {
     Client client(port.number());
@@ -164,9 +163,9 @@ TEST(Port, TakesSoManyConnectionsInAPeriod) {
 }
 
 TEST(Port, ATakenAddressIsAnErrorThatNamesTheOption) {
-  const Port first("--metrics", {"127.0.0.1", 0}, false, read);
+  const Port first("--metrics", {"127.0.0.1", 0}, read);
   try {
-    const Port second("--metrics", {"127.0.0.1", first.number()}, false, read);
+    const Port second("--metrics", {"127.0.0.1", first.number()}, read);
     FAIL() << "it is taken";
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(std::string(error.what()).find("--metrics: 127.0.0.1:"), 0u) << error.what();

@@ -29,7 +29,7 @@ struct CurveEngine : ::testing::Test {
   struct Connection {
     Connection(const CurveKeys& keys, const CurveClient::Pair& pair)
         : engine(&keys), client(pair, keys.public_key()) {
-      EXPECT_EQ(say(greeting("CURVE", false)), Step::passed);
+      EXPECT_EQ(say(greeting("CURVE", End::client)), Step::passed);
     }
     Step say(std::string bytes) {
       reply.clear();
@@ -64,7 +64,7 @@ struct CurveEngine : ::testing::Test {
   }
 
   CurveClient::Pair server = CurveClient::make_pair(), listed = CurveClient::make_pair();
-  CurveKeys keys{{z85(server.secret), {{z85(listed.open), {true, false, false}, ""}}}};
+  CurveKeys keys{{z85(server.secret), {{z85(listed.open), {.controller = true}, ""}}}};
 };
 
 TEST_F(CurveEngine, MessagesPassWhileTheirNumbersGrow) {

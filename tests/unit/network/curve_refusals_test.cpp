@@ -28,7 +28,7 @@ struct CurveRefusals : ::testing::Test {
     other_key = write_key_pair(folder / "other");
     config.endpoints = {"tcp://127.0.0.1:*"};
     config.curve = {secret("server"), {}};
-    config.curve->clients.push_back({listed_key, {true, false, false}, ""});
+    config.curve->clients.push_back({listed_key, {.controller = true}, ""});
   }
   std::string secret(const std::string& name) const {
     return read_secret_key(folder / (name + ".secret"));

@@ -200,7 +200,7 @@ TEST(Delays, HoldNoMoreThanTwoOfTheLargestMessages) {
   Config config = config_with({{}, {5s, {}, 0}});
   auto command = Peers::command(0);
   command.mutable_command()->add_log()->set_text(std::string(1000, 'x'));
-  config.max_message_bytes = bytes_of(command, false).size() / 2 * 3 + 2;
+  config.max_message_bytes = command.SerializeAsString().size() / 2 * 3 + 2;
   config.deadlines[0].policy = {DeadlineAction::hold, 9000, 0};
   Peers peers(small, config);
   peers.join("a", "robot0");

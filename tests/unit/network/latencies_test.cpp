@@ -6,8 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "network/answer_times.h"
-
 namespace ziggurat::network {
 namespace {
 

@@ -37,18 +37,6 @@ void attend(Server& server, const Progress& progress = {}) {
   server.attend(progress, {milliseconds{100}, {}});
 }
 
-TEST(Loading, H12_IfThereIsNoWorldInTheEnd) {
-  std::optional<Server> server(config_with_heartbeat(out_of_the_way));
-  Peer peer(server->endpoints());
-  peer.say(hello("*"));
-  attend(*server);
-  EXPECT_TRUE(peer.hear().has_loading());
-  server.reset();
-  const auto refusal = peer.hear().refusal();
-  EXPECT_EQ(refusal.error().code(), v1::Error::OUT_OF_STATE);
-  EXPECT_EQ(refusal.error().severity(), v1::Error::FATAL);
-}
-
 TEST(Loading, ADescriptorEndsTheWait) {
   int pipe[2];
   ASSERT_EQ(::pipe(pipe), 0);

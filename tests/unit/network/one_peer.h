@@ -19,9 +19,7 @@ class Peer {
     dealer_.set(zmq::sockopt::rcvtimeo, 5000);
     dealer_.connect(endpoints.front());
   }
-  void say(const v1::ClientMessage& message, bool json = false) {
-    say(json ? v1::to_json(message) : message.SerializeAsString());
-  }
+  void say(const v1::ClientMessage& message) { say(message.SerializeAsString()); }
   void say(const std::string& bytes) { dealer_.send(zmq::buffer(bytes)); }
   /// Empty after 5 s.
   v1::ServerMessage hear() {

@@ -19,7 +19,8 @@ struct Connected {
     int ends[2];
     EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends), 0);
     client = posix::Descriptor(ends[0]);
-    peer = std::make_unique<PeerSocket>("peer", posix::Descriptor(ends[1]), nullptr, false, Time{});
+    peer = std::make_unique<PeerSocket>("peer", posix::Descriptor(ends[1]), nullptr, Trust::none,
+                                        Time{});
   }
   void say(const std::string& bytes) {
     ASSERT_EQ(::send(client.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL),
@@ -60,12 +61,12 @@ struct Connected {
     ASSERT_TRUE(peer->is_open());
     hear();
   }
-  void tell(std::size_t size, bool is_observation, char fill) {
+  void tell(std::size_t size, MessageKind kind, char fill) {
     Buffer buffer;
     const std::size_t at = peer->content_at(size);
     buffer.reserve(at + size);
     std::memset(buffer.bytes.get() + at, fill, size);
-    peer->send(buffer, size, is_observation);
+    peer->send(buffer, size, kind);
   }
 
   posix::Descriptor client;
@@ -146,8 +147,8 @@ TEST_F(PeerSocketTest, TheNewestObservationTakesThePlaceOfTheOneThatWaits) {
   open();
   peer->set_standing(Standing::controller, 64 * mebibyte, Time{});
   constexpr std::size_t size = 3 << 20;
-  for (char tick = 0; tick < 100; ++tick) tell(size, true, tick);
-  tell(10, false, 'e');
+  for (char tick = 0; tick < 100; ++tick) tell(size, MessageKind::observation, tick);
+  tell(10, MessageKind::other, 'e');
   EXPECT_FALSE(peer->is_over());
   EXPECT_LT(peer->output().waiting_bytes(), 200U);
   const std::string heard = hear();
@@ -161,7 +162,7 @@ TEST_F(PeerSocketTest, OneThatDoesNotReadIsDisconnected) {
   open();
   int count = 0;
   while (!peer->is_over() && count < 1000) {
-    tell(100'000, false, 'r');
+    tell(100'000, MessageKind::other, 'r');
     ++count;
     EXPECT_LE(peer->output().waiting_bytes(), most_waiting);
   }
@@ -173,12 +174,12 @@ TEST_F(PeerSocketTest, MessagesBehindOneThatIsLongerThanWhatMayWaitAreKept) {
   open();
   peer->set_standing(Standing::controller, 64 * mebibyte, Time{});
   const std::size_t size = 2 * most_waiting;
-  tell(size, false, 'l');
-  tell(100, false, 'h');
+  tell(size, MessageKind::other, 'l');
+  tell(100, MessageKind::other, 'h');
   EXPECT_FALSE(peer->is_over());
   EXPECT_EQ(hear().size(), size + 9 + 102);
-  tell(most_waiting - kibibyte, false, 'r');
-  tell(size, false, 'l');
+  tell(most_waiting - kibibyte, MessageKind::other, 'r');
+  tell(size, MessageKind::other, 'l');
   EXPECT_TRUE(peer->output().is_congested()) << "something waited before it";
 }
 
@@ -189,7 +190,7 @@ TEST_F(PeerSocketTest, WhatWaitsTakesNoMoreMemoryThanItIsCountedFor) {
   Buffer buffer;
   buffer.reserve(mebibyte);
   const std::size_t at = peer->content_at(20);
-  const auto tell_20_bytes = [&] { peer->send(buffer, 20, false); };
+  const auto tell_20_bytes = [&] { peer->send(buffer, 20, MessageKind::other); };
   std::memset(buffer.bytes.get(), 0, at + 20);
   const std::size_t before = ::mallinfo2().uordblks + ::mallinfo2().hblkhd;
   int count = 0;

@@ -28,9 +28,9 @@ Pair connected() {
 
 /// The table with one more connection.
 /// @returns the client's end
-posix::Descriptor connect(PeerTable& table, bool is_trusted, Time now) {
+posix::Descriptor connect(PeerTable& table, Trust trust, Time now) {
   Pair pair = connected();
-  table.add(std::move(pair.ours), nullptr, is_trusted, now);
+  table.add(std::move(pair.ours), nullptr, trust, now);
   return std::move(pair.theirs);
 }
 
@@ -55,8 +55,9 @@ std::size_t left_at(PeerTable& table, Time time) {
 TEST(PeerTable, ConnectionsWithoutSessionGrowOld) {
   const Time start = std::chrono::steady_clock::now();
   PeerTable table;
-  const posix::Descriptor silent = connect(table, false, start), own = connect(table, true, start),
-                          open = connect(table, false, start);
+  const posix::Descriptor silent = connect(table, Trust::none, start),
+                          own = connect(table, Trust::own_user, start),
+                          open = connect(table, Trust::none, start);
   shake_hands(table, PeerTable::first_id + 3, open);
   EXPECT_EQ(left_at(table, start + seconds{10}), 3u);
   EXPECT_EQ(left_at(table, start + seconds{11}), 2u) << "its handshake is not over";
@@ -70,9 +71,9 @@ TEST(PeerTable, TheOldestWhoseHandshakeIsNotOverMakesPlaceAfterASecond) {
   using std::chrono::milliseconds;
   const Time start = std::chrono::steady_clock::now();
   PeerTable table;
-  const posix::Descriptor open = connect(table, false, start),
-                          silent = connect(table, false, start),
-                          later = connect(table, false, start + milliseconds{500});
+  const posix::Descriptor open = connect(table, Trust::none, start),
+                          silent = connect(table, Trust::none, start),
+                          later = connect(table, Trust::none, start + milliseconds{500});
   shake_hands(table, PeerTable::first_id + 1, open);
   const auto has = [&](std::uint64_t number) {
     return table.find(PeerTable::first_id + number) != nullptr;
@@ -90,7 +91,7 @@ TEST(PeerTable, TheOldestWhoseHandshakeIsNotOverMakesPlaceAfterASecond) {
 TEST(PeerTable, ThoseWithSessionStay) {
   const Time start = std::chrono::steady_clock::now();
   PeerTable table;
-  const posix::Descriptor client = connect(table, false, start);
+  const posix::Descriptor client = connect(table, Trust::none, start);
   shake_hands(table, PeerTable::first_id + 1, client);
   const std::string name = table.find(PeerTable::first_id + 1)->name();
   table.set_standing(name, Standing::observer, longest_without_session, start);
@@ -104,10 +105,10 @@ TEST(PeerTable, ThoseWithSessionStay) {
 
 /// Connections with a finished handshake.
 struct Crowd {
-  Crowd(const Shared& most, std::uint64_t count, bool is_trusted) : table(most) {
+  Crowd(const Shared& most, std::uint64_t count, Trust trust) : table(most) {
     const Time now = std::chrono::steady_clock::now();
     for (std::uint64_t i = 1; i <= count; ++i) {
-      clients.push_back(connect(table, is_trusted, now));
+      clients.push_back(connect(table, trust, now));
       shake_hands(table, PeerTable::first_id + i, clients.back());
     }
   }
@@ -118,7 +119,7 @@ struct Crowd {
     const std::size_t at = peer(index)->content_at(size);
     frame.reserve(at + size);
     std::memset(frame.bytes.get(), 0, at + size);
-    table.act(*peer(index), [&](PeerSocket& to) { to.send(frame, size, false); });
+    table.act(*peer(index), [&](PeerSocket& to) { to.send(frame, size, MessageKind::other); });
   }
   /// The client sends so much of a long message.
   void hear_part(std::uint64_t index, std::size_t size) {
@@ -140,7 +141,7 @@ struct Crowd {
 };
 
 TEST(PeerTable, OneThatDoesNotReadIsDisconnectedWithANotice) {
-  Crowd crowd({}, 1, false);
+  Crowd crowd({}, 1, Trust::none);
   for (int i = 0; i < 100 && crowd.peer(0) != nullptr; ++i) crowd.tell(0, 100'000);
   EXPECT_EQ(crowd.peer(0), nullptr);
   const auto notices = crowd.table.take_notices(std::chrono::steady_clock::now());
@@ -150,7 +151,7 @@ TEST(PeerTable, OneThatDoesNotReadIsDisconnectedWithANotice) {
 
 TEST(PeerTable, WhatWaitsForAllIsBoundedAndTheOneForWhichMostWaitsIsDisconnected) {
   EXPECT_EQ(Shared{}.waiting, 256 * mebibyte) << "docs/protocol.md, K5";
-  Crowd crowd({.waiting = 3 * mebibyte}, 3, false);
+  Crowd crowd({.waiting = 3 * mebibyte}, 3, Trust::none);
   for (int i = 0; i < 5; ++i) {
     for (const std::uint64_t index : {0, 1, 2})
       crowd.tell(index, (index == 1 ? 300 : 200) * kibibyte);
@@ -167,7 +168,7 @@ TEST(PeerTable, WhatWaitsForAllIsBoundedAndTheOneForWhichMostWaitsIsDisconnected
 /// Many end before the table is asked to forget them.
 TEST(PeerTable, WhatWaitedForOneThatIsDisconnectedGoesAtOnce) {
   constexpr std::uint64_t many = 30;
-  Crowd crowd({}, many, false);
+  Crowd crowd({}, many, Trust::none);
   const auto allocated = [] { return ::mallinfo2().uordblks + ::mallinfo2().hblkhd; };
   const std::size_t before = allocated();
   for (std::uint64_t index = 0; index < many; ++index) {
@@ -178,7 +179,7 @@ TEST(PeerTable, WhatWaitedForOneThatIsDisconnectedGoesAtOnce) {
 
 TEST(PeerTable, UnfinishedMessagesOfAllAreBounded) {
   EXPECT_EQ(Shared{}.unfinished, 512 * mebibyte) << "docs/protocol.md, K5";
-  Crowd crowd({.unfinished = 8 * mebibyte}, 4, true);
+  Crowd crowd({.unfinished = 8 * mebibyte}, 4, Trust::own_user);
   crowd.hear_part(3, 500 * kibibyte);
   for (std::uint64_t index = 0; index < 3; ++index) crowd.hear_part(index, 3000 * kibibyte);
   std::size_t taken = 0;

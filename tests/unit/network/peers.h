@@ -21,8 +21,8 @@
 
 namespace ziggurat::network {
 
-inline std::string bytes_of(const v1::ClientMessage& message, bool json) {
-  return json ? v1::to_json(message) : message.SerializeAsString();
+inline std::string bytes_of(const v1::ClientMessage& message, wire::Encoding encoding) {
+  return encoding == wire::Encoding::json ? v1::to_json(message) : message.SerializeAsString();
 }
 
 /// Told apart by the first byte, as a client may.
@@ -36,8 +36,9 @@ inline v1::ServerMessage message_of(const std::string& bytes) {
 
 class Peers {
  public:
-  /// @param is_loading  the world is not there yet: open() comes later
-  explicit Peers(const SmallRun& small, const Config& config = {}, bool is_loading = false)
+  enum class World { loaded, loading };
+  /// @param world  loading: open() comes later
+  explicit Peers(const SmallRun& small, const Config& config = {}, World world = World::loaded)
       : small_(small),
         config_(config),
         commands(small.commands()),
@@ -51,7 +52,7 @@ class Peers {
             },
             now) {
     if (!config.injections.empty()) disturb();
-    if (!is_loading) open();
+    if (world == World::loaded) open();
   }
 
   /// The world is loaded.
@@ -77,12 +78,14 @@ class Peers {
   void probe() { pass(std::chrono::milliseconds{1000}); }
 
   void say(const std::string& peer, const v1::ClientMessage& message) {
-    send_bytes(peer, bytes_of(message, json));
+    send_bytes(peer, bytes_of(message, encoding()));
   }
   void send_bytes(const std::string& peer, const std::string& bytes) {
-    const Received received{peer, bytes, true, Access{}};
+    const Received received{.connection = peer, .bytes = bytes};
     if (!link || link->arrives(received, now)) receive(barrier, received, &commands);
   }
+
+  wire::Encoding encoding() const { return json ? wire::Encoding::json : wire::Encoding::binary; }
 
   /// The one message that the peer was told since it was last asked; empty if none or several.
   v1::ServerMessage told(const std::string& peer) {
@@ -158,14 +161,16 @@ class Peers {
   void disturb() {
     const wire::Run run = small_.run();
     std::vector<DisturbedLink::Target> targets;
-    const auto add = [&](const std::string& id, bool is_director) {
-      targets.push_back({id, config_.injections.at(targets.size()), is_director});
+    const auto add = [&](DisturbedLink::Target target) {
+      target.injection = config_.injections.at(targets.size());
+      targets.push_back(std::move(target));
     };
-    for (const scene::Controller& controller : run.controllers) add(controller.id, false);
-    for (const scene::Director& director : run.directors) add(director.id, true);
+    for (const scene::Controller& controller : run.controllers) add({.id = controller.id});
+    for (const scene::Director& director : run.directors)
+      add({.id = director.id, .is_director = true});
     link.emplace(std::move(targets), run.seed, 2 * config_.max_message_bytes,
-                 [this](const auto& peer, auto bytes, bool is_observation) {
-                   if (is_observation) ++observations_sent;
+                 [this](const auto& peer, auto bytes, MessageKind kind) {
+                   if (kind == MessageKind::observation) ++observations_sent;
                    return deliver(peer, bytes);
                  });
   }

@@ -65,8 +65,10 @@ struct RefusedKeys : ::testing::Test {
     write_key_pair(folder / "server");
     write_key_pair(folder / "client");
     config.curve = {read_secret_key(folder / "server.secret"), {}};
-    config.curve->clients.push_back(
-        {public_key_of(read_secret_key(folder / "client.secret")), {true, true, true}, "", {}});
+    config.curve->clients.push_back({public_key_of(read_secret_key(folder / "client.secret")),
+                                     {.controller = true, .supervisor = true, .observer = true},
+                                     "",
+                                     {}});
   }
   void use_keys(zmq::socket_t& client) const {
     const std::string secret = read_secret_key(folder / "client.secret");
@@ -146,7 +148,8 @@ TEST(Refusals, M7_MessagesThatAreSkippedCountByTheirSize) {
     peers.barrier.calls.take();
     peers.barrier.calls.forget(peers.barrier.connections.session_of("p"));
     peers.inboxes["p"].clear();
-    receive(peers.barrier, {"p", {}, true, Access{}, 65 * kibibyte}, &peers.commands);
+    receive(peers.barrier, {.connection = "p", .bytes = {}, .skipped = 65 * kibibyte},
+            &peers.commands);
     const auto told = peers.told("p").error();
     is_refused = told.code() == v1::Error::TOO_MANY;
     EXPECT_TRUE(is_refused || told.code() == v1::Error::TOO_LARGE);

@@ -37,8 +37,8 @@ class SmallRun {
     robot.joint_sensors = {i, 1};
     robot.joint_actuators = {i, 1};
     layout_.robots.push_back(robot);
-    layout_.joint_sensors.push_back({"hinge", false, false});
-    layout_.joint_actuators.push_back({"hinge", true, false, 0.005});
+    layout_.joint_sensors.push_back({.id = "hinge"});
+    layout_.joint_actuators.push_back({.id = "hinge", .velocity = true, .max_impulse = 0.005});
   }
 
   wire::Run run() const {

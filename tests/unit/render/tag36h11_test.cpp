@@ -4,7 +4,7 @@
 #include <apriltag/tag36h11.h>
 #include <gtest/gtest.h>
 
-#include "scene/tag_pattern.h"
+#include "scene/devices.h"
 
 namespace ziggurat::render {
 namespace {

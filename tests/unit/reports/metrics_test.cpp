@@ -125,20 +125,20 @@ TEST(Metrics, AnswersAreWholeForThisMachineAndForGetOnly) {
     return http::Answer{path == "/" ? 200u : 404u, "text/plain", {}, "0123456789"};
   };
   const auto code = [&](const std::string& request) {
-    return http::answer_at_port(request, "127.0.0.1", false, read).substr(9, 3);
+    return http::answer_at_port(request, "127.0.0.1", read).substr(9, 3);
   };
   EXPECT_EQ(code("GET / HTTP/1.0\r\n\r\n"), "200");
   const std::string ranges = "Range: bytes=0-1,0-1,0-1,0-1\r\n";
-  const auto whole = http::answer_at_port("GET / HTTP/1.1\r\nHost: [::1]:80\r\n" + ranges + "\r\n",
-                                          "x", false, read);
+  const auto whole =
+      http::answer_at_port("GET / HTTP/1.1\r\nHost: [::1]:80\r\n" + ranges + "\r\n", "x", read);
   EXPECT_TRUE(whole.starts_with("HTTP/1.1 200") && whole.ends_with("\r\n\r\n0123456789")) << whole;
   for (const auto* host : {"localhost:1", "LocalHost", "127.0.0.1", "[::1]", " 10.0.0.1:9464 "}) {
     EXPECT_EQ(code(std::string("GET / HTTP/1.1\r\nhost:") + host + "\r\n\r\n"), "200") << host;
   }
   EXPECT_EQ(code("GET / HTTP/1.1\r\nHost: rebound.example:9464\r\n\r\n"), "403");
-  EXPECT_TRUE(
-      http::answer_at_port("GET / HTTP/1.1\r\nHost: monitor.example\r\n\r\n", "x", true, read)
-          .starts_with("HTTP/1.1 200"));
+  EXPECT_TRUE(http::answer_at_port("GET / HTTP/1.1\r\nHost: monitor.example\r\n\r\n", "x", read,
+                                   {.any_host = true})
+                  .starts_with("HTTP/1.1 200"));
   EXPECT_EQ(code("POST / HTTP/1.1\r\nContent-Length: 99999999999\r\n\r\n"), "405");
   EXPECT_EQ(code("GET /other HTTP/1.1\r\n\r\n"), "404");
   EXPECT_EQ(code("GET /?a=b HTTP/1.1\r\n\r\n"), "200");

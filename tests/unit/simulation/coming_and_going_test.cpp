@@ -11,14 +11,15 @@
 namespace ziggurat::simulation {
 namespace {
 
+using testing::Base;
 using testing::gravity;
 using testing::robot;
 using testing::SmallScene;
 using testing::wheels;
 
-std::string box(const std::string& id, const std::string& position, bool movable = true) {
+std::string box(const std::string& id, const std::string& position, Base base = Base::free) {
   return "<box id=\"" + id + R"(" size=".1,.1,.1" mass="1" movable=")" +
-         (movable ? "true" : "false") + "\"><body position=\"" + position + "\"/></box>";
+         (base == Base::free ? "true" : "false") + "\"><body position=\"" + position + "\"/></box>";
 }
 
 std::string tag(const std::string& payload) {
@@ -82,7 +83,7 @@ TEST(Move, AStateThatIsNotFiniteIsAFaultThatNamesTheEntity) {
 
 /// Boxes of 0.1 m, one of which moves.
 TEST(Move, APlaceIsFreeWhereNothingIsOverlapped) {
-  World world({"", "", box("a", "0,0,0") + box("b", "1,0,0", false), gravity + "<floor/>"});
+  World world({"", "", box("a", "0,0,0") + box("b", "1,0,0", Base::fixed), gravity + "<floor/>"});
   const Simulation& simulation = world.simulation;
   const auto overlapped = [&](std::size_t entity, double x, double z) {
     math::Pose pose = simulation.state().origins[entity];
@@ -112,8 +113,8 @@ TEST(Move, WhatRestsOnOthersMayStayAndComeBack) {
 }
 
 TEST(Spawn, WhereSomethingStandsIsRefusedAndChangesNothing) {
-  World world({"", "", box("a", "0,0,5", false), gravity}),
-      other({"", "", box("a", "0,0,5", false), gravity});
+  World world({"", "", box("a", "0,0,5", Base::fixed), gravity}),
+      other({"", "", box("a", "0,0,5", Base::fixed), gravity});
   world.step(3);
   other.step(3);
   try {
@@ -203,7 +204,7 @@ const std::string photographer =
 
 TEST(Spawn, IsInPicturesAndTakesThem) {
   // The first camera of the world comes late: what is there already is in its pictures.
-  World world({"", photographer, box("a", "0,0,1.5", false), ""});
+  World world({"", photographer, box("a", "0,0,1.5", Base::fixed), ""});
   world.step();
   world.spawn(robot("r", "0,0,0", ""));
   const auto& images = world.simulation.observations().images;
@@ -328,7 +329,7 @@ TEST(Spawn, AFootBotIsDrivenAndItsPlacesStayWhenItIsRemoved) {
 }
 
 TEST(Remove, OfASupportLetsFallWhatStoodOnIt) {
-  World world({"", "", box("a", "0,0,0", false) + box("b", "0,0,0.1"), gravity + "<floor/>"});
+  World world({"", "", box("a", "0,0,0", Base::fixed) + box("b", "0,0,0.1"), gravity + "<floor/>"});
   world.step(50);
   ASSERT_NEAR(world.simulation.state().origins[1].position.z(), 0.1, 1e-4);
   world.simulation.remove(0);

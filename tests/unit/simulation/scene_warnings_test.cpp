@@ -7,14 +7,17 @@
 namespace ziggurat::simulation {
 namespace {
 
+using testing::Base;
 using testing::ground;
 using testing::robot;
 using testing::SmallScene;
 
-std::string body(const std::string& id, const std::string& position, bool movable = true,
+std::string body(const std::string& id, const std::string& position, Base base = Base::free,
                  const std::string& size = "1,1,1") {
-  return "<box id=\"" + id + "\" size=\"" + size + "\" movable=\"" + (movable ? "true" : "false") +
-         "\"" + (movable ? " mass=\"1\"" : "") + "><body position=\"" + position + "\"/></box>\n";
+  return "<box id=\"" + id + "\" size=\"" + size + "\" movable=\"" +
+         (base == Base::free ? "true" : "false") + "\"" +
+         (base == Base::free ? " mass=\"1\"" : "") + "><body position=\"" + position +
+         "\"/></box>\n";
 }
 
 std::vector<std::string> found(const std::string& arena, const std::string& engine = ground) {
@@ -35,13 +38,14 @@ void expect_one(const std::vector<std::string>& texts, const std::string& part) 
 TEST(SceneWarnings, AreNotRaisedBySoundScenes) {
   EXPECT_TRUE(found("").empty());
   EXPECT_TRUE(found(body("a", "0,0,0") + body("b", "1,0,0") + body("c", "0,0,1")).empty());
-  EXPECT_TRUE(found(body("a", "0,0,0", false) + body("b", "0.5,0,0", false)).empty())
+  EXPECT_TRUE(found(body("a", "0,0,0", Base::fixed) + body("b", "0.5,0,0", Base::fixed)).empty())
       << "walls may overlap";
-  EXPECT_TRUE(found(body("a", "0,0,-0.5", false)).empty()) << "a wall may stand in the floor";
+  EXPECT_TRUE(found(body("a", "0,0,-0.5", Base::fixed)).empty()) << "a wall may stand in the floor";
   EXPECT_TRUE(found(body("a", "0,0,0"), "").empty()) << "without gravity nothing falls";
   EXPECT_TRUE(
-      found(body("table", "0,0,-1", false) + body("a", "0,0,0.5"), "<gravity g=\"9\"/>").empty());
-  EXPECT_TRUE(found(body("wall", "4.5,0,0", false)).empty()) << "half of it is inside";
+      found(body("table", "0,0,-1", Base::fixed) + body("a", "0,0,0.5"), "<gravity g=\"9\"/>")
+          .empty());
+  EXPECT_TRUE(found(body("wall", "4.5,0,0", Base::fixed)).empty()) << "half of it is inside";
 }
 
 TEST(SceneWarnings, OverlapsAreCounted) {
@@ -49,7 +53,7 @@ TEST(SceneWarnings, OverlapsAreCounted) {
   expect_one(texts, "box \"b\" overlaps \"a\" at the start");
   EXPECT_TRUE(texts[0].ends_with("and 1 more like this")) << texts[0];
   EXPECT_EQ(texts[0].find("small.argos:2:1: "), 0u) << texts[0];
-  expect_one(found(body("a", "0,0,0") + body("wall", "0.9,0,0", false)),
+  expect_one(found(body("a", "0,0,0") + body("wall", "0.9,0,0", Base::fixed)),
              "box \"a\" overlaps \"wall\"");
 }
 
@@ -63,7 +67,7 @@ TEST(SceneWarnings, OfBodiesOutsideOfTheArena) {
 
 TEST(SceneWarnings, OfBodiesThatFallForever) {
   expect_one(found(body("a", "0,0,0"), "<gravity g=\"9\"/>"), "box \"a\" falls forever");
-  expect_one(found(body("side", "2,0,-1", false) + body("a", "0,0,0"), "<gravity g=\"9\"/>"),
+  expect_one(found(body("side", "2,0,-1", Base::fixed) + body("a", "0,0,0"), "<gravity g=\"9\"/>"),
              "box \"a\" falls forever");
 }
 
@@ -79,8 +83,9 @@ TEST(SceneWarnings, OfMagnetsWithoutMagnetism) {
 }
 
 TEST(SceneWarnings, OfLengthsInMillimetres) {
-  expect_one(found(body("a", "0,0,0", true, "100,100,100")), "is 100 m long, 11.1 times the arena");
-  EXPECT_TRUE(found(body("a", "0,0,-20", false, "100,100,20")).empty()) << "a ground";
+  expect_one(found(body("a", "0,0,0", Base::free, "100,100,100")),
+             "is 100 m long, 11.1 times the arena");
+  EXPECT_TRUE(found(body("a", "0,0,-20", Base::fixed, "100,100,20")).empty()) << "a ground";
 }
 
 TEST(SceneWarnings, OfJointsThatAreFarAway) {
@@ -103,7 +108,7 @@ TEST(SceneWarnings, OfBodiesThatFloatWithoutGravity) {
   EXPECT_TRUE(found(body("a", "0,0,1"), "<floor/><gravity g=\"0\"/>").empty())
       << "the scene says so";
   EXPECT_TRUE(found(body("a", "0,0,0") + body("b", "0,0,1"), "<floor/>").empty()) << "it stands";
-  EXPECT_TRUE(found(body("a", "0,0,1", false), "<floor/>").empty()) << "a wall";
+  EXPECT_TRUE(found(body("a", "0,0,1", Base::fixed), "<floor/>").empty()) << "a wall";
 }
 
 std::string slider(const std::string& limit, const std::string& size) {

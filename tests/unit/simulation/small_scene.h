@@ -10,6 +10,8 @@
 
 namespace ziggurat::simulation::testing {
 
+enum class Base { free, fixed };
+
 constexpr double g = 9.8;  // [m/s^2]
 inline const std::string gravity = R"(<gravity g="10"/>)";
 inline const std::string wheels = R"(<differential_steering implementation="default"/>)";

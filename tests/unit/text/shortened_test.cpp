@@ -32,5 +32,13 @@ TEST(ShortenedMessage, LosesTheMiddleOfLongWordsAndOfAllThatIsLonger) {
   EXPECT_TRUE(ends.starts_with("begin a ") && ends.ends_with(" a end")) << ends;
 }
 
+TEST(Trimmed, LosesWhiteSpaceAtItsEndsOnly) {
+  EXPECT_EQ(trimmed(" \t\r\na b \n"), "a b");
+  EXPECT_EQ(trimmed("ab"), "ab");
+  EXPECT_EQ(trimmed(" \n "), "");
+  EXPECT_EQ(trimmed(""), "");
+}
+
 }  // namespace
+
 }  // namespace ziggurat::text

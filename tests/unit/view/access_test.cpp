@@ -9,7 +9,7 @@
 namespace ziggurat::view {
 namespace {
 
-const Rules local{"127.0.0.1", false, false, "0123456789abcdef"};
+const Rules local{.host = "127.0.0.1", .token = "0123456789abcdef"};
 
 Permission ask(const Rules& rules, std::string_view host, std::optional<std::string_view> origin,
                std::string_view target) {
@@ -41,12 +41,12 @@ TEST(Permission, AWrongTokenIsNotTheSameAsNone) {
 
 TEST(Permission, NamesOfWebsitesAreRefusedAlsoWithTheToken) {
   EXPECT_EQ(ask(local, "evil.example:8765", {}, "/?token=0123456789abcdef"), Permission::refused);
-  const Rules insecure{"0.0.0.0", true, false, "0123456789abcdef"};
+  const Rules insecure{.host = "0.0.0.0", .any_host = true, .token = "0123456789abcdef"};
   EXPECT_EQ(ask(insecure, "any.example", {}, "/"), Permission::look);
 }
 
 TEST(Permission, AnOpenAddressWithATokenOfTheUserShowsNothingWithout) {
-  const Rules open{"0.0.0.0", false, true, "0123456789abcdef"};
+  const Rules open{.host = "0.0.0.0", .look_needs_token = true, .token = "0123456789abcdef"};
   EXPECT_EQ(ask(open, "10.0.0.7:8765", "http://10.0.0.7:8765", "/"), Permission::refused);
   EXPECT_EQ(ask(open, "10.0.0.7:8765", {}, "/?token=0123456789abcdef"), Permission::steer);
 }

@@ -75,7 +75,7 @@ struct Watched {
   ShownWorld world;
   ViewerRequests requests;
   Hub hub{{"1", "s", "id", false}, {}, requests};
-  Viewer& viewer = hub.add(false);
+  Viewer& viewer = hub.add(Permission::look);
   Feed feed;
   std::vector<std::uint32_t> ids;
 };

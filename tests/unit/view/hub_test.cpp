@@ -25,7 +25,7 @@ struct Bench {
     hub.set_channels(
         {{1, "/world", Kind::world, &schema, 0}, {2, "/poses", Kind::poses, &schema, 0}});
   }
-  void say(Viewer& viewer, const std::string& text) { hub.receive(viewer, text, true); }
+  void say(Viewer& viewer, const std::string& text) { hub.receive(viewer, text, Hub::Frame::text); }
   /// All that waits: operations of texts, contents of messages.
   std::vector<std::string> sent(Viewer& viewer) {
     std::vector<std::string> all;
@@ -46,7 +46,7 @@ using Sent = std::vector<std::string>;
 
 TEST(Hub, IntroducesItselfAndSendsWhatIsSubscribed) {
   Bench bench;
-  Viewer& viewer = bench.hub.add(true);
+  Viewer& viewer = bench.hub.add(Permission::steer);
   EXPECT_EQ(bench.sent(viewer), (Sent{"serverInfo", "advertiseServices", "advertise"}));
   bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":2}]})");
   const auto changes = bench.requests.take();
@@ -54,7 +54,7 @@ TEST(Hub, IntroducesItselfAndSendsWhatIsSubscribed) {
   EXPECT_EQ(changes.fresh, std::vector<std::uint32_t>{2});
   bench.hub.show(5, std::vector{message_of(1, "world"), message_of(2, "poses")});
   EXPECT_EQ(bench.sent(viewer), Sent{"poses"});
-  Viewer& second = bench.hub.add(false);
+  Viewer& second = bench.hub.add(Permission::look);
   EXPECT_EQ(bench.sent(second), (Sent{"serverInfo", "advertise"}));
   bench.say(second, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})");
   EXPECT_EQ(bench.sent(second), Sent{"poses"}) << "the newest at once";
@@ -65,7 +65,7 @@ TEST(Hub, IntroducesItselfAndSendsWhatIsSubscribed) {
 
 TEST(Hub, NonsenseIsAnsweredAndEndsAtLast) {
   Bench bench;
-  Viewer& viewer = bench.hub.add(true);
+  Viewer& viewer = bench.hub.add(Permission::steer);
   bench.sent(viewer);
   for (const char* text :
        {"", "x", "[]", "{}", R"({"op":7})", R"({"op":"subscribe"})",
@@ -82,7 +82,7 @@ TEST(Hub, NonsenseIsAnsweredAndEndsAtLast) {
   for (int i = 0; i < 1000 && !viewer.is_over; ++i) {
     std::string bytes(random() % 64, '\0');
     for (char& byte : bytes) byte = static_cast<char>(random());
-    bench.hub.receive(viewer, bytes, false);
+    bench.hub.receive(viewer, bytes, Hub::Frame::binary);
     bench.sent(viewer);
   }
   EXPECT_TRUE(viewer.is_over);
@@ -91,7 +91,7 @@ TEST(Hub, NonsenseIsAnsweredAndEndsAtLast) {
 
 TEST(Hub, TheHundredthNonsenseInARowIsTheLast) {
   Bench bench;
-  Viewer& viewer = bench.hub.add(false);
+  Viewer& viewer = bench.hub.add(Permission::look);
   bench.sent(viewer);
   for (int i = 0; i < 99; ++i) bench.say(viewer, "x");
   bench.sent(viewer);
@@ -106,27 +106,27 @@ TEST(Hub, CallsNeedTheTokenAndAreAnsweredOnce) {
   Bench bench;
   std::string call{2, 6, 0, 0, 0, 3, 0, 0, 0, 4, 0, 0, 0};
   call += R"(json{"entity":"b","position":[1,2,3]})";
-  Viewer& looker = bench.hub.add(false);
+  Viewer& looker = bench.hub.add(Permission::look);
   bench.sent(looker);
-  bench.hub.receive(looker, call, false);
+  bench.hub.receive(looker, call, Hub::Frame::binary);
   EXPECT_EQ(bench.sent(looker), Sent{"serviceCallFailure"});
-  Viewer& viewer = bench.hub.add(true);
-  bench.hub.receive(viewer, call, false);
+  Viewer& viewer = bench.hub.add(Permission::steer);
+  bench.hub.receive(viewer, call, Hub::Frame::binary);
   const auto calls = bench.requests.take().calls;
   ASSERT_EQ(calls.size(), 1u);
   EXPECT_EQ(calls[0].request.kind, wire::Request::Kind::move);
   EXPECT_EQ(calls[0].request.text, "b");
   EXPECT_EQ(calls[0].request.position, (std::vector<double>{1, 2, 3}));
   bench.sent(viewer);
-  bench.hub.answer(calls[0], false, "no");
+  bench.hub.answer(calls[0], Hub::Outcome::refused, "no");
   EXPECT_EQ(bench.sent(viewer), Sent{"serviceCallFailure"});
-  for (int i = 0; i < 100; ++i) bench.hub.receive(viewer, call, false);
+  for (int i = 0; i < 100; ++i) bench.hub.receive(viewer, call, Hub::Frame::binary);
   EXPECT_EQ(bench.requests.take().calls.size(), Hub::most_unanswered);
 }
 
 TEST(Hub, ChannelsComeAndGo) {
   Bench bench;
-  Viewer& viewer = bench.hub.add(false);
+  Viewer& viewer = bench.hub.add(Permission::look);
   bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})");
   bench.sent(viewer);
   bench.hub.set_channels(
@@ -163,8 +163,8 @@ std::vector<std::vector<std::uint32_t>> told(Bench& bench, Viewer& viewer, const
 TEST(Hub, ALongListOfChannelsIsMadeInPartsAsTheViewerReads) {
   Bench bench;
   bench.hub.set_channels(large_channels(1, 10));
-  Viewer& viewer = bench.hub.add(false);
-  Viewer& idle = bench.hub.add(false);
+  Viewer& viewer = bench.hub.add(Permission::look);
+  Viewer& idle = bench.hub.add(Permission::look);
   EXPECT_EQ(bench.hub.next(viewer)->is_text, true) << "serverInfo";
   EXPECT_EQ(nlohmann::json::parse(bench.hub.next(viewer)->head).at("channels").size(), 3u);
   auto list = large_channels(1, 12);
@@ -189,7 +189,7 @@ TEST(Hub, ALongListOfChannelsIsMadeInPartsAsTheViewerReads) {
 
 TEST(Hub, AChannelThatGoesAndComesAgainIsToldAnew) {
   Bench bench;
-  Viewer& viewer = bench.hub.add(false);
+  Viewer& viewer = bench.hub.add(Permission::look);
   bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})");
   bench.sent(viewer);
   bench.hub.show(6, std::vector{message_of(2, "poses")});
@@ -205,7 +205,7 @@ TEST(Hub, AChannelThatGoesAndComesAgainIsToldAnew) {
 
 TEST(Hub, TheGraphIsSentOnceForManyQuestions) {
   Bench bench;
-  Viewer& viewer = bench.hub.add(false);
+  Viewer& viewer = bench.hub.add(Permission::look);
   bench.sent(viewer);
   for (int i = 0; i < 100; ++i) bench.say(viewer, R"({"op":"subscribeConnectionGraph"})");
   EXPECT_EQ(bench.sent(viewer), Sent{"connectionGraphUpdate"});
@@ -236,9 +236,9 @@ std::vector<std::int64_t> clocks(Bench& bench, Viewer& viewer) {
 
 TEST(Hub, EachViewerIsToldTheClockBeforeItsFirstMessage) {
   Bench bench;
-  Viewer& first = bench.hub.add(false);
+  Viewer& first = bench.hub.add(Permission::look);
   bench.say(first, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1}]})");
-  Viewer& second = bench.hub.add(false);
+  Viewer& second = bench.hub.add(Permission::look);
   bench.sent(first);
   bench.sent(second);
   bench.hub.show(5, std::vector{message_of(1, "world")});
@@ -257,7 +257,7 @@ TEST(Hub, AViewerThatComesWithinATimeIsToldTheClockWhichStartsAfterZero) {
   for (const std::int64_t time_ns : {0, 5}) {
     Bench bench;
     bench.hub.show(time_ns, std::vector{message_of(2, "poses")});
-    Viewer& viewer = bench.hub.add(false);
+    Viewer& viewer = bench.hub.add(Permission::look);
     bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})");
     bench.sent(viewer);
     bench.hub.show(time_ns, std::vector{message_of(2, "poses")});
@@ -268,7 +268,7 @@ TEST(Hub, AViewerThatComesWithinATimeIsToldTheClockWhichStartsAfterZero) {
 
 TEST(Hub, TheClockStaysWithWhatIsKeptOfADroppedTick) {
   Bench bench;
-  Viewer& viewer = bench.hub.add(false);
+  Viewer& viewer = bench.hub.add(Permission::look);
   bench.say(
       viewer,
       R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":2}]})");
@@ -283,11 +283,11 @@ TEST(Hub, TheClockStaysWithWhatIsKeptOfADroppedTick) {
 
 TEST(Hub, ALargeCallWaitsForTheAnswersOfOthers) {
   Bench bench;
-  Viewer& viewer = bench.hub.add(true);
+  Viewer& viewer = bench.hub.add(Permission::steer);
   bench.sent(viewer);
   const std::string large = R"({"xml":")" + std::string(Hub::largest_queued, 'x') + "\"}";
   const std::string spawn = call_of(7, large);
-  for (int i = 0; i < 3; ++i) bench.hub.receive(viewer, spawn, false);
+  for (int i = 0; i < 3; ++i) bench.hub.receive(viewer, spawn, Hub::Frame::binary);
   EXPECT_EQ(bench.requests.take().calls.size(), 1U);
   EXPECT_EQ(bench.sent(viewer), (Sent{"serviceCallFailure", "serviceCallFailure"}));
   EXPECT_FALSE(viewer.is_over);
@@ -295,15 +295,16 @@ TEST(Hub, ALargeCallWaitsForTheAnswersOfOthers) {
 
 TEST(Hub, JsonWithVeryManyValuesIsNotRead) {
   Bench bench;
-  Viewer& viewer = bench.hub.add(true);
+  Viewer& viewer = bench.hub.add(Permission::steer);
   bench.sent(viewer);
   const std::string brackets(200'000, '[');
-  bench.hub.receive(viewer, call_of(6, R"({"entity":"e","position":)" + brackets), false);
+  bench.hub.receive(viewer, call_of(6, R"({"entity":"e","position":)" + brackets),
+                    Hub::Frame::binary);
   std::string numbers = R"({"entity":"e","position":[0)";
   for (int i = 0; i < 200'000; ++i) numbers += ",0";
-  bench.hub.receive(viewer, call_of(6, numbers + "]}"), false);
+  bench.hub.receive(viewer, call_of(6, numbers + "]}"), Hub::Frame::binary);
   const std::string text = R"({"xml":"\",[[[)" + std::string(200'000, ',') + "\"}";
-  bench.hub.receive(viewer, call_of(7, text), false);
+  bench.hub.receive(viewer, call_of(7, text), Hub::Frame::binary);
   const auto calls = bench.requests.take().calls;
   ASSERT_EQ(calls.size(), 1U) << "commas of a text are no values";
   EXPECT_EQ(calls[0].request.text.size(), 200'005U);

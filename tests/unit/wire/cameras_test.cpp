@@ -2,7 +2,6 @@
 
 #include "wire/device_wire.h"
 #include "wire/observation.h"
-#include "ziggurat/v1/extent.h"
 
 namespace ziggurat::wire {
 namespace {
@@ -97,46 +96,6 @@ TEST_F(DeviceWire, PicturesCountToo) {
   often.images = {{0, {1, 2, 3, 4, 5, 6}}};
   Outbox outbox;
   EXPECT_FALSE(outbox.observation(roster, often, long_payloads));
-}
-
-/// Expects the counted sizes of an observation in the message that is made of it.
-void expect_counted(const Roster& roster, const world::Observations& seen,
-                    const std::vector<std::string>& texts) {
-  Outbox outbox;
-  ASSERT_TRUE(outbox.observation(roster, seen, texts));
-  const ReadingSize size = size_of_readings(roster, seen, texts);
-  const std::string bytes = outbox.message().observation().SerializeAsString();
-  constexpr std::size_t other_readings = 4096;
-  EXPECT_LE(v1::decoded_size(bytes, *v1::Observation::descriptor(), v1::most_counted),
-            size.memory + other_readings);
-  EXPECT_LT(size.memory, v1::most_counted);
-}
-
-TEST_F(DeviceWire, AllThatASessionIsToldOfItsCamerasIsCounted) {
-  constexpr std::size_t many = 100'000;
-  world::Observations seen = run.observations();
-  seen.tags.assign(many, {1, 1, {0, 0}, corners(0)});
-  expect_counted(roster, seen, payloads);
-  seen.tags.clear();
-  seen.leds.assign(many, {0, 0xFFFFFF, {0, 0}});
-  expect_counted(roster, seen, payloads);
-  seen.leds.clear();
-  seen.directional_leds.assign(many, {2, 0xFFFFFF, {0, 0}});
-  expect_counted(roster, seen, payloads);
-  EXPECT_GE(v1::most_counted / v1::counted_led, std::size_t{1} << 24)
-      << "all that cameras may see at a tick";
-}
-
-TEST_F(DeviceWire, AllThatASessionHearsIsCounted) {
-  world::Observations seen = run.observations();
-  seen.radio_messages.entries.assign(100'000, {});
-  expect_counted(roster, seen, payloads);
-  seen.radio_messages.entries.assign(v1::most_counted / v1::counted_radio_message + 1, {});
-  Outbox outbox;
-  EXPECT_FALSE(outbox.observation(roster, seen, payloads)) << "it is too much";
-  seen.radio_messages.entries.clear();
-  seen.range_and_bearing.assign(100'000, {});
-  expect_counted(roster, seen, payloads);
 }
 
 TEST_F(DeviceWire, WelcomeDescribesCameras) {

@@ -1,10 +1,9 @@
-#include "wire/cost.h"
-
 #include <gtest/gtest.h>
 #include <malloc.h>
 
 #include <functional>
 
+#include "wire/command_limits.h"
 #include "wire/inbox.h"
 #include "ziggurat/v1/protocol.pb.h"
 

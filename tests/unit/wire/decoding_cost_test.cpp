@@ -10,7 +10,6 @@
 
 #include "long_runs.h"
 #include "wire/command_limits.h"
-#include "wire/cost.h"
 #include "wire/inbox.h"
 #include "ziggurat/v1/protocol.pb.h"
 

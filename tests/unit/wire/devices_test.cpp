@@ -6,8 +6,8 @@
 
 #include <string>
 
+#include "wire/command.h"
 #include "wire/device_wire.h"
-#include "wire/reset_commands.h"
 #include "world/limits.h"
 
 namespace ziggurat::wire {

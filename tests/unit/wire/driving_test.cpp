@@ -2,8 +2,8 @@
 
 #include <limits>
 
+#include "wire/command.h"
 #include "wire/device_wire.h"
-#include "wire/reset_commands.h"
 
 namespace ziggurat::wire {
 namespace {
@@ -37,28 +37,6 @@ TEST_F(Driving, ValuesOfAllRobots) {
   EXPECT_EQ(commands.turret_rotations[1], 0.5);
   EXPECT_EQ(commands.turret_speeds[0], -1);
   EXPECT_EQ(commands.turret_speeds[1], 2);
-}
-
-TEST_F(Driving, ValuesOfSomeRobotsInTheOrderGiven) {
-  for (const std::uint32_t robot : {2, 1, 0}) command->add_robots(robot);
-  drive({1, 2, 3, 4});
-  turn({v1::TURRET_POSITION, v1::TURRET_PASSIVE}, {}, {5, 6});
-  apply();
-  EXPECT_EQ(wheels(), (std::vector<double>{3, 4, 0, 0, 1, 2}));
-  EXPECT_EQ(commands.turret_modes[0], world::TurretMode::passive);
-  EXPECT_EQ(commands.turret_modes[1], world::TurretMode::position);
-  EXPECT_EQ(commands.turret_speeds[0], 6);
-  EXPECT_EQ(commands.turret_rotations[1], 0) << "was not given";
-}
-
-TEST_F(Driving, RobotsThatLeftSetNothing) {
-  roster.leave(0);
-  drive({1, 2, 3, 4});
-  turn({v1::TURRET_SPEED, v1::TURRET_SPEED}, {}, {});
-  apply();
-  EXPECT_EQ(wheels(), (std::vector<double>{0, 0, 0, 0, 3, 4}));
-  EXPECT_EQ(commands.turret_modes[0], world::TurretMode::passive);
-  EXPECT_EQ(commands.turret_modes[1], world::TurretMode::speed);
 }
 
 TEST_F(Driving, RobotsThatLeftStand) {
@@ -108,14 +86,6 @@ TEST_F(Driving, InvalidValues) {
   expect_fault(ErrorCode::bad_value, "turret_rotations", "a", "The turret rotation of robot 'a'");
   turn({}, {}, {nan, 0});
   expect_fault(ErrorCode::bad_value, "turret_speeds", "a", "The turret speed of robot 'a' is nan");
-}
-
-TEST_F(Driving, ACommandIsCheckedWhole) {
-  drive({1, 2, 3, 4});
-  turn({v1::TURRET_SPEED, v1::TURRET_SPEED}, {}, {0, nan});
-  expect_fault(ErrorCode::bad_value, "turret_speeds", "c", "nan");
-  EXPECT_EQ(wheels(), std::vector<double>(6));
-  EXPECT_EQ(commands.turret_modes[0], world::TurretMode::passive);
 }
 
 TEST_F(Driving, ReadingsOfThoseThatMeasure) {

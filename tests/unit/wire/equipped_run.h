@@ -48,15 +48,19 @@ class EquippedRun {
     for (std::size_t i = 0; i < 3; ++i) {
       layout_.imus[i].id = "imu" + std::to_string(i);
       layout_.directional_leds[i].id = "directional" + std::to_string(i);
-      layout_.range_and_bearing[i] = {{}, 3.0, 0, {4 * i, 4}, i != 1, true};
+      layout_.range_and_bearing[i] = {
+          .mount = {}, .range = 3.0, .data = {4 * i, 4}, .sends = i != 1, .receives = true};
       layout_.proximity[i].range = 0.1 * static_cast<double>(i + 1);
     }
     layout_.proximity[0].mount.link = 0;
     layout_.imus[2].mount = {0, 0, {{1, 2, 3}, math::Quaternion(0, 0, 1, 0)}};
     layout_.proximity[1].angle = -2.5;
     add_cameras();
-    layout_.wheels = {{0, 0.14, true, false}, {1, 0.1, false, true}, {2, 0.053, true, true}};
-    layout_.turrets = {{0, true, false}, {2, true, true}};
+    layout_.wheels = {{.entity = 0, .axle_length = 0.14, .drives = true},
+                      {.entity = 1, .axle_length = 0.1, .measures = true},
+                      {.entity = 2, .axle_length = 0.053, .drives = true, .measures = true}};
+    layout_.turrets = {{.entity = 0, .drives = true},
+                       {.entity = 2, .drives = true, .measures = true}};
     world::RobotLayout a, b, c;
     a.id = "a", b.id = "b", c.id = "c";
     a.radios = {0, 2}, c.radios = {2, 2};

@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "network/small_run.h"
+#include "wire/command.h"
 #include "wire/equipped_run.h"
 #include "wire/inbox.h"
 #include "wire/outbox.h"
-#include "wire/reset_commands.h"
 #include "wire/roster.h"
 #include "ziggurat/v1/envelope.h"
 #include "ziggurat/v1/json.h"

@@ -58,7 +58,8 @@ TEST(Numbers, InTheOrderOfTheFields) {
 
 TEST(Devices, OfARobotThatUsesThemSo) {
   Layout layout;
-  layout.wheels = {{0, 0.1, true, false}, {1, 0.1, false, true}};
+  layout.wheels = {{.entity = 0, .axle_length = 0.1, .drives = true},
+                   {.entity = 1, .axle_length = 0.1, .measures = true}};
   RobotLayout driver, walker;
   driver.wheels = {0, 1};
   EXPECT_EQ(driven_wheels(layout, driver).count, 1U);

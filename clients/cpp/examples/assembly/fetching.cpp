@@ -127,8 +127,8 @@ Next approach(Assembler& self, Faces faces) {
     return {};
   }
   const auto outcome =
-      self.builder.dock_at(face_of(self, job.target), 0.06, true, construction::reach,
-                           pivot_ahead(self.odometry, self.builder.loaded));
+      self.builder.dock_at(face_of(self, job.target), 0.06, construction::Ranging::proximity,
+                           construction::reach, pivot_ahead(self.odometry, self.builder.loaded));
   if (outcome == construction::Docking::docked) return State::lower;
   if (outcome == construction::Docking::askew || job.seconds() > 40) return State::retreat;
   return {};

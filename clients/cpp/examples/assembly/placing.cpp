@@ -210,7 +210,8 @@ Next attach(Assembler& self, Faces faces) {
     return {};
   }
   const construction::Face face = face_of(self, place);
-  const Docking outcome = builder.dock_at(face, 0.05, above, distance_of(place.row),
+  const auto ranging = above ? construction::Ranging::proximity : construction::Ranging::camera;
+  const Docking outcome = builder.dock_at(face, 0.05, ranging, distance_of(place.row),
                                           pivot_ahead(self.odometry, builder.loaded));
   const bool is_exact = std::abs(face.offset()) <= 0.001 && std::abs(face.heading) <= 0.015;
   if (outcome == Docking::docked && is_exact) {

@@ -182,14 +182,15 @@ Docking Builder::dock(double fastest) {
   }
   const double to_go = face->forward - reach;
   if (to_go < 0.15 && std::abs(face->offset()) > 0.01 + 0.5 * to_go) return Docking::askew;
-  const Docking outcome = dock_at(*face, fastest, true);
+  const Docking outcome = dock_at(*face, fastest, Ranging::proximity);
   if (outcome == Docking::docked) forget_face();
   return outcome;
 }
 
-Docking Builder::dock_at(const Face& face, double fastest, bool touch, double distance,
+Docking Builder::dock_at(const Face& face, double fastest, Ranging ranging, double distance,
                          std::optional<double> pivot) {
-  const double to_go = (touch ? std::min(face.forward, ahead()) : face.forward) - distance;
+  const double to_go =
+      (ranging == Ranging::proximity ? std::min(face.forward, ahead()) : face.forward) - distance;
   if (to_go < 0.03 && (std::abs(face.offset()) > 0.006 || std::abs(face.heading) > 0.12)) {
     stop();
     return Docking::askew;

@@ -37,6 +37,9 @@ struct Face {
 /// The side of a block that stands on the floor.
 bool is_at_floor_level(const Face& face);
 
+/// Sensors that measure the distance to a face in front.
+enum class Ranging { camera, proximity };
+
 enum class Docking { under_way, docked, lost, askew };
 
 class Builder {
@@ -82,11 +85,11 @@ class Builder {
   Docking dock(double fastest);
   /// Drives to this face, until it is at this distance from the robot's centre [m]; call it in
   /// every step. `askew` if the robot came close but is not on the line.
-  /// @param touch  the proximity sensors measure the last part of the distance
+  /// @param ranging  of the last part of the distance
   /// @param pivot  how far in front of the robot's centre the point is about which it turns [m], if
   /// that
   ///               is known
-  Docking dock_at(const Face& face, double fastest, bool touch, double distance = reach,
+  Docking dock_at(const Face& face, double fastest, Ranging ranging, double distance = reach,
                   std::optional<double> pivot = {});
   /// Drives backwards to the line in front of the nearest face; call it in every step. True where
   /// an approach is easy: 20 cm away and near the line, or far away.

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ziggurat/led.h"
+#include "ziggurat/actuators.h"
 #include "ziggurat/radio.h"
 
 namespace ziggurat {

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "ziggurat/entity.h"
-#include "ziggurat/place.h"
 #include "ziggurat/session.h"
 
 namespace ziggurat {

@@ -9,10 +9,16 @@
 #include <string_view>
 #include <vector>
 
-#include "ziggurat/led.h"
+#include "ziggurat/actuators.h"
 #include "ziggurat/radio.h"
 
 namespace ziggurat {
+
+/// Occupants that the place of a moved entity may have.
+enum class Onto {
+  free_place,  ///< nothing: a move onto others is not done
+  others,      ///< others, too: what overlaps is pushed apart
+};
 
 /// In the world's frame.
 struct Pose {

@@ -13,14 +13,12 @@
 #include <utility>
 #include <vector>
 
+#include "ziggurat/actuators.h"
 #include "ziggurat/camera.h"
 #include "ziggurat/joint.h"
-#include "ziggurat/led.h"
-#include "ziggurat/magnet.h"
 #include "ziggurat/radio.h"
 #include "ziggurat/range_and_bearing.h"
 #include "ziggurat/sensors.h"
-#include "ziggurat/tag.h"
 #include "ziggurat/turret.h"
 #include "ziggurat/wheels.h"
 
@@ -96,9 +94,10 @@ class Robot : public Sensors {
  private:
   friend class Fleet;
   friend struct Layout;
+  enum class Severity { info, error };
   struct Line {
     std::uint32_t robot;  // position in the session
-    bool error;
+    Severity severity;
     std::string text;
   };
   struct Log {  // of a session, not yet sent
@@ -108,7 +107,7 @@ class Robot : public Sensors {
     std::map<std::pair<std::uint32_t, std::string>, double>
         metrics;  // by position in the session and name
   };
-  void add_line(bool error, std::string_view text);
+  void add_line(Severity severity, std::string_view text);
 
   std::string id_;
   std::string controller_;

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ziggurat/place.h"
+#include "ziggurat/entity.h"
 
 namespace ziggurat {
 

@@ -11,8 +11,8 @@ constexpr SessionId one{1}, other{2};
 
 struct Two : ::testing::Test {
   Two() {
-    ownership.add(start, false);
-    ownership.add(start, false);
+    ownership.add(start, InTick::awaited);
+    ownership.add(start, InTick::awaited);
   }
   Time start{};
   Ownership ownership;
@@ -32,7 +32,7 @@ TEST_F(Two, AreWaitedForUntilTheyAreTaken) {
 
 TEST_F(Two, AReleasedOneIsFreeForItsClaimantAndOthers) {
   ownership.take(0, one, start);
-  ownership.release(0, one, start + 5s, false, {});
+  ownership.release(0, one, start + 5s, InTick::awaited, {});
   EXPECT_EQ(ownership[0].holder, SessionId::none);
   EXPECT_EQ(ownership[0].claimant, one);
   EXPECT_EQ(ownership[0].free_since, start + 5s);
@@ -66,7 +66,7 @@ TEST_F(Two, OneThatLeftIsNeverWaitedForAgain) {
 TEST_F(Two, ASpawnedOneIsWaitedForFromTheNextTickOn) {
   ownership.take(0, one, start);
   ownership.take(1, one, start);
-  ownership.add(start, true);
+  ownership.add(start, InTick::skipped);
   EXPECT_FALSE(ownership.all_taken());
   EXPECT_FALSE(ownership.is_awaited());
   ownership.begin_tick(start);

@@ -51,7 +51,7 @@ TEST_F(Gate, AwaitingTwiceOwesOnce) {
 TEST_F(Gate, WaitsForFreeRobots) {
   gate.settle(first, now);
   gate.settle(second, now);
-  ownership.add(now, false);
+  ownership.add(now, InTick::awaited);
   EXPECT_FALSE(gate.is_complete());
   ownership.skip(0, now);
   EXPECT_TRUE(gate.is_complete());

@@ -1,4 +1,4 @@
-#include "math/principal_axes.h"
+#include "math/pose.h"
 
 #include <Eigen/Eigenvalues>
 

@@ -1,9 +1,10 @@
 #pragma once
-// The world in Foxglove's messages: shapes locked to frames, and the frames' poses.
+// The world in Foxglove's messages: shapes locked to frames, the frames' poses, and cameras.
 
 #include <string>
 #include <vector>
 
+#include "channels/message.h"
 #include "channels/moment.h"
 #include "channels/packing.h"
 #include "foxglove/schemas.pb.h"
@@ -26,5 +27,16 @@ foxglove::FrameTransforms frames_of(const v1::World& world);
 
 /// @param to  made by frames_of() of the same population
 void fill(const Moment& from, foxglove::FrameTransforms& to);
+
+/// @param camera  into World.cameras
+foxglove::CameraCalibration calibration_of(const v1::World& world, std::size_t camera,
+                                           std::int64_t time_ns);
+
+/// Detections of the camera: outlines of tags with their payloads, circles about LEDs.
+foxglove::ImageAnnotations annotations_of(std::size_t camera, const Moment& moment);
+
+/// The picture that a camera took, encoded when it is asked for; null: it has taken none.
+std::shared_ptr<const Content> picture_of(const v1::World& world, std::size_t camera,
+                                          const Moment& moment);
 
 }  // namespace ziggurat::channels
