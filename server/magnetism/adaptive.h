@@ -67,7 +67,6 @@ class ShapedMagnets {
     Vector3 separation = Vector3::Zero();  // first minus second centre
   };
 
-  void add_class(const Shape& shape);
   Eigen::Matrix3d axes(std::size_t magnet, const Eigen::Matrix3d& rotation) const;
   /// Every point of the first against all of the second. Only the first's side is summed; the
   /// torque on the second follows from the conservation law.

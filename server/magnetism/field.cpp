@@ -95,7 +95,6 @@ void Field::set_turns(std::span<const Quaternion> turns) {
 
 Vector3 Field::position(std::size_t magnet) const { return vector(positions_[magnet]); }
 Vector3 Field::moment(std::size_t magnet) const { return vector(moments_[magnet]); }
-Vector3 Field::flux(std::size_t magnet) const { return vector(fields_[magnet]); }
 
 void Field::evaluate(double dt, std::span<const Pose> bodies, std::span<const double> currents,
                      std::span<Wrench> wrenches) {

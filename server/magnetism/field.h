@@ -112,7 +112,6 @@ class Field {
   /// As of the last evaluate(), in the world.
   Vector3 position(std::size_t magnet) const;  ///< [m]
   Vector3 moment(std::size_t magnet) const;    ///< [A m^2]
-  Vector3 flux(std::size_t magnet) const;      ///< flux density of the others' dipoles at it [T]
 
   /// Number of times that the neighbour list was built so far.
   std::size_t rebuilds() const { return neighbours_.rebuilds(); }

@@ -26,9 +26,6 @@ class Neighbours {
 
   std::size_t rebuilds() const { return rebuilds_; }
 
-  /// Forgets the list, so that the next update builds a new one.
-  void invalidate() { built_at_.clear(); }
-
  private:
   /// A cell's place in the grid's table. The table wraps around, so that it is small however far a
   /// dipole has strayed: cells far apart may share a place, cells next to each other never do.

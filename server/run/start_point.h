@@ -24,7 +24,7 @@ class Watch;
 
 /// Tells how far the world is loaded, 0 to 1, and what is done now.
 using TellLoading = std::function<void(double progress, std::string message)>;
-/// The same while the world is built.
+/// The same while the world is built. The argument must outlive it.
 simulation::TellStep tell_steps(const TellLoading& tell);
 
 /// Controllers and directors of a run, and their files.

@@ -18,8 +18,6 @@ Value<DeadlineAction> read_action(std::string_view text) {
 
 }  // namespace
 
-std::span<const std::string_view> deadline_actions() { return actions; }
-
 std::optional<DeadlineAction> deadline_action(std::string_view name) {
   for (std::size_t i = 0; i < actions.size(); ++i) {
     if (actions[i] == name) return static_cast<DeadlineAction>(i + 1);

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -26,8 +25,6 @@ struct DeadlinePolicy {
   bool operator==(const DeadlinePolicy&) const = default;
 };
 
-/// The words for actions in scenes and on the command line.
-std::span<const std::string_view> deadline_actions();
 /// The action of that name; nothing if there is none.
 std::optional<DeadlineAction> deadline_action(std::string_view name);
 

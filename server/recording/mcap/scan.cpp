@@ -37,7 +37,6 @@ class Scanner {
   bool read_content(const RecordHead& head, std::size_t most);
   void add_chunk(std::string_view content);
   void add_records(std::string_view records, ChunkIndex& index);
-  void add_message(const Message& message, std::uint64_t offset);
   void add_index(std::string_view content);
   void end_indexes();
   void add_attachment(std::string_view content);
