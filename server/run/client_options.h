@@ -1,7 +1,11 @@
 #pragma once
-// Clients that a run can have, and the options that only such clients use.
+// Clients that a run can have, and options that have an effect only with some of them.
+
+#include <span>
+#include <vector>
 
 #include "network/config.h"
+#include "reports/gate.h"
 #include "run/options.h"
 #include "scene/scene.h"
 
@@ -20,5 +24,15 @@ ExpectedClients expected_clients(const Options& options, const scene::Scene& sce
 /// deadline drops
 void check_client_options(const Options& options, const ExpectedClients& clients,
                           const network::Config& config);
+
+/// Properties of the run that its gate depends on.
+struct GateContext {
+  std::span<const network::Config::Deadline> deadlines;  ///< of the controllers
+  bool may_be_asked = false;  ///< clients of their own may ask for deadlines when they connect
+  bool is_paced = false;
+};
+
+/// @throws text::UsageError if a condition is always met in this run
+void check_gate(const std::vector<reports::Condition>& gate, const GateContext& context);
 
 }  // namespace ziggurat::run

@@ -10,10 +10,10 @@
 
 #include "recording/mcap/records.h"
 #include "reports/gate.h"
+#include "run/controller_option.h"
 #include "run/deadline_option.h"
 #include "run/inject_option.h"
 #include "run/pictures.h"
-#include "run/restart_option.h"
 #include "scene/reader.h"
 #include "scene/scene.h"
 

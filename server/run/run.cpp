@@ -14,7 +14,6 @@
 #include "run/background.h"
 #include "run/client_options.h"
 #include "run/files.h"
-#include "run/gate_option.h"
 #include "run/option_table.h"
 #include "run/setup.h"
 #include "run/version.h"

@@ -1,4 +1,4 @@
-#include "run/restart_option.h"
+#include "run/controller_option.h"
 
 #include <gtest/gtest.h>
 
