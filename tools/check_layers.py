@@ -69,7 +69,7 @@ LIBRARIES = {
     "ZeroMQ": (r"zmq(_addon)?\.hp?p?$", ["network", "clients/cpp"]),
     "libsodium": (r"sodium\.h$", ["network"]),
     "SQLite": (r"sqlite3\.h$", ["sweep"]),
-    "toml++": (r"toml\+\+/", ["sweep"]),
+    "toml++": (r"toml\+\+/", ["cli", "sweep"]),
     "OpenGL": (r"(GL|EGL|GLES\d?)/", ["render"]),
     "libpng": (r"png\.h$", ["outputs"]),
     "libzstd": (r"zstd\.h$", ["recording/mcap"]),

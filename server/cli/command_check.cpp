@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
@@ -215,8 +214,7 @@ std::string verdict(const std::string& path, const Finding& finding) {
 }  // namespace
 
 std::string help_check() {
-  std::ostringstream text;
-  text << R"(usage: ziggurat check SCENE... [OPTION]...
+  return R"(usage: ziggurat check SCENE... [OPTION]...
 
 Reports every fault of scene files, and everything in them that has no effect here or is probably not
 what was meant: reads them completely, compiles their Lua scripts and places their entities, but starts no
@@ -232,14 +230,12 @@ controller.
       warnings count as faults
 
 Exit codes: 0 no scene has a fault; 1 at least one has, or with --strict a warning.
-
-)" << check_options();
-  return text.str();
+)";
 }
 
 int execute_check(const Arguments& arguments) {
-  const auto options = parse_options(arguments, check_options());
-  check_apart(Values(parse(arguments, check_options()).values), "json", {"quiet"});
+  const auto options = parse_options(arguments, run::by_check);
+  check_apart(Values(parse(arguments, options_of(run::by_check)).values), "json", {"quiet"});
   if (options.scenes.empty())
     throw text::UsageError("no scene is given; write: ziggurat check SCENE...");
   reports::Console console({options.quiet, false});

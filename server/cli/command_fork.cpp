@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <sstream>
-
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/options.h"
@@ -35,8 +33,7 @@ rerun::ForkOptions read_fork(const boost::program_options::variables_map& values
 }  // namespace
 
 std::string help_fork() {
-  std::ostringstream text;
-  text << R"(usage: ziggurat fork RECORDING --at TICK [OPTION]...
+  return R"(usage: ziggurat fork RECORDING --at TICK [OPTION]...
 
 Repeats a recorded run up to a tick and goes on live from there, with the same or with other controllers,
 values and seed. The state at that tick is the recorded one, to the bit.
@@ -61,18 +58,13 @@ Embedded Lua scripts run sandboxed. Commands that the recording names are starte
 the fork ends when the recorded run was to end.
 
 Exit codes: those of 'ziggurat run'.
-
-)" << fork_options();
-  return text.str();
+)";
 }
 
 int execute_fork(const Arguments& arguments, processes::Signals& signals) {
-  const Parsed parsed = parse(arguments, fork_options());
-  const run::Options options = parse_options(arguments, fork_options());
+  const Parsed parsed = parse(arguments, options_of(run::by_fork));
+  const run::Options options = parse_options(arguments, run::by_fork);
   only_recording("fork", parsed.positional);
-  if (options.scene_file.clock) {
-    throw text::UsageError("--clock: a fork keeps the clock of the recording; leave it out");
-  }
   rerun::Fork start(options, read_fork(parsed.values));
   return run::Run(options, start, run::Service::run, signals).execute();
 }

@@ -2,6 +2,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/options.h"
 #include "reports/console.h"
 #include "text/numbers.h"
 
@@ -18,16 +19,28 @@ Ziggurat runs robots in lock-step with controllers that are programs of their ow
   }
   text += R"(
   ziggurat run SCENE --view    run a scene and watch it in a browser
-  ziggurat help COMMAND        what a command does, with examples
+  ziggurat help COMMAND        what a command does, with examples; --all: and with all of its options
   ziggurat --version           the version
 )";
   return text;
 }
 
 int execute_help(const Arguments& arguments) {
-  if (arguments.size() > 1) throw text::UsageError("one command at a time: ziggurat help COMMAND");
+  const bool is_whole = arguments.size() == 2 && arguments[1] == "--all";
+  if (arguments.size() > 1 && !is_whole) {
+    throw text::UsageError(
+        "one command at a time: ziggurat help COMMAND, or with all of its options: ziggurat help "
+        "COMMAND --all");
+  }
   reports::Console console;
-  const auto text = arguments.empty() ? help_help() : command_named(arguments[0]).help();
+  std::string text = help_help();
+  if (!arguments.empty()) {
+    const Command& command = command_named(arguments[0]);
+    text = command.help();
+    if (command.options) {
+      text += options_help(*command.options, command.name, is_whole ? Detail::all : Detail::common);
+    }
+  }
   console.result(text.substr(0, text.find_last_not_of('\n') + 1));
   console.flush();
   return reports::exit_code::finished;

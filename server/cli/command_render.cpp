@@ -3,7 +3,6 @@
 #include <map>
 #include <numbers>
 #include <optional>
-#include <sstream>
 #include <string_view>
 
 #include "cli/arguments.h"
@@ -50,7 +49,7 @@ std::vector<double> to_times(const std::string& text) {
     times.push_back(text::to_number("--at", part));
     if (times.back() < 0)
       throw text::UsageError("--at is negative; write simulated seconds from 0 on");
-    check_time("--at", times.back());
+    run::check_time("--at", times.back());
   }
   return times;
 }
@@ -106,8 +105,8 @@ std::optional<run::FilmOptions> film_options(const po::variables_map& values) {
     throw text::UsageError(
         "--from and --to are simulated seconds; write --from from 0 on, and --to after it");
   }
-  check_time("--from", film.from);
-  check_time("--to", film.to.value_or(0));
+  run::check_time("--from", film.from);
+  run::check_time("--to", film.to.value_or(0));
   return film;
 }
 
@@ -155,8 +154,7 @@ std::optional<run::PictureOptions> to_pictures(const po::variables_map& values) 
 }
 
 std::string help_render() {
-  std::ostringstream text;
-  text << R"(usage: ziggurat render SCENE --out FILE.png [OPTION]...
+  return R"(usage: ziggurat render SCENE --out FILE.png [OPTION]...
        ziggurat render SCENE --video FILE.mp4 [OPTION]...
 
 Draws a scene, off-screen and on the CPU: no display is needed. For a picture of a later time, and for a
@@ -187,16 +185,13 @@ are drawn at least three pixels wide. Squares on the floor have a side of 1, 2 o
 ten in metres, ten or more to the arena's shorter side.
 
 stdout has the lines that controllers log, and the names of the pictures. Exit codes are those of `run`.
-
-)" << render_options();
-  return text.str();
+)";
 }
 
 int execute_render(const Arguments& arguments, processes::Signals& signals) {
-  const auto known = render_options();
-  run::Options options = parse_options(arguments, known);
+  run::Options options = parse_options(arguments, run::by_render);
   run::only_scene(options);
-  options.pictures = to_pictures(parse(arguments, known).values);
+  options.pictures = to_pictures(parse(arguments, options_of(run::by_render)).values);
   if (!options.pictures) {
     throw text::UsageError("no output file is given; write --out FILE.png or --video FILE.mp4");
   }

@@ -1,4 +1,3 @@
-#include <sstream>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
@@ -9,8 +8,7 @@
 namespace ziggurat::cli {
 
 std::string help_replay() {
-  std::ostringstream text;
-  text << R"(usage: ziggurat replay RECORDING [OPTION]...
+  return R"(usage: ziggurat replay RECORDING [OPTION]...
 
 Repeats a run that 'ziggurat run --record RECORDING' has recorded: the same scene, commands and acts of
 supervisors, without controllers. The hash of each state is compared with the recorded one.
@@ -30,17 +28,14 @@ The recording alone is read: no file that its scene names, and none of its comma
 
 Exit codes: 0 all states are as recorded; 5 one differs; 6 the recording is damaged, what could be
 read is as recorded; 1 fault of arguments or recording; 130 interrupted.
-
-)" << replay_options();
-  return text.str();
+)";
 }
 
 int execute_replay(const Arguments& arguments, processes::Signals& signals) {
-  const auto known = replay_options();
   rerun::ReplayOptions options;
-  options.run = parse_options(arguments, known);
+  options.run = parse_options(arguments, run::by_replay);
   options.recording = only_recording("replay", options.run.scenes);
-  const auto values = parse(arguments, known).values;
+  const auto values = parse(arguments, options_of(run::by_replay)).values;
   options.from_poses = values.count("from-poses") > 0;
   if (values.count("until")) {
     options.until = text::to_integer("--until", values["until"].as<std::string>());

@@ -1,7 +1,5 @@
 #include <unistd.h>
 
-#include <sstream>
-
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "run/run.h"
@@ -9,8 +7,7 @@
 namespace ziggurat::cli {
 
 std::string help_run() {
-  std::ostringstream text;
-  text << R"(usage: ziggurat run SCENE [OPTION]...
+  return R"(usage: ziggurat run SCENE [OPTION]...
 
 Runs a scene: starts its controllers as separate processes and advances the world tick by tick, in
 lock-step with them, for the scene's length or, if that is 0, until Ctrl-C.
@@ -41,13 +38,11 @@ Exit codes: 0 finished; 1 fault of scene, arguments or environment; 3 a controll
 process ended, or a deadline dropped a robot; 4 the gate was missed; 130 interrupted. Ctrl-C, SIGTERM and
 SIGHUP end the program within a second, also in the middle of a long tick; after a second one it does not
 wait for controllers. Output files are complete up to half a second before, also if the program is killed.
-
-)" << run_options();
-  return text.str();
+)";
 }
 
 int execute_run(const Arguments& arguments, processes::Signals& signals) {
-  const run::Options options = parse_options(arguments, run_options());
+  const run::Options options = parse_options(arguments, run::by_run);
   if (options.ends_with_input) signals.interrupt_at_end_of(STDIN_FILENO);
   run::SceneStart start(options);
   return run::Run(options, start, run::Service::run, signals).execute();

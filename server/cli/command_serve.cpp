@@ -1,7 +1,5 @@
 #include <unistd.h>
 
-#include <sstream>
-
 #include "cli/commands.h"
 #include "cli/options.h"
 #include "run/run.h"
@@ -9,8 +7,7 @@
 namespace ziggurat::cli {
 
 std::string help_serve() {
-  std::ostringstream text;
-  text << R"(usage: ziggurat serve SCENE [OPTION]...
+  return R"(usage: ziggurat serve SCENE [OPTION]...
 
 Runs a scene for controllers that connect from outside, also Lua controllers. The server waits for
 them forever, prints which robots it waits for, and ends after the scene's length.
@@ -41,13 +38,11 @@ controls robots.
 
 Exit codes: 0 finished; 1 fault of scene, arguments or environment; 3 a controller failed, or a
 deadline dropped a robot; 4 the gate was missed; 130 interrupted.
-
-)" << serve_options();
-  return text.str();
+)";
 }
 
 int execute_serve(const Arguments& arguments, processes::Signals& signals) {
-  const run::Options options = parse_options(arguments, serve_options());
+  const run::Options options = parse_options(arguments, run::by_serve);
   if (options.ends_with_input) signals.interrupt_at_end_of(STDIN_FILENO);
   run::SceneStart start(options);
   return run::Run(options, start, run::Service::serve, signals).execute();

@@ -1,5 +1,3 @@
-#include <boost/program_options/value_semantic.hpp>
-#include <sstream>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
@@ -10,29 +8,10 @@
 namespace ziggurat::cli {
 namespace {
 
-namespace po = boost::program_options;
-
-po::options_description verify_options() {
-  po::options_description options("Options", 96);
-  options.add_options()                        //
-      ("quiet", "no progress and no notices")  //
-      ("controllers",
-       "start the controllers, too, and compare what they command: embedded Lua scripts, "
-       "sandboxed, and the commands of --controller")  //
-      ("controller", po::value<std::vector<std::string>>()->composing()->value_name("ID=CMD"),
-       "with --controllers: start CMD for the controller ID; may be repeated")  //
-      ("trust-recorded-commands",
-       "with --controllers: start the commands that the recording names; they can do anything that "
-       "you can do")  //
-      ("json",
-       "the verdict as a JSON object: verdict, states, text; with a difference tick and epoch");
-  return options;
-}
-
 int rehearse(const Parsed& parsed, const Arguments& arguments, processes::Signals& signals) {
   rerun::ControllerCheckOptions options;
   options.recording = only_recording("verify", parsed.positional);
-  options.controllers = parse_options(arguments, verify_options()).controllers;
+  options.controllers = parse_options(arguments, run::by_verify).controllers;
   options.trusts_commands = parsed.values.count("trust-recorded-commands") > 0;
   options.quiet = parsed.values.count("quiet") > 0;
   return rerun::ControllerCheck(options, signals).execute();
@@ -41,8 +20,7 @@ int rehearse(const Parsed& parsed, const Arguments& arguments, processes::Signal
 }  // namespace
 
 std::string help_verify() {
-  std::ostringstream text;
-  text << R"(usage: ziggurat verify RECORDING [OPTION]...
+  return R"(usage: ziggurat verify RECORDING [OPTION]...
 
 Repeats a recorded run without controllers and compares each state with the recorded one, to the bit.
 Prints one line on stdout:
@@ -58,19 +36,17 @@ With --controllers the first command that differs is named. A controller that do
 from the same readings is found so. Commands that the recording names are never started by themselves.
 
 Exit codes: 0 identical; 5 differs; 6 damaged; 3 a controller failed or ended; 1 fault of arguments or recording; 130 interrupted.
-
-)" << verify_options();
-  return text.str();
+)";
 }
 
 int execute_verify(const Arguments& arguments, processes::Signals& signals) {
-  const Parsed parsed = parse(arguments, verify_options());
+  const Parsed parsed = parse(arguments, options_of(run::by_verify));
   const Values values(parsed.values);
   check_needs(values, {"controller", "trust-recorded-commands"}, "controllers");
   check_apart(values, "controllers", {"json"});
   if (values.has("controllers")) return rehearse(parsed, arguments, signals);
   rerun::ReplayOptions options;
-  options.run = parse_options(arguments, verify_options());
+  options.run = parse_options(arguments, run::by_verify);
   options.recording = only_recording("verify", options.run.scenes);
   options.verifies = true;
   return rerun::ReplayRun(options, signals).execute();

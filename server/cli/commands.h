@@ -1,6 +1,7 @@
 #pragma once
 // The commands of the program: one table, one file per command.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,6 +10,7 @@
 
 #include "processes/signals.h"
 #include "reports/summary.h"
+#include "run/options/option_table.h"
 
 namespace ziggurat::cli {
 
@@ -27,6 +29,8 @@ struct Command {
   std::string_view summary;  ///< one line for the list of commands
   std::string (*help)();     ///< what `ziggurat help NAME` prints
   std::variant<Execute, ExecuteWithSignals> execute;
+  /// Its options are those of run/option_table.h, which follow on the help; none: in the help.
+  std::optional<run::Commands> options = {};
 };
 
 std::span<const Command> commands();

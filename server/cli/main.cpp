@@ -72,7 +72,10 @@ int dispatch(Arguments arguments, std::span<char*> texts, reports::Console& cons
   if (name == "--version") return tell_version();
   if (name == "--help" || name == "-h") return execute_help(arguments);
   const Command& command = command_named(name);
-  if (asks_for_help(arguments)) return execute_help({name});
+  if (asks_for_help(arguments)) {
+    const bool is_whole = std::ranges::find(arguments, "--all") != arguments.end();
+    return execute_help(is_whole ? Arguments{name, "--all"} : Arguments{name});
+  }
   return execute(command, arguments, texts);
 }
 

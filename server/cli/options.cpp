@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string_view>
+#include <sstream>
 #include <utility>
 
-#include "cli/arguments.h"
-#include "scene/settings.h"
+#include "cli/settings_file.h"
 #include "text/numbers.h"
 
 namespace ziggurat::cli {
@@ -15,50 +14,33 @@ namespace {
 
 namespace po = boost::program_options;
 
-constexpr double longest_lease = 4e6;  // [s]
-// Simulated seconds per second of wall time. At the least a tick of 0.1 s takes a day.
-constexpr double least_factor = 1e-6, most_factor = 1e6;
+constexpr unsigned width = 96;  // of the help [characters]
 
-double to_factor(const std::string& value) {
-  const auto number = text::to_number("--real-time", value);
-  if (!(number >= least_factor && number <= most_factor)) {
-    throw text::UsageError(fmt::format("--real-time is {}; it must be {:g} to {:g}, 1 is real time",
-                                       value, least_factor, most_factor));
-  }
-  return number;
+bool is_of(const run::Option& option, run::Commands command) {
+  return (option.commands & command) != 0;
 }
 
-scene::Clock to_clock(const std::string& value) {
-  if (value == "nominal") return scene::Clock::nominal;
-  if (value == "beta50") return scene::Clock::beta50;
-  throw text::UsageError(fmt::format("--clock is '{}'; write nominal or beta50", value));
+void describe(const run::Option& option, po::options_description& group) {
+  const std::string text =
+      std::string(option.text) + (is_repeated(option) ? "; may be repeated" : "");
+  if (is_flag(option)) {
+    group.add_options()(option.name, text.c_str());
+  } else if (is_repeated(option)) {
+    group.add_options()(
+        option.name, po::value<std::vector<std::string>>()->value_name(option.value), text.c_str());
+  } else {
+    auto* value = po::value<std::string>()->value_name(option.value);
+    if (option.implicit) value->implicit_value(option.implicit);
+    group.add_options()(option.name, value, text.c_str());
+  }
 }
 
-std::pair<std::string, std::string> to_controller(const std::string& value) {
-  const auto equals = value.find('=');
-  if (equals == std::string::npos || equals == 0 || equals + 1 == value.size()) {
-    throw text::UsageError(fmt::format("--controller is '{}'; write ID=COMMAND", value));
-  }
-  return {value.substr(0, equals), value.substr(equals + 1)};
-}
-
-void read_length(const Values& values, run::Options& options) {
-  constexpr std::uint64_t most_ticks = std::uint64_t{1} << 53;  // as in scenes
-  if (values.has("ticks")) options.ticks = text::to_integer("--ticks", values.text("ticks"));
-  if (options.ticks.value_or(0) > most_ticks) {
-    throw text::UsageError(
-        fmt::format("--ticks is {}; write at most 2^53, which is {}", *options.ticks, most_ticks));
-  }
-  if (values.has("duration")) {
-    options.duration = text::to_number("--duration", values.text("duration"));
-    if (*options.duration < 0) {
-      throw text::UsageError("--duration is negative; write seconds, or 0 for until Ctrl-C");
-    }
-    check_time("--duration", *options.duration);
-  }
-  if (options.ticks && options.duration) {
-    throw text::UsageError("--ticks and --duration both set the length; give one of them");
-  }
+/// Its values as texts; of a flag an empty one.
+std::vector<std::string> texts_of(const po::variable_value& value) {
+  if (const auto* several = boost::any_cast<std::vector<std::string>>(&value.value()))
+    return *several;
+  const auto* one = boost::any_cast<std::string>(&value.value());
+  return {one ? *one : std::string()};
 }
 
 /// For whom each option is, by name; without one for all.
@@ -94,138 +76,36 @@ void check_subjects(const run::Options& options) {
   check_once("--set", std::move(paths));
 }
 
-/// Arguments for ziggurat-lua.
-std::vector<std::string> lua_arguments(const Values& values) {
-  std::vector<std::string> arguments;
-  if (values.has("trust-scripts")) arguments.emplace_back("--trust-scripts");
-  for (const auto& [option, passed] :
-       {std::pair{"lua-memory", "--max-memory"},
-        std::pair{"lua-instructions", "--max-instructions"}, std::pair{"lua-time", "--max-time"}}) {
-    if (!values.has(option)) continue;
-    constexpr std::uint64_t most = std::uint64_t{1} << 20;
-    const auto number = text::to_integer(std::string("--") + option, values.text(option));
-    if (number == 0 || number > most) {
-      throw text::UsageError(
-          fmt::format("--{} is {}; it must be from 1 to {}", option, number, most));
-    }
-    arguments.insert(arguments.end(), {passed, std::to_string(number)});
+/// Refuses options that have no effect without, or beside, another one.
+void check_effects(const GivenOptions& given, run::Commands command, const run::Options& options) {
+  const Values own(given.own.values), all(given.all);
+  if (options.ticks && options.duration) {
+    throw text::UsageError("--ticks and --duration both set the length; give one of them");
   }
-  return arguments;
-}
-
-void read_controllers(const Values& values, run::Options& options) {
-  options.lua_arguments = lua_arguments(values);
-  if (values.has("lua-processes")) {
-    constexpr std::uint64_t most = std::uint64_t{1} << 20;
-    options.lua_processes = static_cast<unsigned>(
-        std::min(text::to_integer("--lua-processes", values.text("lua-processes")), most));
-  }
-  for (const auto& each : values.texts("controller")) {
-    options.controllers.push_back(to_controller(each));
-  }
-  options.fail_fast = values.has("fail-fast");
-  options.allow_drops = values.has("allow-drops");
-  options.without_controllers = values.has("without-controllers");
-  for (const auto& each : values.texts("deadline")) {
-    options.deadlines.push_back(run::to_deadline(each));
-  }
-  for (const auto& each : values.texts("inject")) {
-    options.injections.push_back(run::to_injection(each));
-  }
-  for (const auto& each : values.texts("restart")) {
-    options.restarts.push_back(run::to_restart(each));
-  }
-}
-
-void read_network(const Values& values, run::Options& options) {
-  options.endpoints = values.texts("endpoint");
-  if (values.has("lease")) {
-    options.lease = text::to_number("--lease", values.text("lease"));
-    if (options.lease < 0 || options.lease > longest_lease) {
-      throw text::UsageError(fmt::format("--lease is '{}'; it must be 0 to {} seconds",
-                                         values.text("lease"), longest_lease));
-    }
-  }
-  options.curve_secret = values.text("curve-secret");
-  options.curve_clients = values.text("curve-clients");
   if (options.curve_secret.empty() != options.curve_clients.empty()) {
     throw text::UsageError("--curve-secret and --curve-clients need each other; give both");
   }
-  options.insecure = values.has("insecure");
-  options.allows_directors = values.has("allow-director");
-  options.starts_directors = values.has("start-directors");
-  options.paused = values.has("paused");
-  options.ends_with_input = values.has("end-with-input");
-  options.spawned_script_folders = values.texts("allow-spawned-scripts");
-  options.snapshot_folder = values.text("snapshot-folder");
-  options.metrics = values.text("metrics");
-  if (values.has("view")) options.view = values.text("view");
-  options.view_token = values.text("view-token");
-  if (!options.view_token.empty() && !options.view) {
-    throw text::UsageError("--view-token needs --view");
+  if (!all.has("view")) check_needs(own, {"view-token"}, "view");
+  if (!all.has("record")) {
+    check_needs(
+        own,
+        {"record-topics", "record-every", "record-compression", "record-paths", "record-strict"},
+        "record");
   }
-}
-
-void read_outputs(const Values& values, run::Options& options) {
-  options.report_card = values.text("report-card");
-  if (values.has("warm-up"))
-    options.warm_up = text::to_integer("--warm-up", values.text("warm-up"));
-  options.quiet = values.has("quiet");
-  options.json = values.has("json");
-  options.hash = values.has("hash");
-  options.hash_file = values.text("hash-file");
-  options.trace = values.text("trace");
-  options.readings = values.text("readings");
-  options.rays = values.text("rays");
-  options.images = values.text("images");
-  options.summary = values.text("summary");
-}
-
-/// Refuses options that have no effect without, or beside, another one.
-void check_effects(const Values& values, const po::options_description& known,
-                   const run::Options& options) {
-  check_apart(values, "without-controllers",
+  check_apart(own, "without-controllers",
               {"controller", "script", "restart", "trust-scripts", "trust-recorded-commands",
                "lua-processes", "lua-memory", "lua-instructions", "lua-time"});
   const auto is_tcp = [](const std::string& endpoint) { return endpoint.starts_with("tcp://"); };
   const bool has_address =
       std::ranges::any_of(options.endpoints, is_tcp) || options.view || !options.metrics.empty();
   if (!options.insecure || has_address) return;
-  const bool has_endpoint = known.find_nothrow("endpoint", false) != nullptr;
+  const bool has_endpoint = is_of(*run::option_named("endpoint"), command);
   throw text::UsageError(fmt::format(
       "--insecure has no effect: it is for addresses that other machines can reach, and none is "
       "given; write {} too, or "
       "leave it out",
       has_endpoint ? "--endpoint tcp://HOST:PORT, --view=HOST:PORT or --metrics HOST:PORT"
                    : "--view=HOST:PORT"));
-}
-
-mcap::Compression to_compression(const std::string& value) {
-  if (value == "zstd") return mcap::Compression::zstd;
-  if (value == "lz4") return mcap::Compression::lz4;
-  if (value == "none") return mcap::Compression::none;
-  throw text::UsageError(
-      fmt::format("--record-compression is '{}'; write zstd, lz4 or none", value));
-}
-
-void read_recording(const Values& values, run::Options& options) {
-  options.record = values.text("record");
-  for (const char* name :
-       {"record-topics", "record-every", "record-compression", "record-paths", "record-strict"}) {
-    if (values.has(name) && options.record.empty()) {
-      throw text::UsageError(fmt::format("--{} needs --record FILE.mcap", name));
-    }
-  }
-  options.record_topics = values.texts("record-topics");
-  options.record_strict = values.has("record-strict");
-  options.record_paths = values.has("record-paths");
-  if (values.has("record-compression")) {
-    options.record_compression = to_compression(values.text("record-compression"));
-  }
-  if (values.has("record-every")) {
-    options.record_every = text::to_integer("--record-every", values.text("record-every"));
-    if (options.record_every == 0) throw text::UsageError("--record-every is 0; write 1 or more");
-  }
 }
 
 /// Without keys and tokens, and the paths of keys.
@@ -244,67 +124,80 @@ Arguments without_secrets(const Arguments& arguments) {
   return kept;
 }
 
-}  // namespace
-
-void check_time(const char* option, double seconds) {
-  constexpr double longest = 9e9;  // [s], as in scenes: nanoseconds fit 64 bits
-  if (seconds > longest) {
-    throw text::UsageError(fmt::format("{} is {:g} s; write at most {:g} simulated seconds", option,
-                                       seconds, longest));
+/// Adds what the command has and the command line does not say.
+void add_settings(const std::string& path, run::Commands command, GivenOptions& given) {
+  const Values own(given.own.values);
+  const bool has_length = own.has("ticks") || own.has("duration");
+  for (FileSetting& setting : read_settings_file(path)) {
+    const std::string_view name = setting.option->name;
+    const bool is_length = name == "ticks" || name == "duration";
+    if (!is_of(*setting.option, command) || own.has(setting.option->name) ||
+        (is_length && has_length))
+      continue;
+    if (setting.values.empty()) {
+      given.switched_off.emplace_back(name);
+    } else if (is_repeated(*setting.option)) {
+      given.all.emplace(name, po::variable_value(setting.values, false));
+    } else {
+      given.all.emplace(name, po::variable_value(setting.values.front(), false));
+    }
   }
 }
 
-run::Options parse_options(const Arguments& arguments, const po::options_description& known) {
-  const Parsed parsed = parse(arguments, known);
-  const Values values(parsed.values);
+}  // namespace
+
+po::options_description options_of(run::Commands command, Detail detail) {
+  po::options_description all("", width);
+  for (const run::OptionGroup& group : run::option_groups()) {
+    po::options_description part(group.heading, width);
+    for (const run::Option& option : group.options) {
+      const bool is_wanted = detail == Detail::all || option.use == run::Use::common;
+      if (is_wanted && is_of(option, command)) describe(option, part);
+    }
+    if (!part.options().empty()) all.add(part);
+  }
+  return all;
+}
+
+std::string options_help(run::Commands command, std::string_view name, Detail detail) {
+  std::ostringstream text;
+  const auto shown = options_of(command, detail);
+  text << shown;
+  const std::size_t more = options_of(command).options().size() - shown.options().size();
+  if (more > 0) text << fmt::format("\nand {} more: ziggurat help {} --all\n", more, name);
+  return text.str();
+}
+
+GivenOptions read_given(const Arguments& arguments, run::Commands command) {
+  GivenOptions given;
+  given.own = parse(arguments, options_of(command));
+  given.all = given.own.values;
+  const Values own(given.own.values);
+  if (own.has("settings")) add_settings(own.text("settings"), command, given);
+  return given;
+}
+
+run::Options parse_options(const Arguments& arguments, run::Commands command) {
+  const GivenOptions given = read_given(arguments, command);
   run::Options options;
-  options.scenes = parsed.positional;
-  options.scene_file.lenient = values.has("lenient");
-  if (values.has("max-scene-size")) {
-    options.scene_file.max_size = text::to_size("--max-scene-size", values.text("max-scene-size"));
+  options.scenes = given.own.positional;
+  for (const run::OptionGroup& group : run::option_groups()) {
+    for (const run::Option& option : group.options) {
+      if (!is_of(option, command)) continue;
+      const auto found = given.all.find(option.name);
+      if (found != given.all.end()) {
+        for (const std::string& value : texts_of(found->second)) apply(option, options, value);
+      } else if (option.place == run::Place::scene &&
+                 std::ranges::find(given.switched_off, option.name) == given.switched_off.end()) {
+        options.open_to_scene.emplace_back(option.name);
+      }
+    }
   }
-  options.scene_file.variation = to_variation(values.texts("set"), values.texts("param"));
-  read_length(values, options);
-  if (values.has("seed")) options.seed = text::to_integer("--seed", values.text("seed"));
-  if (values.has("clock")) options.scene_file.clock = to_clock(values.text("clock"));
-  if (values.has("real-time")) {
-    options.real_time = to_factor(values.text("real-time"));
-  }
-  options.strict = values.has("strict");
-  options.hil = values.has("hil");
-  if (values.has("gate")) options.gate = reports::parse_gate(values.text("gate"));
-  read_controllers(values, options);
-  read_network(values, options);
-  read_outputs(values, options);
-  read_recording(values, options);
   check_subjects(options);
-  check_effects(values, known, options);
+  check_effects(given, command, options);
+  options.scene_file.run = run::run_attributes();
   options.arguments = without_secrets(arguments);
   return options;
-}
-
-namespace {
-
-template <class T>
-std::vector<T> read_all(const char* option, const std::vector<std::string>& texts,
-                        scene::Value<T> (*read)(std::string_view)) {
-  std::vector<T> result;
-  for (const std::string& each : texts) {
-    auto value = read(each);
-    if (const auto* wrong = std::get_if<scene::Wrong>(&value)) {
-      throw text::UsageError(fmt::format("{} {} {}", option, scene::in_quotes(each), wrong->text));
-    }
-    result.push_back(std::get<0>(std::move(value)));
-  }
-  return result;
-}
-
-}  // namespace
-
-scene::Variation to_variation(const std::vector<std::string>& settings,
-                              const std::vector<std::string>& parameters) {
-  return {read_all("--set", settings, scene::to_setting),
-          read_all("--param", parameters, scene::to_parameter)};
 }
 
 }  // namespace ziggurat::cli

@@ -50,8 +50,9 @@ void check_run_arguments(const std::vector<std::string>& arguments) {
     throw text::UsageError(fmt::format("there are {} options for runs; at most {} are taken",
                                        arguments.size(), most_run_arguments));
   }
-  const Parsed parsed = parse(arguments, run_options());
-  const Values values(parsed.values);
+  const GivenOptions given = read_given(arguments, run::by_run);
+  const Parsed& parsed = given.own;
+  const Values values(given.all), own(parsed.values);
   for (const char* name : own_options) {
     if (!values.has(name)) continue;
     throw text::UsageError(
@@ -65,6 +66,12 @@ void check_run_arguments(const std::vector<std::string>& arguments) {
   }
   for (const char* name : exclusive_options) {
     if (!values.has(name)) continue;
+    if (!own.has(name)) {
+      throw text::UsageError(fmt::format(
+          "{} in the file of --settings would be the same for all runs; write --{} behind '--', "
+          "with {{run}} in it, which becomes the number of the run",
+          name, name));
+    }
     const auto* one = boost::any_cast<std::string>(&parsed.values[name].value());
     for (const std::string& value : one ? std::vector{*one} : values.texts(name)) {
       if (value.find("{run}") != value.npos) continue;
@@ -83,7 +90,7 @@ run::Options options_of_first_run(const sweep::Experiment& experiment,
                                   const sweep::Settings& settings) {
   const auto command = run_command(experiment, combination(experiment, 1), settings.program, ".",
                                    settings.record != sweep::Record::none);
-  return parse_options({command.begin() + 2, command.end()}, run_options());
+  return parse_options({command.begin() + 2, command.end()}, run::by_run);
 }
 
 sweep::Record to_record(const std::string& text) {

@@ -66,6 +66,8 @@ struct Options {
   std::uint64_t record_every = 1;          ///< pictures of each Nth tick
   bool record_strict = false;              ///< the run ends if the recording can't be written
   bool record_paths = false;  ///< paths and the command line are recorded as they were written
+  std::string settings_file;  ///< path; empty = none
+  std::vector<std::string> open_to_scene;  ///< options that are not given, so that <run> sets them
   std::vector<std::string> arguments;      ///< of the command line, without keys and tokens
   std::optional<PictureOptions> pictures;  ///< the run ends with the last of them
 };

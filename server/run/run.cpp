@@ -15,6 +15,7 @@
 #include "run/build.h"
 #include "run/files.h"
 #include "run/options/option_checks.h"
+#include "run/options/option_table.h"
 #include "run/setup.h"
 #include "text/numbers.h"
 
@@ -62,32 +63,33 @@ Run::Run(const Options& options, StartPoint& start, Service service, processes::
       loaded_(load_world()),
       world_(*loaded_),
       plan_(make_plan()),
-      with_controllers_(!options.without_controllers && !(options.pictures && plan_.ticks == 0)),
+      with_controllers_(!options_.without_controllers && !(options_.pictures && plan_.ticks == 0)),
       folder_(signals.guardian()),
       programs_(start.programs(world_, folder_.path() + "/files", with_controllers_)),
-      recorders_(options, world_),
+      recorders_(options_, world_),
       recorded_(start.is_reached() ? start_recording() : nullptr),
       controllers_(start_controllers()),
       callers_(server_),
-      population_({options.scene_file.max_size, with_controllers_, options.spawned_script_folders},
-                  world_, server_, callers_, controllers_, console_),
+      population_(
+          {options_.scene_file.max_size, with_controllers_, options_.spawned_script_folders},
+          world_, server_, callers_, controllers_, console_),
       supervision_(supervision_settings(), world_, server_, callers_, population_),
       directing_(world_, server_, callers_, population_, console_),
       schedule_(plan_.real_time, world_.simulation.tick_length()),
-      live_view_(make_showing(options, shown(world_, server_, callers_, supervision_, schedule_,
-                                             plan_.ticks.value_or(0)))),
-      watch_({.metrics = options.metrics,
-              .insecure = options.insecure,
-              .fail_fast = options.fail_fast,
+      live_view_(make_showing(options_, shown(world_, server_, callers_, supervision_, schedule_,
+                                              plan_.ticks.value_or(0)))),
+      watch_({.metrics = options_.metrics,
+              .insecure = options_.insecure,
+              .fail_fast = options_.fail_fast,
               .waits_for_clients = service == Service::serve,
               .ticks = plan_.ticks,
-              .restarts = restarts_of(options.restarts, world_.scene)},
+              .restarts = restarts_of(options_.restarts, world_.scene)},
              world_, server_, controllers_, supervision_, signals, console_, live_view_.get(),
              [this](auto severity, auto name, auto text) {
                if (live_view_) live_view_->log(severity, name, text);
                if (recorded_) recorded_->log(severity, name, text);
              }),
-      waits_for_viewer_(live_view_ && !options.paused) {
+      waits_for_viewer_(live_view_ && !options_.paused) {
   callers_.on_world_change([this](const supervision::WorldChange& change) {
     if (recorded_) recorded_->record(change);
   });
@@ -123,6 +125,7 @@ std::unique_ptr<supervision::World> Run::load_world() {
     const auto status = loading.status();
     if (status.is_done) {
       auto world = loading.take();
+      apply_scene(world->scene, options_);
       if (service_ == Service::serve)
         tell_how_to_connect(options_, server_.endpoints().front(), *world, console_);
       return world;

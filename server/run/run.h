@@ -98,7 +98,7 @@ class Run {
   reports::ReportCard report_card() const;
   void print_summary();
 
-  const Options& options_;
+  Options options_;  ///< with those of the scene, once it is read
   StartPoint& start_;
   const Service service_;
   processes::Signals& signals_;

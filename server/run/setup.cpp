@@ -51,7 +51,6 @@ network::Config network_config(const Options& options, bool is_serve, LocalEndpo
                     network::read_client_keys(options.curve_clients)};
   }
   config.endpoints = options.endpoints;
-  config.keeps_reactions = wants_report_card(options);
   for (std::string& endpoint : config.endpoints) {
     if (endpoint == "ipc://*") endpoint = local.any();
   }
@@ -66,6 +65,7 @@ void add_controllers(const Options& options, const scene::Scene& scene, network:
   config.deadlines = std::move(deadlines.all);
   config.deadline_of_others = deadlines.of_others;
   config.injections = injections_of(options.injections, scene);
+  config.keeps_reactions = wants_report_card(options);
   check_losses(config.injections, scene, config.deadlines);
 }
 

@@ -33,6 +33,19 @@ void read_experiment(Element experiment, Experiment& out) {
   experiment.done();
 }
 
+void read_run(Element run, const RunAttributes& known, Scene& scene) {
+  if (!known.wrong) scene.run = run.all_attributes();
+  for (const std::string& name : known.names) {
+    const auto read = [&](std::string_view text) -> Value<std::string> {
+      const std::string value(text);
+      if (auto wrong = known.wrong(name, value)) return Wrong{std::move(*wrong)};
+      return value;
+    };
+    if (auto value = run.optional(name.c_str(), read)) scene.run.emplace_back(name, *value);
+  }
+  run.done();
+}
+
 void read_system(Element system) {
   constexpr std::string_view why = "results never depend on threads";
   system.without_effect("threads", count, why);
@@ -58,6 +71,7 @@ void read_framework(Draft& draft, Element& root) {
   if (auto experiment = framework->required_child("experiment")) {
     read_experiment(*experiment, draft.scene.experiment);
   }
+  if (auto run = framework->child("run")) read_run(*run, draft.options.run, draft.scene);
   if (auto system = framework->child("system")) read_system(*system);
   if (auto profiling = framework->child("profiling")) read_profiling(*profiling);
   framework->done();

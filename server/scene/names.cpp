@@ -38,6 +38,7 @@ constexpr auto element_reasons = std::to_array<Reason>({
 
 constexpr auto homes = std::to_array<Reason>({
     {"experiment", "framework"},
+    {"run", "framework"},
     {"lua_controller", "controllers"},
     {"external_controller", "controllers"},
     {"dynamics3d", "physics_engines"},

@@ -16,12 +16,20 @@
 
 namespace ziggurat::scene {
 
+/// Attributes that <run> may have: options of the program, which this module does not know.
+struct RunAttributes {
+  std::vector<std::string> names;
+  /// Why the attribute `name` can't have this value; null: any attribute is taken, unchecked.
+  std::optional<std::string> (*wrong)(const std::string& name, const std::string& value) = nullptr;
+};
+
 struct ReadOptions {
   bool lenient = false;  ///< unknown attributes (not elements) and what libraries do become notices
   std::optional<Clock> clock = {};               ///< instead of the scene's
   std::size_t max_size = std::size_t{64} << 20;  ///< of the scene with what it includes and with
                                                  ///< its models written out [bytes]
   Variation variation = {};
+  RunAttributes run = {};
   OpenFile open = open_file;  ///< every file that is read, the scene's and those it includes
 };
 

@@ -260,6 +260,7 @@ struct Scene {
   Variation variation;             ///< that it was read with
   std::vector<std::string> files;  ///< what Location::file counts; [0] is the scene file
   Experiment experiment;
+  std::vector<std::pair<std::string, std::string>> run;  ///< names and values of <run>
   std::vector<Controller> controllers;
   std::vector<Director> directors;
   std::vector<ModelName> models;

@@ -44,15 +44,27 @@ class BrokenScene(SceneTest):
         self.scene.write_text('<?xml version="1.0" encoding="EBCDIC"?>\n' + self.text.partition("?>")[2].lstrip())
         self.assert_is_sentence(self.ziggurat("check", self.scene), 'arms.argos:1:31: encoding="EBCDIC" is not read')
 
-    def test_truncated(self):
-        self.scene.write_text(self.text[:len(self.text) // 2])
-        self.fails(r"arms\.argos:\d+")
-
     def test_huge_file(self):
         with open(self.scene, "w") as file:
             file.write("<argos-configuration>")
             file.write(" " * (100 << 20))
         self.fails(r"arms\.argos.*(64|--max-scene-size)")
+
+    def test_entity_bomb(self):
+        bomb = '<!DOCTYPE x [<!ENTITY a0 "ha">'
+        for i in range(1, 30):
+            bomb += f'<!ENTITY a{i} "&a{i - 1};&a{i - 1};">'
+        self.change('<?xml version="1.0" ?>', '<?xml version="1.0" ?>' + bomb + "]>")
+        self.change('speed="2"', 'speed="&a29;"')
+        self.fails(r"arms\.argos:\d+")
+
+    def test_no_file_at_that_path(self):
+        outcome = self.run_scene(code=FAULT, scene="missing.argos")
+        self.assert_is_sentence(outcome, r"missing\.argos")
+
+    def test_folder_instead_of_a_file(self):
+        outcome = self.run_scene(code=FAULT, scene=self.folder)
+        self.assert_is_sentence(outcome, str(self.folder))
 
     def test_all_faults_at_once(self):
         self.change('mass="2"', 'mass="-2"', 1)
@@ -113,6 +125,14 @@ class BrokenArguments(SceneTest):
                                    "/no/such/folder/x" + ending)
             self.assertEqual(outcome.out, "", "no controller has been started")
 
+    def test_outputs_with_a_wrong_ending(self):
+        for option, path, right in (("--trace", "t.json", r"\.csv"), ("--readings", "r.csv", r"\.jsonl"),
+                                    ("--rays", "r.json", r"\.jsonl"), ("--summary", "s.txt", r"\.json"),
+                                    ("--report-card", "c.png", r"\.json or \.svg")):
+            self.refuses(rf"{option} is '{path}'; its name must end with {right}", "run", self.scene,
+                         option, path)
+        self.refuses(r"--out is 'x.mp4'.*\.png", "render", self.scene, "--out", "x.mp4")
+
     def test_an_output_that_is_another_file_of_the_run(self):
         before = self.scene.read_bytes()
         self.refuses(r"--hash-file is .*the file of the scene too", "run", self.scene, "--hash-file",
@@ -124,6 +144,14 @@ class BrokenArguments(SceneTest):
         self.refuses(r"--hash-file is .*the file of --trace too", "run", self.scene, "--trace", "t.csv",
                      "--hash-file", f"../{self.folder.name}/t.csv")
         self.assertFalse((self.folder / "t.csv").exists())
+
+    def test_an_output_that_is_an_include_or_a_script_of_the_scene(self):
+        models = self.write("models.xml", "<models/>")
+        self.change("<arena ", '<include file="models.xml"/><arena ')
+        for path in (models, self.folder / "swing.lua"):
+            before = path.read_bytes()
+            self.refuses(r"--hash-file is .*(a file of the scene|a Lua script)", "run", self.scene, "--hash-file", path)
+            self.assertEqual(path.read_bytes(), before)
 
     def test_a_list_of_clients_that_all_can_write(self):
         for name in ("k.secret", "clients"):

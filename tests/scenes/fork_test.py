@@ -135,7 +135,7 @@ class Refused(Fork):
                 ((), "no tick is given; write --at TICK"),
                 (("--at", "21", "--ticks", "30"), "has no such tick, it ends at tick 20"),
                 (("--at", "15", "--ticks", "10"), "write --ticks with a later end"),
-                (("--at", "5", "--clock", "beta50"), "keeps the clock"),
+                (("--at", "5", "--clock", "beta50"), "unknown option '--clock'"),
                 (("--at", "5", "--set", "framework/experiment/@ticks_per_second=20"), "ticks_per_second"),
                 (("--at", "5", "--set", "arena/distribute/entity/@quantity=6"), "same entities"),
                 (("--at", "5", "--trust-scripts"), "trust-scripts"),

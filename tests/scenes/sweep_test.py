@@ -217,7 +217,7 @@ class Refusals(SweepTest):
                 ((*good, "--", "--sumary", "a"), "unknown option '--sumary'"),
                 (("--seeds", "1", "--ticks", "many"), "--ticks is 'many'"),
                 ((*good, "--", "--deadline", "soon"), "soon"),
-                ((*good, "--", "--record-every", "2"), "--record-every needs --record"),
+                ((*good, "--", "--record-every", "2"), "--record-every has no effect without --record"),
                 (("--seeds", "1", "--duration", "0"), "has no length, so that a run may never end"),
                 ((*good, "--param", "gain=1|nan"), ".gain. has the value .nan., which is no finite number")):
             outcome = self.ziggurat("sweep", "--out", self.out, self.scene, *arguments)

@@ -9,7 +9,7 @@
 namespace ziggurat::cli {
 namespace {
 
-run::Options run(const Arguments& arguments) { return parse_options(arguments, run_options()); }
+run::Options run(const Arguments& arguments) { return parse_options(arguments, run::by_run); }
 
 TEST(Options, DefaultsAreThoseOfTheHelp) {
   const auto options = run({"scene.argos"});
@@ -72,7 +72,7 @@ TEST(Options, WrongValuesAreRefused) {
 }
 
 TEST(Options, ServeStartsNoProcesses) {
-  EXPECT_THROW(parse_options({"s", "--lua-processes", "2"}, serve_options()), text::UsageError);
+  EXPECT_THROW(parse_options({"s", "--lua-processes", "2"}, run::by_serve), text::UsageError);
 }
 
 TEST(Options, ExactlyOneSceneIsAllowed) {
@@ -118,10 +118,10 @@ TEST(Options, WhatIsGivenTwiceForTheSameIsRefused) {
 }
 
 TEST(Options, KeysNeedEachOther) {
-  EXPECT_THROW(parse_options({"s", "--curve-secret", "x"}, serve_options()), text::UsageError);
-  EXPECT_THROW(parse_options({"s", "--curve-clients", "x"}, run_options()), text::UsageError);
-  EXPECT_EQ(parse_options({"s", "--lease", "2.5"}, serve_options()).lease, 2.5);
-  EXPECT_THROW(parse_options({"s", "--lease", "-1"}, run_options()), text::UsageError);
+  EXPECT_THROW(parse_options({"s", "--curve-secret", "x"}, run::by_serve), text::UsageError);
+  EXPECT_THROW(parse_options({"s", "--curve-clients", "x"}, run::by_run), text::UsageError);
+  EXPECT_EQ(parse_options({"s", "--lease", "2.5"}, run::by_serve).lease, 2.5);
+  EXPECT_THROW(parse_options({"s", "--lease", "-1"}, run::by_run), text::UsageError);
 }
 
 }  // namespace
