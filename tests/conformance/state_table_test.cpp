@@ -106,7 +106,7 @@ TEST(StateTable, EveryCellHolds) {
     for (std::size_t column = 1; column < header.size(); ++column) {
       SCOPED_TRACE(state + ", " + header[column]);
       const SmallRun small(2);
-      Peers peers(small, {}, state == "HELLO");
+      Peers peers(small, {}, state == "HELLO" ? Peers::World::loading : Peers::World::loaded);
       bring(peers, state);
       EXPECT_EQ(verdict(peers, header[column]), table[row][column]);
       ++tested;

@@ -106,7 +106,7 @@ TEST(Metrics, SlowClientsBlockNeitherOthersNorTheEnd) {
     EXPECT_TRUE(
         ask(port, "GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n").starts_with("HTTP/1.1 200"));
   }
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, http::Port::Limits().time)
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, http::PortOptions().time)
       << "which slow ones have";
 }
 

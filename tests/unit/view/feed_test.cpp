@@ -28,7 +28,7 @@ struct Watched {
     }
     std::ranges::sort(ids);
     hub.receive(viewer, nlohmann::json{{"op", "subscribe"}, {"subscriptions", entries}}.dump(),
-                true);
+                Hub::Frame::text);
     while (hub.next(viewer)) {
     }
   }
