@@ -1,8 +1,4 @@
-<<<<<<<< HEAD:tests/unit/run/options/controller_option_test.cpp
 #include "run/options/controller_option.h"
-========
-#include "run/options/controller_option.h"
->>>>>>>> 492bbc3ab75db33d6d23bd9f6f46d65fba3f756e:tests/unit/run/controller_option_test.cpp
 
 #include <gtest/gtest.h>
 
