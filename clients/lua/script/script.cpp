@@ -60,7 +60,7 @@ Script::Script(std::string name, const ScriptOptions& options)
       most_files_(options.most_files),
       script_(shown(options.script).string()),
       folder_(shown(options.script).parent_path().string()),
-      state_(options.max_memory, options.region) {
+      state_(options.max_memory, options.arena) {
   if (folder_.empty()) folder_ = ".";
 }
 

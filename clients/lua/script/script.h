@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 
+#include "script/arena.h"
 #include "script/environment.h"
 #include "script/folders.h"
 #include "script/interrupt.h"
@@ -28,9 +28,8 @@ struct ScriptOptions {
   /// all of Lua.
   const Folders* folders = nullptr;
   std::size_t most_files =
-      most_open_files;  ///< that a script that is not trusted may have open at once
-  std::span<std::byte>
-      region{};  ///< for the script's Lua state; outlives it. Empty: it has none of its own
+      most_open_files;     ///< that a script that is not trusted may have open at once
+  Arena* arena = nullptr;  ///< for the script's Lua state; outlives it. Null: it has malloc()
   std::uint64_t max_in_library =
       5;  ///< processor time of a function of Lua's library in a call [s]
 };
