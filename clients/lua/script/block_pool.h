@@ -39,8 +39,10 @@ class BlockPool {
   static bool same_room(std::size_t a, std::size_t b) { return steps(a) == steps(b); }
 
  private:
-  static constexpr std::size_t step = 16;                 // rooms are multiples of it [bytes]
-  static constexpr std::size_t most_steps = 4096 / step;  // of a block
+  static constexpr std::size_t step = 16;  // rooms are multiples of it [bytes]
+  // Of a block. Larger ones are few, and mostly a part of what grows: after it a pool could use
+  // their room for nothing else, malloc() can.
+  static constexpr std::size_t most_steps = 512 / step;
   static std::size_t steps(std::size_t size) { return (size + step - 1) / step; }
   void* cut(std::size_t room);
 

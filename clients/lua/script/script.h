@@ -86,6 +86,7 @@ class Script {
   static int build(lua_State* state);
   static int load(lua_State* state);
   static int prepare(lua_State* state);
+  void keep_small();
 
   Failure call_prepared(const std::string& moment, int arguments, int results);
   void push_protected(int (*function)(lua_State*));
@@ -101,10 +102,12 @@ class Script {
   std::uint64_t max_in_library_;
   const Folders* folders_;
   std::size_t most_files_;
-  std::string script_;  // path for messages
-  std::string folder_;  // of the script
-  Wanted wanted_;       // by prepare()
-  BoundedState state_;  // last: its finalizers may use the others
+  std::string script_;         // path for messages
+  std::string folder_;         // of the script
+  Wanted wanted_;              // by prepare()
+  std::size_t calls_ = 0;      // since the last collection by keep_small()
+  std::size_t collected_ = 0;  // memory in use after that [bytes]
+  BoundedState state_;         // last: its finalizers may use the others
 };
 
 }  // namespace ziggurat::lua

@@ -23,23 +23,32 @@ TEST(BlockPool, BlocksStandSideBySideAndAreTakenAgain) {
   pool.give_back(first, 20);
   EXPECT_EQ(pool.take(16), first + 48) << "a block of another size is no use";
   EXPECT_EQ(pool.take(32), first);
-  EXPECT_EQ(pool.take(4097), nullptr) << "too large for it";
-  EXPECT_EQ(pool.take(4000), first + 64);
-  EXPECT_EQ(pool.take(4096), first + Arena::chunk) << "in the next chunk";
-  EXPECT_EQ(pool.take(96), first + 64 + 4000) << "what was left of the first";
+  EXPECT_EQ(pool.take(513), nullptr) << "too large for it";
+  for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(pool.take(512), first + 64 + 512 * i);
+  EXPECT_EQ(pool.take(500), first + 64 + 512 * 7) << "the last of the chunk";
+  EXPECT_EQ(pool.take(512), first + Arena::chunk) << "in the next chunk";
+}
+
+TEST(BlockPool, WhatIsLeftOfAChunkIsABlock) {
+  Arena arena(1);
+  BlockPool pool(&arena);
+  auto* const first = static_cast<std::byte*>(pool.take(480));
+  for (int i = 0; i < 7; ++i) pool.take(512);
+  EXPECT_EQ(pool.take(512), first + Arena::chunk);
+  EXPECT_EQ(pool.take(96), first + 480 + 7 * 512);
 }
 
 TEST(BlockPool, HasNoMoreThanItsPartOfTheArena) {
   Arena arena(2);
   BlockPool greedy(&arena), modest(&arena);
   void* last = nullptr;
-  for (std::size_t i = 0; i < Arena::most_chunks; ++i) {
-    last = greedy.take(4096);
+  for (std::size_t i = 0; i < Arena::most_chunks * (Arena::chunk / 512); ++i) {
+    last = greedy.take(512);
     ASSERT_NE(last, nullptr);
     EXPECT_TRUE(greedy.owns(last));
   }
-  EXPECT_EQ(greedy.take(4096), nullptr);
-  void* const other = modest.take(4096);
+  EXPECT_EQ(greedy.take(512), nullptr);
+  void* const other = modest.take(512);
   ASSERT_NE(other, nullptr);
   EXPECT_TRUE(arena.owns(other));
   EXPECT_FALSE(greedy.owns(&greedy));
