@@ -13,8 +13,7 @@ namespace ziggurat::lua {
 /// Its chunks are not given back before its end.
 class Arena {
  public:
-  /// An odd number of lines of the cache, so that the same part of all states is not in the same
-  /// few sets of it [bytes].
+  /// An odd number of the cache's lines [bytes]: the chunks do not begin in the same few sets.
   static constexpr std::size_t chunk = 4096 + 64;
   static constexpr std::size_t most_chunks = 48;  ///< of a state; what it needs more is elsewhere
 

@@ -40,8 +40,8 @@ class BlockPool {
 
  private:
   static constexpr std::size_t step = 16;  // rooms are multiples of it [bytes]
-  // Of a block. Larger ones are few, and mostly a part of what grows: after it a pool could use
-  // their room for nothing else, malloc() can.
+  // Size of a block. Larger ones are few, and mostly of what grows: a pool would use their room
+  // for nothing else afterwards, malloc() does.
   static constexpr std::size_t most_steps = 512 / step;
   static std::size_t steps(std::size_t size) { return (size + step - 1) / step; }
   void* cut(std::size_t room);

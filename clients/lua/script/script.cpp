@@ -166,9 +166,9 @@ int Script::prepare(lua_State* state) {
 /// needs, and a process has a thousand of them.
 void Script::keep_small() {
   constexpr std::size_t calls_between = 32, part = 8;  // of what is in use, at least
-  const bool is_due = ++calls_ >= calls_between || collected_ == 0;
+  const bool may_collect = ++calls_ >= calls_between || collected_ == 0;
   const std::size_t used = state_.used_bytes();
-  if (!is_due || used <= collected_ + collected_ / part) return;
+  if (!may_collect || used <= collected_ + collected_ / part) return;
   if (lua_gc(state_.get(), LUA_GCISRUNNING, 0) == 0) return;  // the script does it itself
   lua_gc(state_.get(), LUA_GCCOLLECT, 0);
   calls_ = 0;
