@@ -63,7 +63,10 @@ class Connection:
         """Waits while the queue is full; with the last message only half a second, as a server that reads nothing
         would hold up the end of the program. Raises ConnectionLost if the server has refused or closed the connection:
         what is queued then goes nowhere."""
-        data = message.SerializeToString()
+        self.send_bytes(message.SerializeToString(), is_last)
+
+    def send_bytes(self, data: bytes, is_last: bool = False) -> None:
+        """The same of a message that is encoded."""
         while not self.transport.send(data) and not is_last:
             if self.transport.why_closed is not None:
                 self.close()
