@@ -161,7 +161,13 @@ void PeerSocket::send(Buffer& frame, std::size_t content, MessageKind kind) {
 void PeerSocket::send_bytes(Buffer& frame, std::size_t size, MessageKind kind) {
   if (is_over_) return;
   output_.send(frame, size, kind);
-  is_over_ = output_.has_failed() || output_.is_congested();
+  is_over_ = output_.is_congested() || (output_.has_failed() && !has_input());
+}
+
+/// A client that says its last words and closes its end can't be sent anything, but read.
+bool PeerSocket::has_input() const {
+  std::uint8_t first = 0;
+  return begin_ != end_ || ::recv(number(), &first, 1, MSG_PEEK | MSG_DONTWAIT) > 0;
 }
 
 void PeerSocket::send_reply() {
@@ -180,7 +186,7 @@ void PeerSocket::give_up() {
 void PeerSocket::flush() {
   if (is_over_) return;
   output_.flush();
-  is_over_ = output_.has_failed();
+  is_over_ = output_.has_failed() && !has_input();
 }
 
 }  // namespace ziggurat::network

@@ -70,6 +70,7 @@ class PeerSocket {
  private:
   void enlarge();
   void let_go();
+  bool has_input() const;
   bool take_frame(std::size_t limit, Received& received);
   bool end_message(bool goes_on, Received& received);
   void send_bytes(Buffer& frame, std::size_t size, MessageKind kind);

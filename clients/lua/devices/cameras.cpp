@@ -10,31 +10,37 @@ namespace {
 /// Places of a camera's tables in the array that fill_cameras() gets, after those of the cameras
 /// before it.
 enum Slot : int { camera_table, leds_table, directional_leds_table, tags_table, slots };
+/// Behind them all.
+enum Maker : int { led_maker, tag_maker, maker_count };
 
-void push_led(lua_State* state, const Camera::LedReading& led) {
-  lua_createtable(state, 0, 2);
-  lua_createtable(state, 0, 3);
-  set_integer(state, "red", led.color.red);
-  set_integer(state, "green", led.color.green);
-  set_integer(state, "blue", led.color.blue);
-  lua_setfield(state, -2, "color");
-  push_vector(state, led.center);
-  lua_setfield(state, -2, "center");
+/// Makers of readings, in Lua: it makes tables in a third of the time that its API takes.
+constexpr char makers[] =
+    "return function(red, green, blue, u, v)"
+    "  return {color = {red = red, green = green, blue = blue}, center = {x = u, y = v}} "
+    "end, function(payload, u, v, au, av, bu, bv, cu, cv, du, dv)"
+    "  return {payload = payload, center = {x = u, y = v},"
+    "          corners = {{x = au, y = av}, {x = bu, y = bv}, {x = cu, y = cv}, {x = du, y = dv}}} "
+    "end";
+
+void push_pixel(lua_State* state, const Camera::Pixel& pixel) {
+  lua_pushnumber(state, pixel[0]);
+  lua_pushnumber(state, pixel[1]);
 }
 
-void push_tag(lua_State* state, const Camera::TagReading& tag) {
-  lua_createtable(state, 0, 3);
+/// Pushes the arguments of the maker. @return  their number
+int push_arguments(lua_State* state, const Camera::LedReading& led) {
+  lua_pushinteger(state, led.color.red);
+  lua_pushinteger(state, led.color.green);
+  lua_pushinteger(state, led.color.blue);
+  push_pixel(state, led.center);
+  return 5;
+}
+
+int push_arguments(lua_State* state, const Camera::TagReading& tag) {
   lua_pushlstring(state, tag.payload.data(), tag.payload.size());
-  lua_setfield(state, -2, "payload");
-  push_vector(state, tag.center);
-  lua_setfield(state, -2, "center");
-  lua_createtable(state, static_cast<int>(tag.corners.size()), 0);
-  lua_Integer position = 0;
-  for (const Camera::Pixel& corner : tag.corners) {
-    push_vector(state, corner);
-    lua_rawseti(state, -2, ++position);
-  }
-  lua_setfield(state, -2, "corners");
+  push_pixel(state, tag.center);
+  for (const Camera::Pixel& corner : tag.corners) push_pixel(state, corner);
+  return 3 + 2 * static_cast<int>(tag.corners.size());
 }
 
 /// Sets what does not change of the camera's table on top.
@@ -70,7 +76,7 @@ void add_detector(lua_State* state, const char* name, int slot) {
 void make_cameras(lua_State* state, Robot& robot) {
   const int count = static_cast<int>(robot.cameras().size());
   lua_createtable(state, 0, count);
-  lua_createtable(state, slots * count, 0);
+  lua_createtable(state, slots * count + maker_count, 0);
   int first = 1;
   for (const Camera& camera : robot.cameras()) {
     lua_createtable(state, 0, 12);
@@ -85,24 +91,34 @@ void make_cameras(lua_State* state, Robot& robot) {
     set_element(state, -3, camera.id());
     first += slots;
   }
+  if (luaL_loadstring(state, makers) != LUA_OK) lua_error(state);
+  lua_call(state, 0, maker_count);
+  lua_rawseti(state, -3, first + tag_maker);
+  lua_rawseti(state, -2, first + led_maker);
 }
 
 /// Replaces the elements of the array in a slot of the array on top.
-template <typename Readings, typename Push>
-void fill_slot(lua_State* state, int slot, const Readings& readings, Push push) {
-  lua_rawgeti(state, -1, slot);
-  set_elements(state, readings, push);
-  lua_pop(state, 1);
+template <typename Readings>
+void fill_slot(lua_State* state, int slot, int maker, const Readings& readings) {
+  lua_rawgeti(state, -1, maker);
+  lua_rawgeti(state, -2, slot);
+  set_elements(state, readings, [](lua_State* to, const auto& reading) {
+    lua_pushvalue(to, -2);
+    lua_call(to, push_arguments(to, reading), 1);
+  });
+  lua_pop(state, 2);
 }
 
 void fill_cameras(lua_State* state, Robot& robot) {
   int first = 1;
+  const int first_maker = first + slots * static_cast<int>(robot.cameras().size());
+  const int led = first_maker + led_maker, tag = first_maker + tag_maker;
   for (const Camera& camera : robot.cameras()) {
-    if (camera.detects_leds()) fill_slot(state, first + leds_table, camera.leds(), push_led);
+    if (camera.detects_leds()) fill_slot(state, first + leds_table, led, camera.leds());
     if (camera.detects_directional_leds()) {
-      fill_slot(state, first + directional_leds_table, camera.directional_leds(), push_led);
+      fill_slot(state, first + directional_leds_table, led, camera.directional_leds());
     }
-    if (camera.detects_tags()) fill_slot(state, first + tags_table, camera.tags(), push_tag);
+    if (camera.detects_tags()) fill_slot(state, first + tags_table, tag, camera.tags());
     if (camera.takes_images()) {
       const Bytes image = camera.image();
       lua_rawgeti(state, -1, first + camera_table);

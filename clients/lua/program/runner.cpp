@@ -26,7 +26,7 @@ Runner::Runner(ziggurat::Session& session, const ProgramOptions& options)
     : session_(session),
       options_(options),
       folders_(options.folders, options.exceptions),
-      regions_(session.robots().size()) {
+      arena_(session.robots().size()) {
   for (ziggurat::Robot& robot : session_.robots()) seats_.push_back({&robot, nullptr});
 }
 
@@ -61,7 +61,7 @@ void Runner::start(Seat& seat) {
         ScriptOptions{script.path, session_.seed(), session_.tick(), options_.max_memory,
                       options_.max_instructions, options_.max_computing,
                       options_.trusts_scripts ? nullptr : &folders_, share_of_files(seats_.size()),
-                      regions_[static_cast<std::size_t>(&seat - seats_.data())]});
+                      &arena_});
   } catch (const std::bad_alloc&) {
     return fail(seat, "no memory for a Lua state");
   }

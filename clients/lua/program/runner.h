@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "program/options.h"
+#include "script/arena.h"
 #include "script/controller.h"
-#include "script/regions.h"
 #include "ziggurat/session.h"
 
 namespace ziggurat::lua {
@@ -45,7 +45,7 @@ class Runner {
   ziggurat::Session& session_;
   const ProgramOptions& options_;
   const Folders folders_;
-  const Regions regions_;    ///< a seat each
+  Arena arena_;              ///< for all seats
   std::vector<Seat> seats_;  ///< as the session's robots
   std::size_t failures_ = 0;
 };

@@ -1,25 +1,23 @@
 #include "script/block_pool.h"
 
-#include <new>
+#include <algorithm>
 
 namespace ziggurat::lua {
 
-void* BlockPool::take(std::size_t size) {
-  const std::size_t room = steps(size);
-  if (room > most_steps) return nullptr;
-  if (Unused* const block = unused_[room]) {
-    unused_[room] = block->next;
-    return block;
+/// A new block.
+void* BlockPool::cut(std::size_t room) {
+  if (room * step > rest_.size()) {
+    if (arena_ == nullptr || chunks_ == Arena::most_chunks) return nullptr;
+    const std::span<std::byte> chunk = arena_->take();
+    if (chunk.empty()) return nullptr;
+    ++chunks_;
+    const std::size_t left = std::min(rest_.size() / step, most_steps);
+    if (left > 0) give_back(rest_.data(), left * step);
+    rest_ = chunk;
   }
-  if (room * step > rest_.size()) return nullptr;
   void* const block = rest_.data();
   rest_ = rest_.subspan(room * step);
   return block;
-}
-
-void BlockPool::give_back(void* block, std::size_t size) {
-  Unused*& last = unused_[steps(size)];
-  last = new (block) Unused{last};
 }
 
 }  // namespace ziggurat::lua

@@ -18,8 +18,8 @@ constexpr std::size_t reserve_for_errors = std::size_t{1} << 20;
 
 }  // namespace
 
-BoundedState::BoundedState(std::size_t max_bytes, std::span<std::byte> region)
-    : budget_{0, max_bytes, BlockPool(region)}, state_(lua_newstate(&allocate, &budget_)) {
+BoundedState::BoundedState(std::size_t max_bytes, Arena* arena)
+    : budget_{0, max_bytes, BlockPool(arena)}, state_(lua_newstate(&allocate, &budget_)) {
   if (!state_) throw std::bad_alloc();
   budget_.state = state_.get();
 }
@@ -62,13 +62,27 @@ void* BoundedState::allocate(void* budget, void* block, std::size_t old_size,
 
 void* BoundedState::allocate_within(Budget& budget, void* block, std::size_t old_size,
                                     std::size_t new_size) {
-  if (block == nullptr) old_size = 0;  // old_size is the type of the new object
   if (new_size == 0) {
     if (block == nullptr) return nullptr;
     budget.pool.owns(block) ? budget.pool.give_back(block, old_size) : std::free(block);
     budget.used -= old_size;
     return nullptr;
   }
+  if (block == nullptr) {
+    old_size = 0;  // it was the type of the new object
+    if (new_size <= budget.max - std::min(budget.max, budget.used)) {
+      if (void* const taken = budget.pool.take(new_size)) {
+        budget.used += new_size;
+        return taken;
+      }
+    }
+  }
+  return change(budget, block, old_size, new_size);
+}
+
+/// @param new_size  > 0
+void* BoundedState::change(Budget& budget, void* block, std::size_t old_size,
+                           std::size_t new_size) {
   // Lua requires that shrinking succeeds.
   const std::size_t most = budget.max + (must_scripts_end() ? reserve_for_errors : 0);
   if (new_size > old_size && new_size - old_size > most - std::min(most, budget.used)) {

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <lua.hpp>
 #include <memory>
-#include <span>
 
+#include "script/arena.h"
 #include "script/block_pool.h"
 
 namespace ziggurat::lua {
@@ -14,9 +14,9 @@ namespace ziggurat::lua {
 /// other scripts are not affected.
 class BoundedState {
  public:
-  /// @param region  where its blocks are as long as they have room; outlives the state
+  /// @param arena  where its small blocks are as long as there is room; outlives the state
   /// @throws std::bad_alloc if an empty state does not fit
-  explicit BoundedState(std::size_t max_bytes, std::span<std::byte> region = {});
+  explicit BoundedState(std::size_t max_bytes, Arena* arena = nullptr);
   BoundedState(const BoundedState&) = delete;
   BoundedState& operator=(const BoundedState&) = delete;
 
@@ -44,6 +44,7 @@ class BoundedState {
   static void* allocate(void* budget, void* block, std::size_t old_size, std::size_t new_size);
   static void* allocate_within(Budget& budget, void* block, std::size_t old_size,
                                std::size_t new_size);
+  static void* change(Budget& budget, void* block, std::size_t old_size, std::size_t new_size);
 
   Budget budget_;
   std::unique_ptr<lua_State, Close> state_;

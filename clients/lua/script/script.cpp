@@ -14,6 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Growth of a state between two collections, in per cent: less while it is made, so that it takes
+// no memory that it never needs again; then that of Lua.
+constexpr int pause_of_build = 115, pause_of_scripts = 200;
+
 constexpr int handler = 1;  // stack index of keep_traceback during every call
 
 // In messages the path is relative to the working directory if the script is below it: Lua shortens
@@ -60,7 +64,7 @@ Script::Script(std::string name, const ScriptOptions& options)
       most_files_(options.most_files),
       script_(shown(options.script).string()),
       folder_(shown(options.script).parent_path().string()),
-      state_(options.max_memory, options.region) {
+      state_(options.max_memory, options.arena) {
   if (folder_.empty()) folder_ = ".";
 }
 
@@ -131,6 +135,7 @@ void Script::push_protected(int (*function)(lua_State*)) {
 
 int Script::build(lua_State* state) {
   auto& self = *static_cast<Script*>(lua_touserdata(state, 1));
+  lua_gc(state, LUA_GCSETPAUSE, pause_of_build);
   prepare_error_messages(state);
   open_libraries(state, {self.log_, self.random_, self.folder_, self.folders_, self.most_files_});
   self.set_up(state);
@@ -141,11 +146,13 @@ int Script::load(lua_State* state) {
   auto& self = *static_cast<Script*>(lua_touserdata(state, 1));
   // Text only: precompiled chunks can crash the interpreter.
   if (luaL_loadfilex(state, self.script_.c_str(), "t") != LUA_OK) return lua_error(state);
+  lua_gc(state, LUA_GCSETPAUSE, pause_of_scripts);
   return 1;
 }
 
 int Script::prepare(lua_State* state) {
   auto& self = *static_cast<Script*>(lua_touserdata(state, 1));
+  self.keep_small();
   self.refresh(state);
   if (self.wanted_.is_required) {
     lua_getglobal(state, self.wanted_.name);
@@ -153,6 +160,19 @@ int Script::prepare(lua_State* state) {
     get_global_if_any(state, self.wanted_.name);
   }
   return 1;
+}
+
+/// Collects all garbage when it is worth it. By itself Lua lets a state grow to twice what it
+/// needs, and a process has a thousand of them.
+void Script::keep_small() {
+  constexpr std::size_t calls_between = 32, part = 8;  // of what is in use, at least
+  const bool may_collect = ++calls_ >= calls_between || collected_ == 0;
+  const std::size_t used = state_.used_bytes();
+  if (!may_collect || used <= collected_ + collected_ / part) return;
+  if (lua_gc(state_.get(), LUA_GCISRUNNING, 0) == 0) return;  // the script does it itself
+  lua_gc(state_.get(), LUA_GCCOLLECT, 0);
+  calls_ = 0;
+  collected_ = state_.used_bytes();
 }
 
 std::string Script::describe_error(const std::string& moment) {

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 
+#include "script/arena.h"
 #include "script/environment.h"
 #include "script/folders.h"
 #include "script/interrupt.h"
@@ -28,9 +28,8 @@ struct ScriptOptions {
   /// all of Lua.
   const Folders* folders = nullptr;
   std::size_t most_files =
-      most_open_files;  ///< that a script that is not trusted may have open at once
-  std::span<std::byte>
-      region{};  ///< for the script's Lua state; outlives it. Empty: it has none of its own
+      most_open_files;     ///< that a script that is not trusted may have open at once
+  Arena* arena = nullptr;  ///< for the script's Lua state; outlives it. Null: it has malloc()
   std::uint64_t max_in_library =
       5;  ///< processor time of a function of Lua's library in a call [s]
 };
@@ -87,6 +86,7 @@ class Script {
   static int build(lua_State* state);
   static int load(lua_State* state);
   static int prepare(lua_State* state);
+  void keep_small();
 
   Failure call_prepared(const std::string& moment, int arguments, int results);
   void push_protected(int (*function)(lua_State*));
@@ -102,10 +102,12 @@ class Script {
   std::uint64_t max_in_library_;
   const Folders* folders_;
   std::size_t most_files_;
-  std::string script_;  // path for messages
-  std::string folder_;  // of the script
-  Wanted wanted_;       // by prepare()
-  BoundedState state_;  // last: its finalizers may use the others
+  std::string script_;         // path for messages
+  std::string folder_;         // of the script
+  Wanted wanted_;              // by prepare()
+  std::size_t calls_ = 0;      // since the last collection by keep_small()
+  std::size_t collected_ = 0;  // memory in use after that [bytes]
+  BoundedState state_;         // last: its finalizers may use the others
 };
 
 }  // namespace ziggurat::lua

@@ -34,8 +34,6 @@ constexpr Leavable search{"string", "gmatch"};
 sigjmp_buf way_out;
 pthread_t thread_of_call;
 volatile sig_atomic_t has_way_out = 0;
-volatile sig_atomic_t is_allocating = 0;
-volatile sig_atomic_t is_leaving = 0;  // once the memory is allocated
 const Leavable* volatile left = &search;
 
 // Upvalue: its Leavable. In one frame, so that messages name it as they do in Lua.
@@ -60,12 +58,6 @@ const Leavable* find_marked(lua_State* state) {
   return is_search ? &search : nullptr;
 }
 
-[[noreturn]] void jump() {
-  has_way_out = 0;
-  is_leaving = 0;
-  ::siglongjmp(way_out, 1);
-}
-
 // The handler of the signal was left, so that it is still blocked.
 void unblock_signal() {
   sigset_t timer;
@@ -75,6 +67,15 @@ void unblock_signal() {
 }
 
 }  // namespace
+
+volatile sig_atomic_t is_allocating = 0;
+volatile sig_atomic_t is_leaving = 0;
+
+void jump_out() noexcept {
+  has_way_out = 0;
+  is_leaving = 0;
+  ::siglongjmp(way_out, 1);
+}
 
 std::optional<int> call_leavably(lua_State* state, int arguments, int results, int handler) {
   // Without the mask of signals: to save it is a system call, at each step of each robot.
@@ -108,20 +109,13 @@ void leave_stuck_call(lua_State* state) noexcept {
   const Leavable* const function = find_marked(state);
   if (function == nullptr) return;
   left = function;
-  if (is_allocating == 0) jump();
+  if (is_allocating == 0) jump_out();
   is_leaving = 1;
 }
 
 std::string left_function() {
   const std::string_view table = left->table;
   return (table == "_G" ? "" : std::string(table) + ".") + left->name;
-}
-
-void begin_allocation() noexcept { is_allocating = 1; }
-
-void end_allocation() noexcept {
-  is_allocating = 0;
-  if (is_leaving != 0) jump();
 }
 
 }  // namespace ziggurat::lua

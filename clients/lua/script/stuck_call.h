@@ -5,6 +5,8 @@
 // and is never used or freed again; other scripts of the process go on. It belongs to the process,
 // as signals do.
 
+#include <signal.h>
+
 #include <lua.hpp>
 #include <optional>
 #include <string>
@@ -29,8 +31,17 @@ void leave_stuck_call(lua_State* state) noexcept;
 /// The function that was left last, `string.find`.
 std::string left_function();
 
-/// Lua's memory is not left while it changes.
-void begin_allocation() noexcept;
-void end_allocation() noexcept;
+/// Lua's memory is not left while it changes: begin_allocation() and end_allocation() are around
+/// each change. Read and written by the thread that runs scripts, and by its signal handler.
+extern volatile sig_atomic_t is_allocating;
+extern volatile sig_atomic_t is_leaving;  ///< once the memory is allocated
+[[noreturn]] void jump_out() noexcept;
+
+inline void begin_allocation() noexcept { is_allocating = 1; }
+inline void end_allocation() noexcept {
+  is_allocating = 0;
+  if (is_leaving != 0) [[unlikely]]
+    jump_out();
+}
 
 }  // namespace ziggurat::lua

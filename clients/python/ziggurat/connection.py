@@ -11,7 +11,7 @@ from . import protocol_pb2 as v1
 from .curve import Curve
 from .errors import ConnectionLost, Malformed, ProtocolError, Refused, Timeout, printable
 from .find_server import find_server
-from .transport import LINGER, SLICE, Transport, has_unknown_host
+from .transport import LINGER, SLICE, has_unknown_host, make_transport
 
 VERSION = v1.Version(major=1, minor=4)
 
@@ -44,7 +44,7 @@ class Connection:
         self.endpoint = endpoint or find_server()
         self._has_ended = has_ended
         self.longest_silence: Optional[float] = None  # [s] of wall time; longer, and the connection is lost
-        self.transport = Transport(self.endpoint, curve)
+        self.transport = make_transport(self.endpoint, curve)
 
     @property
     def is_accepted(self) -> bool:
@@ -63,7 +63,10 @@ class Connection:
         """Waits while the queue is full; with the last message only half a second, as a server that reads nothing
         would hold up the end of the program. Raises ConnectionLost if the server has refused or closed the connection:
         what is queued then goes nowhere."""
-        data = message.SerializeToString()
+        self.send_bytes(message.SerializeToString(), is_last)
+
+    def send_bytes(self, data: bytes, is_last: bool = False) -> None:
+        """The same of a message that is encoded."""
         while not self.transport.send(data) and not is_last:
             if self.transport.why_closed is not None:
                 self.close()

@@ -17,9 +17,7 @@ class Exchange:
 
     def __init__(self) -> None:
         self.seen = v1.Observation()  # the last one
-        self.heard: Dict[int, List[bytes]] = {}  # by radio
-        self.packets: Dict[int, List[Any]] = {}  # by robot
-        self.begins: Dict[str, List[int]] = {}  # by detector: each camera's first reading
+        self._sorted: Dict[str, Any] = {}  # what it has, by device: sorted when it is asked for
         # By field of Command, a value for each device.
         self.values: Dict[str, List[Any]] = defaultdict(list)
         self.data = bytearray()  # of all range-and-bearing actuators
@@ -81,15 +79,32 @@ class Exchange:
 
     def observe(self, observation: v1.Observation) -> None:
         self.seen = observation
-        self.heard = {}
-        for message in observation.radio_messages:
-            self.heard.setdefault(message.radio, []).append(message.payload)
-        self.packets = {}
-        for packet in observation.range_and_bearing:
-            self.packets.setdefault(packet.robot, []).append(packet)
-        for kind in ("led", "directional_led", "tag"):
-            counts = getattr(observation, kind + "_counts")
-            self.begins[kind] = [0, *accumulate(counts)]
+        if self._sorted:
+            self._sorted = {}
+
+    @property
+    def heard(self) -> Dict[int, List[bytes]]:
+        """By radio."""
+        if "heard" not in self._sorted:
+            heard = self._sorted["heard"] = {}
+            for message in self.seen.radio_messages:
+                heard.setdefault(message.radio, []).append(message.payload)
+        return self._sorted["heard"]
+
+    @property
+    def packets(self) -> Dict[int, List[Any]]:
+        """By robot."""
+        if "packets" not in self._sorted:
+            packets = self._sorted["packets"] = {}
+            for packet in self.seen.range_and_bearing:
+                packets.setdefault(packet.robot, []).append(packet)
+        return self._sorted["packets"]
+
+    def begins(self, kind: str) -> List[int]:
+        """Each camera's first reading of this detector, and the end."""
+        if kind not in self._sorted:
+            self._sorted[kind] = [0, *accumulate(getattr(self.seen, kind + "_counts"))]
+        return self._sorted[kind]
 
     def command(self, tick: int) -> v1.ClientMessage:
         """A command with the values that were set after the last one."""

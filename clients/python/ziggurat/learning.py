@@ -41,15 +41,16 @@ def motor_count(robot: Robot) -> int:
 
 def motors(robot: Robot, action: Sequence[float]) -> None:
     """A target for each motor of the robot, in order, then the speeds of its wheels: left, right [m/s]."""
-    if len(action) != motor_count(robot):
+    driven = [joint for joint in robot.joints if joint.actuator_mode is not None]
+    wheels = robot.wheels if robot.wheels is not None and robot.wheels.drives else None
+    motor_values, wheel_values = action[:len(driven)], action[len(driven):]
+    if len(motor_values) < len(driven) or len(wheel_values) != (2 if wheels else 0):
         raise ValueError(f"{robot.id}: an action has {motor_count(robot)} values, not {len(action)}: a target for each "
                          "motor, then the speeds of the wheels")
-    values = iter(action)
-    for joint in robot.joints:
-        if joint.actuator_mode is not None:
-            joint.target = float(next(values))
-    if robot.wheels is not None and robot.wheels.drives:
-        robot.wheels.set_velocity(float(next(values)), float(next(values)))
+    for joint, value in zip(driven, motor_values):
+        joint.target = float(value)
+    if wheels:
+        wheels.set_velocity(*wheel_values)
 
 
 def tell_of_nothing(observation: Any, robot: Robot) -> None:

@@ -350,11 +350,11 @@ class Session:
         message = self._exchange.command(self._owes)
         if self._epoch is not None:
             message.command.epoch = self._epoch
-        size = message.ByteSize()
-        if 0 < self.welcome.max_message_bytes < size:
-            raise ValueError(f"the command has {size} bytes; the server accepts at most "
+        data = message.SerializeToString()
+        if 0 < self.welcome.max_message_bytes < len(data):
+            raise ValueError(f"the command has {len(data)} bytes; the server accepts at most "
                              f"{self.welcome.max_message_bytes}")
-        self._connection.send(message)
+        self._connection.send_bytes(data)
         self._answered = message
         self._exchange.sent()
         self._owes = None

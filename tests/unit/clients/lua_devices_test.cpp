@@ -43,6 +43,41 @@ TEST_F(Devices, HaveTheFunctionsAndReadingsThatAreEnabled) {
   )lua"));
 }
 
+// ---- memory -------------------------------------------------------------------------------------
+
+TEST_F(Devices, ATickOfSensorsWithFixedReadingsMakesNoGarbage) {
+  add_driving(robot_);
+  robot_.set_positioning(true);
+  robot_.set_battery(true);
+  robot_.add_proximity_sensors();
+  robot_.add_proximity_sensors()->set_angle(0.5);
+  robot_.add_imus()->set_id("imu");
+  robot_.add_contact_sensors()->set_id("skin");
+  v1::JointDescription& joint = *robot_.add_joint_sensors();
+  joint.set_id("arm");
+  joint.set_mode(v1::JointDescription::POSITION);
+  EXPECT_RUNS(start(R"lua(
+    function init() collectgarbage() collectgarbage("stop") end
+    local count, least = 0, nil
+    function step()
+      robot.wheels.set_velocity(robot.wheels.velocity_left, 3)
+      count = count + robot.proximity[1] + robot.joints.arm.encoder + robot.positioning.position.x
+      local now = collectgarbage("count")
+      assert(least == nil or now == least, now)
+      least = now
+    end
+  )lua"));
+  assign(*seen().mutable_joint_readings(), {1.5});
+  assign(*seen().mutable_proximity(), {0.25, 0.5});
+  assign(*seen().mutable_positioning(), {1, 2, 3, 1, 0, 0, 0});
+  assign(*seen().mutable_batteries(), {1, 2});
+  assign(*seen().mutable_imus(), {1, 2, 3, 4, 5, 6});
+  assign(*seen().mutable_contact_sensors(), {1, 2, 3, 4, 5});
+  assign(*seen().mutable_wheels(), {1, 2, 3, 4});
+  assign(*seen().mutable_turret_rotations(), {0.5});
+  for (int tick = 0; tick < 100; ++tick) EXPECT_RUNS(step());
+}
+
 // ---- LEDs ---------------------------------------------------------------------------------------
 
 TEST_F(Devices, AJointHasASensorOfItsPositionAndOneOfItsVelocity) {

@@ -88,6 +88,23 @@ TEST_F(PeerSocketTest, OtherProtocolsEndTheConnection) {
   }
 }
 
+TEST_F(PeerSocketTest, TheLastMessageIsReadThoughTheClientHasClosed) {
+  open();
+  const std::string last = frame(0, "last words");
+  ASSERT_EQ(::send(client.number(), last.data(), last.size(), 0),
+            static_cast<ssize_t>(last.size()));
+  client = {};
+  tell(10, false, 'x');
+  tell(10, true, 'y');
+  EXPECT_FALSE(peer->is_over());
+  peer->read();
+  ASSERT_TRUE(next());
+  EXPECT_EQ(received.bytes, "last words");
+  EXPECT_FALSE(next());
+  tell(10, false, 'z');
+  EXPECT_TRUE(peer->is_over());
+}
+
 TEST_F(PeerSocketTest, MessagesAreCutFromAnyPieces) {
   const std::string all = greeting() + ready("DEALER") + frame(0, "one") + frame(1, "{two") +
                           frame(0, "three") + frame(4, std::string("\x04PING\0\0x", 8)) +

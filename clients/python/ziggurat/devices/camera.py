@@ -53,7 +53,7 @@ class Camera(Device):
     def _found(self, kind: str, place: int) -> range:
         if place < 0:
             raise AttributeError(f"camera {self.id!r} has no {kind}_detector")
-        begins = self._exchange.begins.get(kind, [0])
+        begins = self._exchange.begins(kind)
         return range(begins[place], begins[place + 1]) if place + 1 < len(begins) else range(0)
 
     def _read_leds(self, kind: str, place: int) -> List[LedReading]:

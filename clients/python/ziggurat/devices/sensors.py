@@ -122,7 +122,8 @@ class Sensors:
             for sensor in given.proximity_sensors)
         self._keep("imus", [Imu(exchange, imu) for imu in given.imus])
         self._keep("contact_sensors", [ContactSensor(exchange, sensor) for sensor in given.contact_sensors])
-        self._proximity = tuple(exchange.place("proximity") for _ in self.proximity_sensors)
+        places = [exchange.place("proximity") for _ in self.proximity_sensors]  # one after the other
+        self._proximity = slice(places[0], places[-1] + 1) if places else slice(0, 0)
 
     def _keep(self, name: str, devices: Sequence[Any]) -> None:
         """For the property of this name, a Listed."""
@@ -132,8 +133,7 @@ class Sensors:
     @property
     def proximity(self) -> Sequence[float]:
         """One reading per proximity sensor: 0 (nothing) … 1 (contact)."""
-        readings = self._exchange.seen.proximity
-        return [readings[place] if readings else 0.0 for place in self._proximity]
+        return self._exchange.seen.proximity[self._proximity] or [0.0] * len(self.proximity_sensors)
 
     @property
     def sensed(self) -> List[float]:

@@ -1,5 +1,6 @@
 // Devices' functions check what they are given, and can be kept.
 
+#include <algorithm>
 #include <limits>
 
 #include "script_fixture.h"
@@ -102,6 +103,22 @@ TEST_F(Arguments, WritingReadingsAllocatesNothing) {
     ASSERT_EQ(controller().step(tick), std::nullopt);
   }
   EXPECT_EQ(controller().used_memory(), before);
+}
+
+TEST_F(Arguments, AStateWithALittleGarbageStaysSmallUnlessItsScriptCollects) {
+  const auto most_of = [&](const std::string& first) {
+    EXPECT_EQ(start(first + " function step() local t = {1, 2, 3} t.x = t end"), std::nullopt);
+    EXPECT_EQ(controller().step(1), std::nullopt);
+    const std::size_t before = controller().used_memory();
+    std::size_t most = 0;
+    for (int tick = 2; tick < 2000; ++tick) {
+      EXPECT_EQ(controller().step(tick), std::nullopt);
+      most = std::max(most, controller().used_memory());
+    }
+    return static_cast<double>(most) / static_cast<double>(before);
+  };
+  EXPECT_LT(most_of(""), 1.4);
+  EXPECT_GT(most_of("collectgarbage('stop')"), 3);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The memory of Lua states: blocks side by side in a region, the others by malloc(), all of them
+// The memory of Lua states: blocks side by side in an arena, the others by malloc(), all of them
 // counted.
 
 #include "script/memory.h"
@@ -9,44 +9,54 @@
 #include <string>
 #include <vector>
 
+#include "script/arena.h"
 #include "script/block_pool.h"
-#include "script/regions.h"
 
 namespace ziggurat::lua {
 namespace {
 
-struct alignas(16) Region {
-  std::byte bytes[8 << 10];
-};
-
 TEST(BlockPool, BlocksStandSideBySideAndAreTakenAgain) {
-  Region region;
-  BlockPool pool(region.bytes);
-  void* const first = pool.take(20);
-  void* const second = pool.take(1);
-  EXPECT_EQ(first, region.bytes);
-  EXPECT_EQ(second, region.bytes + 32);
+  Arena arena(1);
+  BlockPool pool(&arena);
+  auto* const first = static_cast<std::byte*>(pool.take(20));
+  EXPECT_EQ(pool.take(1), first + 32);
   pool.give_back(first, 20);
-  EXPECT_EQ(pool.take(16), region.bytes + 48) << "a block of another size is no use";
+  EXPECT_EQ(pool.take(16), first + 48) << "a block of another size is no use";
   EXPECT_EQ(pool.take(32), first);
+  EXPECT_EQ(pool.take(513), nullptr) << "too large for it";
+  for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(pool.take(512), first + 64 + 512 * i);
+  EXPECT_EQ(pool.take(500), first + 64 + 512 * 7) << "the last of the chunk";
+  EXPECT_EQ(pool.take(512), first + Arena::chunk) << "in the next chunk";
 }
 
-TEST(BlockPool, HasNoMoreThanItsMemory) {
-  Region region;
-  BlockPool pool(region.bytes);
-  EXPECT_EQ(pool.take(4097), nullptr) << "too large for it";
-  EXPECT_NE(pool.take(4096), nullptr);
-  EXPECT_NE(pool.take(4095), nullptr);
-  EXPECT_EQ(pool.take(1), nullptr);
-  EXPECT_TRUE(pool.owns(region.bytes));
-  EXPECT_TRUE(pool.owns(region.bytes + sizeof region - 1));
-  EXPECT_FALSE(pool.owns(region.bytes + sizeof region));
-  EXPECT_FALSE(pool.owns(&pool));
-  EXPECT_FALSE(pool.owns(nullptr));
+TEST(BlockPool, WhatIsLeftOfAChunkIsABlock) {
+  Arena arena(1);
+  BlockPool pool(&arena);
+  auto* const first = static_cast<std::byte*>(pool.take(480));
+  for (int i = 0; i < 7; ++i) pool.take(512);
+  EXPECT_EQ(pool.take(512), first + Arena::chunk);
+  EXPECT_EQ(pool.take(96), first + 480 + 7 * 512);
+}
+
+TEST(BlockPool, HasNoMoreThanItsPartOfTheArena) {
+  Arena arena(2);
+  BlockPool greedy(&arena), modest(&arena);
+  void* last = nullptr;
+  for (std::size_t i = 0; i < Arena::most_chunks * (Arena::chunk / 512); ++i) {
+    last = greedy.take(512);
+    ASSERT_NE(last, nullptr);
+    EXPECT_TRUE(greedy.owns(last));
+  }
+  EXPECT_EQ(greedy.take(512), nullptr);
+  void* const other = modest.take(512);
+  ASSERT_NE(other, nullptr);
+  EXPECT_TRUE(arena.owns(other));
+  EXPECT_FALSE(greedy.owns(&greedy));
+  EXPECT_FALSE(greedy.owns(nullptr));
 }
 
 TEST(BlockPool, WithoutMemoryHasNoBlock) {
-  BlockPool pool({});
+  BlockPool pool(nullptr);
   EXPECT_EQ(pool.take(1), nullptr);
   EXPECT_FALSE(pool.owns(nullptr));
   EXPECT_FALSE(pool.owns(&pool));
@@ -69,32 +79,34 @@ std::string run(const BoundedState& state) {
   return lua_tostring(state.get(), -1);
 }
 
-TEST(BoundedState, ARegionChangesNoResult) {
-  Region region;
-  const BoundedState with(4 << 20, region.bytes), without(4 << 20);
+TEST(BoundedState, AnArenaChangesNoResult) {
+  Arena arena(1);
+  const BoundedState with(4 << 20, &arena), without(4 << 20);
   const std::string result = run(with);
   EXPECT_EQ(result, run(without));
   EXPECT_EQ(result.find_first_not_of("0123456789"), std::string::npos) << result;
 }
 
-TEST(BoundedState, BlocksInARegionAreCounted) {
-  const Regions regions(1);
-  const BoundedState with(4 << 20, regions[0]), without(4 << 20);
+TEST(BoundedState, BlocksInAnArenaAreCounted) {
+  Arena arena(2);
+  const BoundedState with(4 << 20, &arena), without(4 << 20);
   luaL_openlibs(with.get());
   luaL_openlibs(without.get());
   EXPECT_EQ(with.used_bytes(), without.used_bytes());
-  EXPECT_THROW(BoundedState(1 << 10, Regions(1)[0]), std::bad_alloc);
+  EXPECT_THROW(BoundedState(1 << 10, &arena), std::bad_alloc);
 }
 
-TEST(Regions, DoNotOverlap) {
-  const Regions regions(3);
-  for (std::size_t i = 0; i < 3; ++i) {
-    ASSERT_EQ(regions[i].size(), Regions::size);
-    std::memset(regions[i].data(), static_cast<int>(i), Regions::size);
+TEST(Arena, ChunksDoNotOverlap) {
+  Arena arena(1);
+  std::vector<std::span<std::byte>> chunks;
+  for (auto chunk = arena.take(); !chunk.empty(); chunk = arena.take()) {
+    std::memset(chunk.data(), static_cast<int>(chunks.size() % 256), chunk.size());
+    chunks.push_back(chunk);
   }
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(regions[i].front(), static_cast<std::byte>(i));
-    EXPECT_EQ(regions[i].back(), static_cast<std::byte>(i));
+  EXPECT_GE(chunks.size(), Arena::most_chunks);
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    EXPECT_EQ(chunks[i].front(), static_cast<std::byte>(i % 256));
+    EXPECT_EQ(chunks[i].back(), static_cast<std::byte>(i % 256));
   }
 }
 
