@@ -14,7 +14,6 @@
 #include <zmq.hpp>
 
 #include "endpoint.h"
-#include "local_transport.h"
 #include "ziggurat/error.h"
 
 namespace ziggurat {
@@ -240,9 +239,6 @@ void ZeroMq::take_event(std::uint16_t event, std::uint32_t value) {
 
 std::unique_ptr<Transport> make_transport(const SessionOptions& options) {
   check_endpoint(options.endpoint);
-  const bool has_keys = !options.server_key.empty() || !options.curve_secret.empty();
-  if (options.endpoint.starts_with("ipc://") && !has_keys)
-    return make_local_transport(options.endpoint, keys_are_missing);
   return std::make_unique<ZeroMq>(options);
 }
 

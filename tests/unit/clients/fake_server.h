@@ -6,14 +6,12 @@
 
 #include <array>
 #include <chrono>
-#include <cstdlib>
 #include <functional>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "temporary_folder.h"
 #include "waiting.h"
 #include "ziggurat/error.h"
 #include "ziggurat/session.h"
@@ -25,9 +23,7 @@ namespace ziggurat {
 class FakeServer {
  public:
   explicit FakeServer(std::function<void(FakeServer&)> script) : context_(zmq_ctx_new()) {
-    // Test client/local: for the transport that needs no ZeroMQ.
-    const bool is_local = std::getenv("ZIGGURAT_TEST_LOCAL") != nullptr;
-    listen(is_local ? "ipc://" + (folder_ / "socket").string() : "tcp://127.0.0.1:*");
+    listen("tcp://127.0.0.1:*");
     std::array<char, 100> address{};
     std::size_t size = address.size();
     zmq_getsockopt(router_, ZMQ_LAST_ENDPOINT, address.data(), &size);
@@ -131,7 +127,6 @@ class FakeServer {
     EXPECT_TRUE(comes_true([&] { return zmq_bind(router_, address.c_str()) == 0; }));
   }
 
-  TemporaryFolder folder_;
   void* context_;
   void* router_ = nullptr;
   std::string peer_;
