@@ -11,7 +11,7 @@ from . import protocol_pb2 as v1
 from .curve import Curve
 from .errors import ConnectionLost, Malformed, ProtocolError, Refused, Timeout, printable
 from .find_server import find_server
-from .transport import LINGER, SLICE, has_unknown_host, make_transport
+from .transport import LINGER, SLICE, Transport, has_unknown_host
 
 VERSION = v1.Version(major=1, minor=4)
 
@@ -44,7 +44,7 @@ class Connection:
         self.endpoint = endpoint or find_server()
         self._has_ended = has_ended
         self.longest_silence: Optional[float] = None  # [s] of wall time; longer, and the connection is lost
-        self.transport = make_transport(self.endpoint, curve)
+        self.transport = Transport(self.endpoint, curve)
 
     @property
     def is_accepted(self) -> bool:

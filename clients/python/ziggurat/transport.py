@@ -1,18 +1,18 @@
-"""How a client's messages go to the server and back: a DEALER of ZeroMQ, or without it on this machine."""
+"""How a client's messages go to the server and back: a DEALER of ZeroMQ."""
 
 from __future__ import annotations
 
 import re
 import socket
-from typing import Optional, Union
+from typing import Optional
 
 import zmq
 import zmq.utils.monitor
 
 from .curve import Curve
-from .local import SLICE, LocalTransport
 
-# Wall time [s].
+# Wall times [s].
+SLICE = 0.5  # of a wait
 LINGER = 1.0  # time to send the last messages when a session is closed
 
 LONGEST_MESSAGE = (1 << 30) + (1 << 20)  # of a server: an Observation of 1 GiB and what is around it [bytes]
@@ -44,13 +44,6 @@ def has_unknown_host(endpoint: str) -> bool:
     except (OSError, UnicodeError):
         return True
     return False
-
-
-def make_transport(endpoint: str, curve: Optional[Curve]) -> Union["Transport", LocalTransport]:
-    """Without ZeroMQ where it is not needed: its thread would take part in every tick."""
-    if endpoint.startswith("ipc://") and curve is None:
-        return LocalTransport(endpoint, LONGEST_MESSAGE, KEYS_ARE_MISSING)
-    return Transport(endpoint, curve)
 
 
 class Transport:

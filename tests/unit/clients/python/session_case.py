@@ -11,10 +11,8 @@ from fake_server import HANG, FakeServer, equipped, welcome
 class SessionCase(unittest.TestCase):
     """`self.play(server, client)` runs the client in this thread beside the server's part."""
 
-    endpoint = "tcp://127.0.0.1:*"  # of the server
-
     def setUp(self):
-        self.server = FakeServer(endpoint=self.endpoint)
+        self.server = FakeServer()
         self.addCleanup(self.server.close)
 
     def play(self, part, client):
