@@ -94,14 +94,14 @@ TEST_F(PeerSocketTest, TheLastMessageIsReadThoughTheClientHasClosed) {
   ASSERT_EQ(::send(client.number(), last.data(), last.size(), 0),
             static_cast<ssize_t>(last.size()));
   client = {};
-  tell(10, false, 'x');
-  tell(10, true, 'y');
+  tell(10, MessageKind::other, 'x');
+  tell(10, MessageKind::observation, 'y');
   EXPECT_FALSE(peer->is_over());
   peer->read();
   ASSERT_TRUE(next());
   EXPECT_EQ(received.bytes, "last words");
   EXPECT_FALSE(next());
-  tell(10, false, 'z');
+  tell(10, MessageKind::other, 'z');
   EXPECT_TRUE(peer->is_over());
 }
 
