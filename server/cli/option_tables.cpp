@@ -56,6 +56,8 @@ po::options_description world_options() {
       ("clock", text("nominal|beta50"), clock_help)  //
       ("real-time", po::value<std::string>()->implicit_value("1")->value_name("FACTOR"),
        "pace to the wall clock, FACTOR times as fast (default 1)")  //
+      ("threads", text("N"),
+       "N threads share the physics, with the same results for any number; default 1")  //
       ("endpoint", texts("URL"),
        "listen here too: tcp://127.0.0.1:5770, tcp://127.0.0.1:* or "
        "ipc:///short/path; may be repeated")  //

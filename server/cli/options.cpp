@@ -243,6 +243,14 @@ Arguments without_secrets(const Arguments& arguments) {
   return kept;
 }
 
+unsigned to_threads(const std::string& text) {
+  constexpr std::uint64_t most = 256;
+  const std::uint64_t threads = text::to_integer("--threads", text);
+  if (threads == 0 || threads > most)
+    throw text::UsageError(fmt::format("--threads is {}; it must be from 1 to {}", threads, most));
+  return static_cast<unsigned>(threads);
+}
+
 }  // namespace
 
 void check_time(const char* option, double seconds) {
@@ -269,6 +277,7 @@ run::Options parse_options(const Arguments& arguments, const po::options_descrip
   if (values.has("real-time")) {
     options.real_time = to_factor(values.text("real-time"));
   }
+  if (values.has("threads")) options.threads = to_threads(values.text("threads"));
   options.strict = values.has("strict");
   options.hil = values.has("hil");
   if (values.has("gate")) options.gate = reports::parse_gate(values.text("gate"));

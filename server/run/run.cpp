@@ -145,6 +145,7 @@ std::unique_ptr<supervision::World> Run::load_world() {
     const auto status = loading.status();
     if (status.is_done) {
       auto world = loading.take();
+      world->simulation.set_threads(options_.threads);
       fork_ ? fork_->prepare(*world) : check_outputs(options_, world->scene, files_.names());
       if (service_ == Service::serve)
         tell_how_to_connect(options_, server_.endpoints().front(), *world, console_);

@@ -122,6 +122,7 @@ void Colliders::add(const Body& body, const scene::Entity& entity, const dynamic
   }
   make_room(all, made.size());
   make_room(groups, made.size());
+  follow_anew();
   for (Collider& collider : made) {  // only Bullet allocates, which does not throw
     set_pose(collider, tree);
     // Static links have a box each, which is tighter: they never leave it.
@@ -181,6 +182,7 @@ std::span<ColliderGroup> Colliders::groups_of(std::size_t entity) {
 }
 
 void Colliders::remove(std::size_t entity) {
+  follow_anew();
   insert_new_groups();
   for (ColliderGroup& group : groups_of(entity)) {
     if (!group.proxy) continue;
@@ -195,6 +197,7 @@ void Colliders::remove(std::size_t entity) {
 }
 
 void Colliders::reset_poses(std::size_t entity, const dynamics::Tree& tree) {
+  follow_anew();
   insert_new_groups();
   for (ColliderGroup& group : groups_of(entity)) {
     if (!group.proxy) continue;
@@ -217,7 +220,8 @@ void Colliders::set_pose(Collider& collider, const dynamics::Tree& tree) const {
 }
 
 btTransform Colliders::pose(const Collider& collider, const dynamics::System& system) const {
-  return transform_of(system.trees[collider.entity], collider.part) * collider.in_part;
+  const btTransform part = transform_of(system.trees[collider.entity], collider.part);
+  return collider.is_centred ? part : part * collider.in_part;
 }
 
 /// Updates a group's box in the broad phase when it is too small or much too large. Bullet's boxes
@@ -242,20 +246,33 @@ void Colliders::update_poses(const dynamics::System& system, double time_step) {
   for (std::size_t i = inserted_; i < groups.size(); ++i)
     update_poses(groups[i], system, time_step);  // with boxes that last
   insert_new_groups();
-  const double least = speculative_margin(*this, time_step);
   has_woken = false;
   updated_groups_.clear();
   predicted.clear();
   fast_entities.clear();
-  for (ColliderGroup& group : groups) {
-    if (!group.proxy) continue;
-    group.was_static = group.is_static;
-    group.is_static = !group.moves || system.is_asleep(static_cast<int>(group.entity));
-    has_woken |= group.was_static && !group.is_static;
-    if (group.moves ? group.is_unchanged() : all[group.first].reach == least) continue;
-    if (group.moves) updated_groups_.push_back(static_cast<std::size_t>(&group - groups.data()));
-    update_box(group, update_poses(group, system, time_step), true);
+  const double margin = speculative_margin(*this, time_step);
+  if (sleep_changes_ != system.sleep_changes() || margin_ != margin) follow_anew();
+  sleep_changes_ = system.sleep_changes();
+  margin_ = margin;
+  if (passes_left_ == 0) {
+    for (const std::size_t index : followed_) follow(groups[index], system, time_step);
+    return;
   }
+  --passes_left_;
+  for (ColliderGroup& group : groups) {
+    if (group.proxy) follow(group, system, time_step);
+  }
+  followed_ = updated_groups_;
+}
+
+/// Updates a group, unless it stood in the substep before and still does.
+void Colliders::follow(ColliderGroup& group, const dynamics::System& system, double time_step) {
+  group.was_static = group.is_static;
+  group.is_static = !group.moves || system.is_asleep(static_cast<int>(group.entity));
+  has_woken |= group.was_static && !group.is_static;
+  if (group.moves ? group.is_unchanged() : all[group.first].reach == margin_) return;
+  if (group.moves) updated_groups_.push_back(static_cast<std::size_t>(&group - groups.data()));
+  update_box(group, update_poses(group, system, time_step), true);
 }
 
 void Colliders::update_poses(const dynamics::System& system, double time_step,
@@ -370,6 +387,7 @@ void Colliders::find_pairs(const ColliderGroup& a, const ColliderGroup& b,
 void Colliders::find_pairs(std::vector<ColliderPair>& out) {
   out.clear();
   insert_new_groups();
+  if (passes_left_ == 0 && updated_groups_.empty()) return;  // nothing moves
   broadphase_.calculateOverlappingPairs(nullptr);
   const btBroadphasePairArray& pairs =
       broadphase_.getOverlappingPairCache()->getOverlappingPairArray();

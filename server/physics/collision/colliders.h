@@ -141,6 +141,8 @@ class Colliders {
  private:
   struct Filter;
   struct Hits;
+  void follow_anew() { passes_left_ = 2; }
+  void follow(ColliderGroup& group, const dynamics::System& system, double time_step);
   void set_pose(Collider& collider, const dynamics::Tree& tree) const;
   double update_poses(ColliderGroup& group, const dynamics::System& system, double time_step);
   void prefetch_after(const ColliderGroup& group, const dynamics::System& system) const;
@@ -155,6 +157,11 @@ class Colliders {
   std::size_t inserted_ = 0;    // groups that it knows
   std::vector<Bounds> bounds_;  // of a group's colliders
   std::vector<std::size_t> updated_groups_, hits_;
+  // Groups that move and do not rest: update_poses() looks at others only after a change.
+  std::vector<std::size_t> followed_;
+  int passes_left_ = 2;              // over all groups: was_static follows one after is_static
+  std::uint64_t sleep_changes_ = 0;  // of the system, see System::sleep_changes()
+  double margin_ = 0;                // with which the last poses were updated [m]
 };
 
 /// Speculative margin: distance at which pairs without velocity still get contacts in a substep
