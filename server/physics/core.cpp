@@ -57,6 +57,7 @@ NewtonCore::NewtonCore(const scene::Physics& physics) : settings_(physics) {
 
 void NewtonCore::set_threads(unsigned threads) {
   system_.set_threads(threads);
+  colliders_.team = system_.team();
   contacts_.set_team(system_.team());
 }
 

@@ -248,6 +248,9 @@ void ContactCache::collide_pair(std::size_t index, Points& memory) {
 
 /// Lists the contacts of one of pairs_of_part_, and what else follows from them.
 void ContactCache::list_contacts_of(std::size_t index) {
+  constexpr std::size_t later = 4;
+  if (index + later < pairs_of_part_.size())  // another thread may have collided it
+    dynamics::prefetch(&pairs_[pairs_of_part_[index + later]], CachedPair::prefetched_bytes);
   CachedPair& pair = pairs_[pairs_of_part_[index]];
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];

@@ -180,23 +180,23 @@ void Problem::add_contact_rows(const Tree& tree, int link, const Vector3& point,
 /// Computes the velocity change by a unit impulse, without coupling of dofs; equal for the rows of
 /// a friction disc.
 void Problem::compute_mobility(Constraint& constraint) const {
-  const auto add_side = [&](int index, int first, std::span<const int> dofs) {
-    if (index < 0) return;
-    dispatch_rows(constraint.rows, [&](auto rows) {
-      add_mobility<rows()>(jacobian.data() + first, dofs, inverse_mass.data() + offset[index],
-                           constraint.mobility.data());
-    });
-  };
-  constraint.mobility.fill(0);
-  add_side(constraint.a, constraint.jacobian_a, constraint.dofs_a);
-  add_side(constraint.b, constraint.jacobian_b, constraint.dofs_b);
-  for (const FrictionDisc& disc : discs_of(constraint.rows)) {
-    double &first = constraint.mobility[disc.first],
-           &last = constraint.mobility[disc.first + disc.size - 1];
-    first = last = (first + last) / 2;
-  }
-  for (int r = 0; r < constraint.rows; ++r)
-    constraint.mobility[r] = std::max(constraint.mobility[r], 1e-12);
+  constexpr double least = 1e-12;
+  const double *columns = jacobian.data(), *inverse = inverse_mass.data();
+  dispatch_rows(constraint.rows, [&](auto rows) {
+    constexpr int R = rows();
+    double sum[R] = {};
+    if (constraint.a >= 0)
+      add_mobility<R>(columns + constraint.jacobian_a, constraint.dofs_a,
+                      inverse + offset[constraint.a], sum);
+    if (constraint.b >= 0)
+      add_mobility<R>(columns + constraint.jacobian_b, constraint.dofs_b,
+                      inverse + offset[constraint.b], sum);
+    for (const FrictionDisc& disc : discs_of(R)) {
+      double &first = sum[disc.first], &last = sum[disc.first + disc.size - 1];
+      first = last = (first + last) / 2;
+    }
+    for (int r = 0; r < R; ++r) constraint.mobility[r] = std::max(sum[r], least);
+  });
 }
 
 /// Bias acceleration of a link at a point of contact, at dv/dt = 0 [m/s^2].

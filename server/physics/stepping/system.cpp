@@ -1,7 +1,6 @@
 #include "physics/stepping/system.h"
 
 #include <algorithm>
-#include <functional>
 #include <utility>
 
 namespace ziggurat::dynamics {
@@ -85,8 +84,7 @@ void System::advance_island(std::size_t island, IslandMemory& memory) {
   out.ran_out_of_steps = std::exchange(memory.work.ran_out_of_steps, false);
 }
 
-/// Shares the islands among the team's threads, in blocks of similar estimated cost, the dearest
-/// first.
+/// Shares the islands among the team's threads, in blocks of similar estimated cost.
 void System::share_islands() {
   constexpr double blocks_of_thread = 8;
   const auto cost_of = [&](std::size_t i) {
@@ -102,7 +100,6 @@ void System::share_islands() {
     blocks_.back().last = i + 1;
     blocks_.back().cost += cost_of(i);
   }
-  std::ranges::sort(blocks_, std::greater(), &IslandBlock::cost);
   for (IslandMemory& memory : memories_) memory.solver.options = solver().options;
   team_->share(blocks_.size(), [&](std::size_t block, unsigned member) {
     for (std::size_t i = blocks_[block].first; i < blocks_[block].last; ++i)

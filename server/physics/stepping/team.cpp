@@ -5,10 +5,10 @@
 namespace ziggurat::dynamics {
 namespace {
 
-/// Looks at a condition for some microseconds: the next loop of a substep follows soon.
+/// Looks at a condition for some hundred microseconds: the next loop of a substep follows soon.
 template <class Condition>
 bool comes_true_soon(Condition is_true) {
-  constexpr int looks = 4000;
+  constexpr int looks = 20'000;
   for (int i = 0; i < looks; ++i) {
     if (is_true()) return true;
 #if defined(__x86_64__) || defined(__i386__)
@@ -20,7 +20,7 @@ bool comes_true_soon(Condition is_true) {
 
 }  // namespace
 
-Team::Team(unsigned threads) {
+Team::Team(unsigned threads) : parts_(threads) {
   try {
     for (unsigned member = 1; member < threads; ++member)
       workers_.emplace_back([this, member] { work(member); });
@@ -39,13 +39,19 @@ void Team::end() {
   for (std::thread& worker : workers_) worker.join();
 }
 
+/// Takes items of a part until none is left.
+void Team::take_part(unsigned part, unsigned member) {
+  Part& items = parts_[part];
+  for (std::size_t item = items.next++; item < items.last; item = items.next++)
+    loop_.call(loop_.body, item, member);
+}
+
 /// Takes items of the open loop until none is left.
 void Team::take_items(unsigned member) {
   try {
-    for (std::size_t item = next_++; item < loop_.count; item = next_++)
-      loop_.call(loop_.body, item, member);
+    for (unsigned i = 0; i < size(); ++i) take_part((member + i) % size(), member);
   } catch (...) {
-    next_ = loop_.count;
+    for (Part& part : parts_) part.next = part.last;
     const std::lock_guard lock(mutex_);
     if (!failure_) failure_ = std::current_exception();
   }
@@ -70,7 +76,10 @@ void Team::work(unsigned member) {
 
 void Team::run(const Loop& loop) {
   loop_ = loop;
-  next_ = 0;
+  for (unsigned i = 0; i < size(); ++i) {
+    parts_[i].next = loop.count * i / size();
+    parts_[i].last = loop.count * (i + 1) / size();
+  }
   ++state_;
   state_.notify_all();
   take_items(0);

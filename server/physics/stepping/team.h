@@ -25,7 +25,8 @@ class Team {
   unsigned size() const { return static_cast<unsigned>(workers_.size()) + 1; }
 
   /// Calls work(item, member) for the items 0 … count - 1, each once, and returns when all are
-  /// done. A free thread takes the next item. The caller is member 0. Takes no memory.
+  /// done. A thread takes its own part of them first, the same in each loop: its cache has their
+  /// data. Then it takes what others have left. The caller is member 0. Takes no memory.
   /// @throws the first exception of an item; the items that were not begun are left out then
   template <class Work>
   void share(std::size_t count, Work&& work) {
@@ -44,12 +45,18 @@ class Team {
   };
   void run(const Loop& loop);
   void take_items(unsigned member);
+  void take_part(unsigned part, unsigned member);
   void work(unsigned member);
   bool is_open(std::uint32_t state) const { return state % 2 == 1; }
   void end();
 
+  /// A part of a loop's items, in a line of the cache.
+  struct alignas(64) Part {
+    std::atomic<std::size_t> next = 0;  // item that no thread has taken
+    std::size_t last = 0;
+  };
   Loop loop_;
-  std::atomic<std::size_t> next_ = 0;      // item that no thread has taken
+  std::vector<Part> parts_;                // of each member
   std::atomic<std::uint32_t> state_ = 0;   // grows when a loop opens, to an odd number, and closes
   std::atomic<std::uint32_t> active_ = 0;  // workers that have seen it open
   std::atomic<bool> is_over_ = false;
