@@ -17,6 +17,7 @@ void Collider::archive(math::Archive& archive) {
 }
 
 void Colliders::archive(math::Archive& archive) {
+  follow_anew();
   insert_new_groups();
   archive("all", all);
   archive("woke", has_woken);

@@ -55,6 +55,12 @@ NewtonCore::NewtonCore(const scene::Physics& physics) : settings_(physics) {
   colliders_.gravity = std::abs(physics.gravity.value_or(0));
 }
 
+void NewtonCore::set_threads(unsigned threads) {
+  system_.set_threads(threads);
+  colliders_.team = system_.team();
+  contacts_.set_team(system_.team());
+}
+
 Body NewtonCore::add(const scene::Entity& entity, std::size_t number) {
   Body body = make_body(entity, settings_, number);
   clear_default_damping(body, settings_);

@@ -62,6 +62,9 @@ class NewtonCore {
   /// Lists contacts of the last substep, in ascending order.
   void contacts(std::vector<LinkContact>& out) const { contacts_.list_contacts(out); }
   Convergence convergence() const { return convergence_; }
+  /// Substeps are shared by so many threads, with the same bits for any number.
+  /// @throws std::system_error if the system allows no more threads; then nothing changes
+  void set_threads(unsigned threads);
   friend void set_joint(NewtonCore& core, JointIndex joint, double position, double velocity);
   /// Forgets of an entity that was put somewhere else what it remembers of contacts, joints and
   /// steps.

@@ -210,6 +210,8 @@ void World::step() {
   }
 }
 
+void World::set_threads(unsigned threads) { parts_->core.set_threads(threads); }
+
 void World::read(world::State& state) const {
   for (std::size_t entity = 0; entity < parts_->bodies.size(); ++entity) {
     if (!parts_->bodies[entity].links.empty()) read(entity, state);  // not removed

@@ -99,6 +99,9 @@ class World {
 
   /// Advances by one substep.
   void step();
+  /// Substeps are shared by so many threads, with the same bits for any number. 1 at first.
+  /// @throws std::system_error if the system allows no more threads; then nothing changes
+  void set_threads(unsigned threads);
 
   /// Writes origins and links; tick and time are the caller's.
   void read(world::State& state) const;

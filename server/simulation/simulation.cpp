@@ -149,10 +149,17 @@ Simulation::Simulation(const scene::Scene& scene, const Options& options)
       parts_(std::make_unique<Parts>(scene, options, *layout_)) {}
 Simulation::~Simulation() = default;
 
+void Simulation::set_threads(unsigned threads) {
+  parts_->physics.set_threads(threads);
+  threads_ = threads;
+}
+
 void Simulation::reset(const scene::Scene& scene, const Options& options) {
   world::Layout before = *layout_;
   try {
-    parts_ = std::make_unique<Parts>(scene, options, *layout_);
+    auto made = std::make_unique<Parts>(scene, options, *layout_);
+    made->physics.set_threads(threads_);
+    parts_ = std::move(made);
   } catch (...) {
     *layout_ = std::move(before);
     throw;

@@ -47,6 +47,11 @@ class Simulation {
   /// @throws as the constructor, if something can't be placed with this seed; then nothing changes
   void reset(const scene::Scene& scene, const Options& options);
 
+  /// Substeps are shared by so many threads, with the same bits for any number. 1 at first; stays
+  /// after a reset and a restore.
+  /// @throws std::system_error if the system allows no more threads; then nothing changes
+  void set_threads(unsigned threads);
+
   /// Puts an entity to rest at a pose of its origin, joints as assembled. What robots sense of it
   /// they sense at the next tick.
   /// @param entity  into Layout::entities
@@ -119,6 +124,7 @@ class Simulation {
  private:
   std::unique_ptr<world::Layout> layout_;  // others keep references to it
   std::unique_ptr<Parts> parts_;
+  unsigned threads_ = 1;  // see set_threads()
 };
 
 /// The first entity that another would overlap at a pose of its origin, joints as assembled;

@@ -148,6 +148,7 @@ void Simulation::restore(const scene::Scene& scene, const Snapshot& snapshot,
     }
     fresh->lists_rays = p.lists_rays;
     fresh->list_contacts(p.lists_contacts);
+    fresh->physics.set_threads(threads_);
     parts_ = std::move(fresh);
   } catch (const math::ArchiveError& error) {
     *layout_ = std::move(before);

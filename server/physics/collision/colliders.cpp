@@ -122,6 +122,7 @@ void Colliders::add(const Body& body, const scene::Entity& entity, const dynamic
   }
   make_room(all, made.size());
   make_room(groups, made.size());
+  follow_anew();
   for (Collider& collider : made) {  // only Bullet allocates, which does not throw
     set_pose(collider, tree);
     // Static links have a box each, which is tighter: they never leave it.
@@ -181,6 +182,7 @@ std::span<ColliderGroup> Colliders::groups_of(std::size_t entity) {
 }
 
 void Colliders::remove(std::size_t entity) {
+  follow_anew();
   insert_new_groups();
   for (ColliderGroup& group : groups_of(entity)) {
     if (!group.proxy) continue;
@@ -195,6 +197,7 @@ void Colliders::remove(std::size_t entity) {
 }
 
 void Colliders::reset_poses(std::size_t entity, const dynamics::Tree& tree) {
+  follow_anew();
   insert_new_groups();
   for (ColliderGroup& group : groups_of(entity)) {
     if (!group.proxy) continue;
@@ -217,7 +220,8 @@ void Colliders::set_pose(Collider& collider, const dynamics::Tree& tree) const {
 }
 
 btTransform Colliders::pose(const Collider& collider, const dynamics::System& system) const {
-  return transform_of(system.trees[collider.entity], collider.part) * collider.in_part;
+  const btTransform part = transform_of(system.trees[collider.entity], collider.part);
+  return collider.is_centred ? part : part * collider.in_part;
 }
 
 /// Updates a group's box in the broad phase when it is too small or much too large. Bullet's boxes
@@ -242,20 +246,58 @@ void Colliders::update_poses(const dynamics::System& system, double time_step) {
   for (std::size_t i = inserted_; i < groups.size(); ++i)
     update_poses(groups[i], system, time_step);  // with boxes that last
   insert_new_groups();
-  const double least = speculative_margin(*this, time_step);
   has_woken = false;
   updated_groups_.clear();
   predicted.clear();
   fast_entities.clear();
-  for (ColliderGroup& group : groups) {
-    if (!group.proxy) continue;
-    group.was_static = group.is_static;
-    group.is_static = !group.moves || system.is_asleep(static_cast<int>(group.entity));
-    has_woken |= group.was_static && !group.is_static;
-    if (group.moves ? group.is_unchanged() : all[group.first].reach == least) continue;
-    if (group.moves) updated_groups_.push_back(static_cast<std::size_t>(&group - groups.data()));
-    update_box(group, update_poses(group, system, time_step), true);
+  const double margin = speculative_margin(*this, time_step);
+  if (sleep_changes_ != system.sleep_changes() || margin_ != margin) follow_anew();
+  sleep_changes_ = system.sleep_changes();
+  margin_ = margin;
+  changed_.clear();
+  const bool is_steady = passes_left_ == 0;
+  if (is_steady) {
+    for (const std::size_t index : followed_) follow(groups[index], system);
+  } else {
+    --passes_left_;
+    for (ColliderGroup& group : groups) {
+      if (group.proxy) follow(group, system);
+    }
   }
+  update_changed(system, time_step, true);
+  if (!is_steady) followed_ = updated_groups_;
+}
+
+/// Updates the poses of the changed groups, and their boxes. Poses are shared by the team.
+/// @param shrinks  see update_box()
+void Colliders::update_changed(const dynamics::System& system, double time_step, bool shrinks) {
+  constexpr std::size_t block = 16;  // groups that a thread takes at once
+  const std::size_t count = changed_.size();
+  steps_.resize(count);
+  const bool is_shared = team && count >= 4 * block;
+  if (is_shared) {
+    team->share((count + block - 1) / block, [&](std::size_t number, unsigned) {
+      for (std::size_t i = number * block; i < std::min(count, (number + 1) * block); ++i)
+        steps_[i] = update_poses(groups[changed_[i]], system, time_step);
+    });
+  }
+  const double fast = speculative_margin(*this, time_step) / 2;
+  for (std::size_t i = 0; i < count; ++i) {
+    ColliderGroup& group = groups[changed_[i]];
+    if (!is_shared) steps_[i] = update_poses(group, system, time_step);
+    if (steps_[i] > fast) fast_entities.push_back(static_cast<int>(group.entity));
+    if (group.moves) updated_groups_.push_back(changed_[i]);
+    update_box(group, steps_[i], shrinks);
+  }
+}
+
+/// Notes whether a group stands; lists it unless it stood in the substep before and still does.
+void Colliders::follow(ColliderGroup& group, const dynamics::System& system) {
+  group.was_static = group.is_static;
+  group.is_static = !group.moves || system.is_asleep(static_cast<int>(group.entity));
+  has_woken |= group.was_static && !group.is_static;
+  if (group.moves ? group.is_unchanged() : all[group.first].reach == margin_) return;
+  changed_.push_back(static_cast<std::size_t>(&group - groups.data()));
 }
 
 void Colliders::update_poses(const dynamics::System& system, double time_step,
@@ -264,12 +306,13 @@ void Colliders::update_poses(const dynamics::System& system, double time_step,
   updated_groups_.clear();
   predicted.clear();
   fast_entities.clear();
+  changed_.clear();
   each_of(groups, active, [&](ColliderGroup& group) {
     if (!group.proxy || !group.moves) return;
     group.is_static = false;
-    updated_groups_.push_back(static_cast<std::size_t>(&group - groups.data()));
-    update_box(group, update_poses(group, system, time_step), false);
+    changed_.push_back(static_cast<std::size_t>(&group - groups.data()));
   });
+  update_changed(system, time_step, false);
 }
 
 /// Prefetches the memory that update_poses() takes for the groups after one.
@@ -290,7 +333,7 @@ void Colliders::prefetch_after(const ColliderGroup& group, const dynamics::Syste
   }
 }
 
-/// Updates poses and velocities of a group's colliders, and notes whether it is fast.
+/// Updates poses and velocities of a group's colliders. It changes nothing of other groups.
 /// @return  how far it moves [m]
 double Colliders::update_poses(ColliderGroup& group, const dynamics::System& system,
                                double time_step) {
@@ -306,8 +349,6 @@ double Colliders::update_poses(ColliderGroup& group, const dynamics::System& sys
     fastest = std::max(fastest, speed);
   }
   enclose(group);
-  if (time_step * fastest > speculative_margin(*this, time_step) / 2)
-    fast_entities.push_back(static_cast<int>(group.entity));
   return time_step * fastest;
 }
 
@@ -370,6 +411,7 @@ void Colliders::find_pairs(const ColliderGroup& a, const ColliderGroup& b,
 void Colliders::find_pairs(std::vector<ColliderPair>& out) {
   out.clear();
   insert_new_groups();
+  if (passes_left_ == 0 && updated_groups_.empty()) return;  // nothing moves
   broadphase_.calculateOverlappingPairs(nullptr);
   const btBroadphasePairArray& pairs =
       broadphase_.getOverlappingPairCache()->getOverlappingPairArray();

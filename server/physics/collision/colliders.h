@@ -92,7 +92,8 @@ class Colliders {
     Collider collider;
   };
   std::vector<PredictedCollider> predicted;
-  double gravity = 0;  ///< largest acceleration of free fall [m/s^2]
+  double gravity = 0;              ///< largest acceleration of free fall [m/s^2]
+  dynamics::Team* team = nullptr;  ///< whose threads update poses; null: the caller's
   /// Entities that move in the substep by more than half of speculative_margin(): two of them may
   /// have an impact fast enough to matter.
   std::vector<int> fast_entities;
@@ -141,6 +142,9 @@ class Colliders {
  private:
   struct Filter;
   struct Hits;
+  void follow_anew() { passes_left_ = 2; }
+  void follow(ColliderGroup& group, const dynamics::System& system);
+  void update_changed(const dynamics::System& system, double time_step, bool shrinks);
   void set_pose(Collider& collider, const dynamics::Tree& tree) const;
   double update_poses(ColliderGroup& group, const dynamics::System& system, double time_step);
   void prefetch_after(const ColliderGroup& group, const dynamics::System& system) const;
@@ -155,6 +159,13 @@ class Colliders {
   std::size_t inserted_ = 0;    // groups that it knows
   std::vector<Bounds> bounds_;  // of a group's colliders
   std::vector<std::size_t> updated_groups_, hits_;
+  std::vector<std::size_t> changed_;  // groups whose poses or boxes are updated
+  std::vector<double> steps_;         // how far each of them moves in the substep [m]
+  // Groups that move and do not rest: update_poses() looks at others only after a change.
+  std::vector<std::size_t> followed_;
+  int passes_left_ = 2;              // over all groups: was_static follows one after is_static
+  std::uint64_t sleep_changes_ = 0;  // of the system, see System::sleep_changes()
+  double margin_ = 0;                // with which the last poses were updated [m]
 };
 
 /// Speculative margin: distance at which pairs without velocity still get contacts in a substep

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "physics/bodies/convert.h"
-#include "physics/collision/colliders.h"
 #include "physics/collision/contact_limits.h"
 #include "physics/multibody/prefetch.h"
+#include "physics/stepping/team.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -17,10 +17,6 @@ dynamics::LinkIndex link_of(const Collider& collider) {
   return {static_cast<int>(collider.entity), static_cast<int>(collider.part)};
 }
 
-btVector3 velocity_at(const Collider& collider, const btVector3& point) {
-  return collider.velocity + collider.angular_velocity.cross(point - collider.pose.getOrigin());
-}
-
 /// Whether a contact is one of a wheeled body's lower or upper face.
 bool is_wheel_contact(const Collider& collider, const btVector3& normal) {
   constexpr btScalar face = btScalar(0.7);  // cosine of the steepest such contact
@@ -29,56 +25,6 @@ bool is_wheel_contact(const Collider& collider, const btVector3& normal) {
 
 double squared_distance(const math::Vector3& a, const math::Vector3& b) {
   return (to_bullet(a) - to_bullet(b)).length2();
-}
-
-/// Approach of two colliders in a substep.
-struct Approach {
-  double least = BT_LARGE_FLOAT;  ///< distance of all points [m]
-  double fastest = 0;             ///< speed at which points close [m/s]
-  bool may_touch = false;         ///< a point is close, or comes so
-};
-
-/// @param slack  what counts as close [m]
-Approach approach_of(const contact::Manifold& found, const Collider& a, const Collider& b,
-                     double time_step, double slack) {
-  Approach out;
-  for (int i = 0; i < found.count; ++i) {
-    const contact::ManifoldPoint& point = found.points[i];
-    const double speed = found.normal.dot(velocity_at(b, point.on_b) - velocity_at(a, point.on_b));
-    out.least = std::min(out.least, double(point.distance));
-    out.fastest = std::max(out.fastest, speed);
-    out.may_touch |= point.distance <= slack + time_step * std::max(0.0, speed);
-  }
-  return out;
-}
-
-/// Bound of the distances at which points may come close, see approach_of(): from the fastest
-/// possible approach of the surfaces. Radii are enlarged, because points may lie a little outside
-/// [m].
-double most_distance_to_touch(const Collider& a, const Collider& b, double time_step,
-                              double slack) {
-  constexpr double larger = 1.5;
-  const double arm = larger * a.radius + a.reach + b.reach;  // from a to points on b
-  const double speed = (b.velocity - a.velocity).length() + a.angular_velocity.length() * arm +
-                       b.angular_velocity.length() * larger * b.radius;
-  return slack + time_step * speed;
-}
-
-/// Smallest half extent; the floor has none [m].
-double smallest_extent(const Collider& collider) {
-  if (collider.entity == Collider::floor) return BT_LARGE_FLOAT;
-  return std::min(
-      {collider.half_extents.x(), collider.half_extents.y(), collider.half_extents.z()});
-}
-
-/// Whether a body may rotate so far in a substep, by itself or by an impact, that another side of
-/// it lands.
-bool tumbles(const Collider& a, const Collider& b, const Approach& approach, double time_step) {
-  constexpr double far = 0.05;  // [rad]
-  const double turning = (a.angular_velocity - b.angular_velocity).length();
-  return time_step *
-             (turning + approach.fastest / std::min(smallest_extent(a), smallest_extent(b))) >
-         far;
 }
 
 /// Sets the points of contact of two moving colliders, see dynamics::ContactPoint. Separate
@@ -133,88 +79,6 @@ void set_point_velocity(const Collider& a, const Collider& b, double time_step,
   contact.face_angular_velocity = from_bullet(face_turning);
   contact.point_velocity = from_bullet(
       is_ball ? round.velocity + tilt : round.velocity + tilt + turning * normal.cross(arm));
-}
-
-/// Whether a body that seems to pass a static one may still reach it. Rotation curves its path and
-/// turns its axis: each changes the path by up to r (w h)^2 / 2.
-/// @param slack  gap that counts as close [m]
-bool may_rotate_into(const Collider& a, const Collider& b, double time_step, double slack) {
-  constexpr double far = 0.05;  // [rad]
-  if (a.moves && b.moves) return false;
-  const Collider& moving = a.moves ? a : b;
-  const double turn = time_step * moving.angular_velocity.length();
-  if (turn < far) return false;
-  const double bend = moving.radius * turn * turn;
-  const contact::Manifold all =
-      contact::find(a.shape, a.pose, b.shape, b.pose, a.reach + b.reach, contact::Support::all);
-  for (int i = 0; i < all.count; ++i) {
-    const contact::ManifoldPoint& point = all.points[i];
-    const double speed = all.normal.dot(velocity_at(b, point.on_b) - velocity_at(a, point.on_b));
-    if (point.distance - time_step * speed <= slack + bend) return true;
-  }
-  return false;
-}
-
-/// Rotation of two colliders in a substep.
-struct RotationOutcome {
-  bool tumbles = false;              ///< one so far that other points may touch
-  bool may_overlap = false;          ///< no contact, but rotation may bring one
-  double rotation_until_impact = 0;  ///< of one on a fixed base, until the impact [rad]
-};
-
-/// Collides two colliders: points that may touch within the substep.
-/// @param slack        gap that counts as close [m]
-/// @param most_points  of those that tumble
-contact::Manifold collide(const Collider& a, const Collider& b, double time_step, double slack,
-                          int most_points, RotationOutcome& out) {
-  constexpr double far = 0.2;  // rotation whose path is curved [rad]
-  const double reach = a.reach + b.reach;
-  contact::Manifold found =
-      contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::face,
-                    most_distance_to_touch(a, b, time_step, slack));
-  const Approach approach = approach_of(found, a, b, time_step, slack);
-  const bool in_reach = found.count > 0;
-  out.tumbles = approach.may_touch && tumbles(a, b, approach, time_step);
-  const bool swings =
-      found.count > 0 && std::max(arm_rotation(a, time_step), arm_rotation(b, time_step)) > far;
-  double time = 0;
-  if (approach.least > slack && (swings || approach.may_touch)) {
-    found = time_of_impact(a, b, time_step, slack / 2, time);
-    if (found.count > 0 && swings)
-      out.rotation_until_impact = std::max(arm_rotation(a, time), arm_rotation(b, time));
-  } else if (!approach.may_touch) {
-    found.count = 0;
-  } else if (found.count <= 2 && approach.least > dynamics::touching_gap &&
-             (has_rotating_normal(a, b) || rebounds_at_touch_pose(a, b))) {
-    found = time_of_impact(a, b, time_step, slack, time);
-  } else if (out.tumbles) {
-    found = contact::find(a.shape, a.pose, b.shape, b.pose, reach, contact::Support::all);
-  }
-  out.may_overlap = found.count == 0 && in_reach && may_rotate_into(a, b, time_step, slack);
-  if (!out.tumbles || found.count > most_points) contact::reduce(found, (a.moves ? a : b).pose);
-  return found;
-}
-
-/// Collides two colliders with their predicted motions.
-contact::Manifold collide_predicted(const Colliders& colliders, std::size_t a, std::size_t b,
-                                    double time_step, double slack, int most_points,
-                                    RotationOutcome& out) {
-  const auto ways_of = [&](std::size_t index) {
-    std::vector<const Collider*> ways{&colliders.all[index]};
-    for (const Colliders::PredictedCollider& thrown : colliders.predicted) {
-      if (thrown.index == index) ways.push_back(&thrown.collider);
-    }
-    return ways;
-  };
-  const auto of_a = ways_of(a), of_b = ways_of(b);
-  for (const Collider* way_a : of_a) {
-    for (const Collider* way_b : of_b) {
-      if (way_a == of_a[0] && way_b == of_b[0]) continue;
-      const contact::Manifold found = collide(*way_a, *way_b, time_step, slack, most_points, out);
-      if (found.count > 0) return found;
-    }
-  }
-  return {};
 }
 
 /// Whether each of two colliders is active, or stands.
@@ -272,36 +136,70 @@ std::span<dynamics::ContactPoint> ContactCache::find_contacts(double time_step,
   return contacts_;
 }
 
-/// Collides all near pairs, and those with the floor.
-void ContactCache::collide_pairs(double time_step) {
-  ++part_;
-  time_step_ = time_step;
-  rotations_until_impact.clear();
-  contacts_.clear();
-  cache_indices_.clear();
-  overlap_candidates_.clear();
+void ContactCache::set_team(dynamics::Team* team) {
+  previous_points_.resize(team ? team->size() : 1);
+  team_ = team;
+}
+
+/// Notes a pair that is to be collided.
+void ContactCache::begin_pair(CachedPair& pair) {
+  pair.last_part = part_;
+  pair.covers_internal_edge = false;
+  pairs_of_part_.push_back(static_cast<int>(&pair - pairs_.data()));
+  resting_ -= pair.is_static;
+  pair.is_static =
+      colliders_.is_static(colliders_.all[pair.a]) && colliders_.is_static(colliders_.all[pair.b]);
+  resting_ += pair.is_static;
+  awake_ += !pair.is_static;
+}
+
+/// Lists all near pairs, and those with the floor.
+void ContactCache::list_pairs() {
   pairs_of_part_.clear();
-  supports_.clear();
   awake_ = 0;
   floor_pairs_.resize(colliders_.all.size(), 0);
   pairs_of_collider_.resize(colliders_.all.size());
-  for (const ColliderPair& near : near_pairs_) {
-    collide_pair(pair_of(near.a, near.b, places_[key_of(near.a, near.b)]), time_step);
-  }
+  for (const ColliderPair& near : near_pairs_)
+    begin_pair(pair_of(near.a, near.b, places_[key_of(near.a, near.b)]));
   if (!colliders_.floor) return;
   const std::span<const std::size_t> followed = colliders_.updated_groups();
   for (std::size_t k = 0; k < followed.size(); ++k) {
     const ColliderGroup& group = colliders_.groups[followed[k]];
     const ColliderGroup& next = colliders_.groups[followed[std::min(k + 1, followed.size() - 1)]];
     for (std::size_t i = next.first; i < next.first + next.count; ++i) {
-      if (floor_pairs_[i] != 0)
-        dynamics::prefetch(&pairs_[floor_pairs_[i]], CachedPair::prefetched_bytes);
+      if (floor_pairs_[i] != 0) dynamics::prefetch(&pairs_[floor_pairs_[i]], 64);
     }
     for (std::size_t i = group.first; i < group.first + group.count; ++i) {
       const Collider& collider = colliders_.all[i];
       if (collider.pose.getOrigin().z() > collider.radius + collider.reach) continue;
-      collide_pair(pair_of(i, *colliders_.floor, floor_pairs_[i]), time_step);
+      begin_pair(pair_of(i, *colliders_.floor, floor_pairs_[i]));
     }
+  }
+}
+
+/// Collides all near pairs, and those with the floor.
+void ContactCache::collide_pairs(double time_step) {
+  constexpr std::size_t block = 32;  // pairs that a thread takes at once
+  ++part_;
+  time_step_ = time_step;
+  rotations_until_impact.clear();
+  contacts_.clear();
+  cache_indices_.clear();
+  overlap_candidates_.clear();
+  supports_.clear();
+  list_pairs();
+  const std::size_t count = pairs_of_part_.size();
+  outcomes_.resize(count);
+  const bool is_shared = team_ && count >= 2 * block;
+  if (is_shared) {
+    team_->share((count + block - 1) / block, [&](std::size_t number, unsigned member) {
+      for (std::size_t i = number * block; i < std::min(count, (number + 1) * block); ++i)
+        collide_pair(i, previous_points_[member]);
+    });
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!is_shared) collide_pair(i, previous_points_.front());
+    list_contacts_of(i);
   }
 }
 
@@ -330,47 +228,56 @@ std::span<dynamics::ContactPoint> ContactCache::keep_contacts(const TreeSet& act
   return contacts_;
 }
 
-void ContactCache::collide_pair(CachedPair& pair, double time_step) {
+/// Collides one of pairs_of_part_. It changes nothing of other pairs.
+/// @param memory  of the thread
+void ContactCache::collide_pair(std::size_t index, Points& memory) {
+  constexpr std::size_t later = 4;
+  if (index + later < pairs_of_part_.size())
+    dynamics::prefetch(&pairs_[pairs_of_part_[index + later]], CachedPair::prefetched_bytes);
+  CachedPair& pair = pairs_[pairs_of_part_[index]];
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
-  pair.last_part = part_;
-  pair.covers_internal_edge = false;
-  pairs_of_part_.push_back(static_cast<int>(&pair - pairs_.data()));
-  resting_ -= pair.is_static;
-  pair.is_static = colliders_.is_static(a) && colliders_.is_static(b);
-  resting_ += pair.is_static;
-  awake_ += !pair.is_static;
-  RotationOutcome turning;
-  const double slack = speculative_margin(colliders_, time_step);
-  contact::Manifold found = collide(a, b, time_step, slack, most_points, turning);
+  RotationOutcome& turning = outcomes_[index] = {};
+  const double slack = speculative_margin(colliders_, time_step_);
+  contact::Manifold found = collide(a, b, time_step_, slack, most_points, turning);
   if (found.count == 0 && !colliders_.predicted.empty()) {
-    found = collide_predicted(colliders_, pair.a, pair.b, time_step, slack, most_points, turning);
+    found = collide_predicted(colliders_, pair.a, pair.b, time_step_, slack, most_points, turning);
   }
-  if (turning.rotation_until_impact > 0)
-    rotations_until_impact.push_back(
-        {static_cast<int>((a.is_on_fixed_base ? a : b).entity), turning.rotation_until_impact});
-  match_points(found, pair, time_step);
-  if (found.count > 0) list_supports(pair);
-  if (a.moves && b.moves) return;
-  overlap_candidates_.push_back({static_cast<std::size_t>(&pair - pairs_.data()), found.count == 0,
-                                 turning.may_overlap || turning.tumbles});
+  match_points(found, pair, memory);
 }
 
-/// Matches new points with those of the last substep, and appends the pair's contacts with their
-/// impulses. The nearest point counts: on either body, or moved with one.
-/// @param time_step  [s]
-void ContactCache::match_points(const contact::Manifold& found, CachedPair& pair,
-                                double time_step) {
+/// Lists the contacts of one of pairs_of_part_, and what else follows from them.
+void ContactCache::list_contacts_of(std::size_t index) {
+  constexpr std::size_t later = 4;
+  if (index + later < pairs_of_part_.size())  // another thread may have collided it
+    dynamics::prefetch(&pairs_[pairs_of_part_[index + later]], CachedPair::prefetched_bytes);
+  CachedPair& pair = pairs_[pairs_of_part_[index]];
+  const Collider& a = colliders_.all[pair.a];
+  const Collider& b = colliders_.all[pair.b];
+  const RotationOutcome& outcome = outcomes_[index];
+  if (outcome.rotation_until_impact > 0)
+    rotations_until_impact.push_back(
+        {static_cast<int>((a.is_on_fixed_base ? a : b).entity), outcome.rotation_until_impact});
+  append_contacts(pair);
+  if (pair.count > 0) list_supports(pair);
+  if (a.moves && b.moves) return;
+  overlap_candidates_.push_back({static_cast<std::size_t>(pairs_of_part_[index]), pair.count == 0,
+                                 outcome.may_overlap || outcome.tumbles});
+}
+
+/// Matches new points with those of the last substep, whose impulses they keep. The nearest point
+/// counts: on either body, or moved with one.
+/// @param old  memory
+void ContactCache::match_points(const contact::Manifold& found, CachedPair& pair, Points& old) {
   constexpr double same = 25e-6;  // points more than 5 mm apart differ [m^2]
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
   const int old_count = pair.count;
-  auto& old = previous_points_;
   std::copy_n(pair.points.begin(), old_count, old.begin());
   std::array<bool, most_points> taken{};
   // The contact point of a rolling body moves with that body's centre.
-  const math::Vector3 with_a = time_step * from_bullet(a.velocity),
-                      with_b = time_step * from_bullet(b.velocity);
+  const math::Vector3 with_a = time_step_ * from_bullet(a.velocity),
+                      with_b = time_step_ * from_bullet(b.velocity);
   pair.count = found.count;
   if (found.count > 0) pair.normal = from_bullet(found.normal);
   for (int i = 0; i < found.count; ++i) {
@@ -399,7 +306,6 @@ void ContactCache::match_points(const contact::Manifold& found, CachedPair& pair
       now.angular_impulse = old[nearest].angular_impulse;
     }
   }
-  append_contacts(pair);
 }
 
 /// Appends the contacts of a pair's points to the list.

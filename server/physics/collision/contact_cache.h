@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "physics/bodies/link_contact.h"
+#include "physics/collision/collide.h"
 #include "physics/collision/colliders.h"
 #include "physics/collision/pair_lists.h"
 #include "physics/solver/constraint.h"
@@ -25,6 +26,9 @@ dynamics::ContactPoint contact_of(const Collider& a, const Collider& b, const ma
 class ContactCache {
  public:
   explicit ContactCache(Colliders& colliders) : colliders_(colliders) {}
+
+  /// Pairs are collided by a team's threads; null: by the caller's, as at first.
+  void set_team(dynamics::Team* team);
 
   /// Trees of the last find_contacts() that rotate far until their impact.
   std::vector<dynamics::RotationUntilImpact> rotations_until_impact;
@@ -91,9 +95,13 @@ class ContactCache {
   };
 
   CachedPair& pair_of(std::size_t a, std::size_t b, int& place);
+  using Points = std::array<CachedPoint, most_points>;
+  void begin_pair(CachedPair& pair);
+  void list_pairs();
   void collide_pairs(double time_step);
-  void collide_pair(CachedPair& pair, double time_step);
-  void match_points(const contact::Manifold& found, CachedPair& pair, double time_step);
+  void collide_pair(std::size_t index, Points& memory);
+  void match_points(const contact::Manifold& found, CachedPair& pair, Points& memory);
+  void list_contacts_of(std::size_t index);
   void append_contacts(const CachedPair& pair);
   bool is_inside_neighbour(const Collider& cover, const CachedPair& hidden, std::size_t mover,
                            const btVector3& up, btScalar height, const btVector3& point);
@@ -130,8 +138,10 @@ class ContactCache {
   struct CacheIndex {
     int pair = 0, point = 0;
   };
-  std::vector<CacheIndex> cache_indices_;                 // of each contact
-  std::array<CachedPoint, most_points> previous_points_;  // of the present pair, a substep ago
+  std::vector<CacheIndex> cache_indices_;  // of each contact
+  dynamics::Team* team_ = nullptr;
+  std::vector<RotationOutcome> outcomes_;   // of each of pairs_of_part_
+  std::vector<Points> previous_points_{1};  // of each thread: of its pair, a substep ago
   /// A pair with a static side whose other side rotates far in the substep, or may do so after an
   /// impact.
   struct OverlapCandidate {

@@ -20,6 +20,16 @@ bool overlaps_deeply(const contact::Manifold& found) {
       [](const contact::ManifoldPoint& point) { return point.distance < -least_overlap; });
 }
 
+/// A coarser bound than predicted_pose_error(), for an angle that rounding makes uncertain by 1e-7.
+double coarse_pose_error(const Collider& moving, const btTransform& now, double time_step) {
+  const btVector3 way = now.getOrigin() - moving.pose.getOrigin() - time_step * moving.velocity;
+  const btMatrix3x3 &before = moving.pose.getBasis(), &after = now.getBasis();
+  const double cosines =
+      before[0].dot(after[0]) + before[1].dot(after[1]) + before[2].dot(after[2]);
+  const double angle = std::sqrt(std::max(0.0, 3 - cosines)) + 1e-7;
+  return way.length() + moving.radius * (angle + time_step * moving.angular_velocity.length());
+}
+
 /// Bound of the distance of a collider's points from their predicted positions [m].
 /// @param now     its pose after the substep
 /// @param time_step  of the substep [s]
@@ -48,8 +58,10 @@ std::span<dynamics::ContactPoint> ContactCache::find_new_overlaps(const dynamics
     const Collider& b = colliders_.all[pair.b];
     const btTransform of_a = a.moves ? colliders_.pose(a, system) : a.pose;
     const btTransform of_b = b.moves ? colliders_.pose(b, system) : b.pose;
-    if (!turned.rotates_far &&
-        predicted_pose_error(a.moves ? a : b, a.moves ? of_a : of_b, time_step_) <= known)
+    const Collider& moving = a.moves ? a : b;
+    const btTransform& now = a.moves ? of_a : of_b;
+    if (!turned.rotates_far && (coarse_pose_error(moving, now, time_step_) <= known ||
+                                predicted_pose_error(moving, now, time_step_) <= known))
       continue;
     const contact::Manifold found =
         contact::find(a.shape, of_a, b.shape, of_b, most_gap, contact::Support::all);

@@ -88,6 +88,17 @@ void compute_mass_matrix(const Tree& tree, Workspace& work) {
   if (tree.has_floating_base) set_root_mass(work.composite_inertia[0], work.mass.data(), n);
 }
 
+void add_momentum(const double* mass, double factor, const double* v, int n, double* out) {
+  using Pair = Eigen::Array2d;
+  const int even = n / 2 * 2;
+  for (int i = 0; i < even; i += 2) {
+    Pair sum = Eigen::Map<const Pair>(out + i);
+    for (int k = 0; k < n; ++k) sum += Eigen::Map<const Pair>(mass + k * n + i) * (factor * v[k]);
+    out[i] = sum[0], out[i + 1] = sum[1];
+  }
+  for (int k = 0; k < n && even < n; ++k) out[even] += mass[k * n + even] * (factor * v[k]);
+}
+
 void bias_accelerations(const Tree& tree, Workspace& work) {
   work.acceleration.resize(tree.links.size());
   for (int i = 0; i < static_cast<int>(tree.links.size()); ++i) {

@@ -22,6 +22,7 @@ struct Workspace {
   std::vector<double> mass;                   ///< mass matrix, dofs x dofs, row by row
   std::vector<double> factor;                 ///< its factors
   std::vector<double> scratch;                ///< of each dof
+  std::vector<double> momentum;               ///< M v, by predict_momentum()
   std::array<double, 6> root_bias_impulse{};  ///< by predict_momentum()
   double bias_velocity_change =
       0;  ///< relative change of a tree's velocities by bias forces, by predict_momentum()
@@ -33,6 +34,10 @@ struct Workspace {
 /// Fills work.mass, with both triangles, and work.link_inertia; needs forward_kinematics(). All
 /// other functions need it, for the same tree.
 void compute_mass_matrix(const Tree& tree, Workspace& work);
+
+/// out += factor M v, two entries at a time: M is symmetric.
+/// @param mass  n x n
+void add_momentum(const double* mass, double factor, const double* v, int n, double* out);
 
 /// Spatial accelerations of links about O at dv/dt = 0, into work.acceleration; needs
 /// forward_kinematics() and velocity_kinematics().

@@ -345,9 +345,10 @@ void predict_momentum(Tree& tree, Workspace& work, double time_step, bool driven
   bias_forces(tree, work, work.scratch);
   external_forces(tree, work, out, true, true);
   double energy = 0, change = 0;
+  work.momentum.assign(n, 0.0);
+  add_momentum(work.mass.data(), 1, tree.v.data(), n, work.momentum.data());
   for (int i = 0; i < n; ++i) {
-    double momentum = 0;
-    for (int j = 0; j < n; ++j) momentum += work.mass[i * n + j] * tree.v[j];
+    const double momentum = work.momentum[i];
     out[i] = momentum + time_step * out[i];
     energy += momentum * tree.v[i];
     change += time_step * time_step * work.scratch[i] * work.scratch[i] / work.mass[i * n + i];

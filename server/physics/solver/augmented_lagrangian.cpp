@@ -15,17 +15,8 @@ void add_impulse(const Problem& problem, const Constraint& constraint, const dou
   const auto add_side = [&](int index, int first, std::span<const int> dofs) {
     if (index < 0) return;
     dispatch_rows(constraint.rows, [&](auto rows) {
-      constexpr int R = rows();
-      const double* columns = problem.jacobian.data() + first;
-      double* to = out.data() + problem.offset[index];
-      const auto add = [&](int k) {
-        double sum = columns[k * R] * impulse[0];
-        for (int r = 1; r < R; ++r) sum += columns[k * R + r] * impulse[r];
-        to[k] += sum;
-      };
-      const bool leading = begins_with_floating_base(dofs);
-      for (int k = 0; k < 6 && leading; ++k) add(k);
-      for (std::size_t e = leading ? 6 : 0; e < dofs.size(); ++e) add(dofs[e]);
+      add_impulse<rows()>(problem.jacobian.data() + first, dofs, impulse,
+                          out.data() + problem.offset[index]);
     });
   };
   add_side(constraint.a, constraint.jacobian_a, constraint.dofs_a);
@@ -56,12 +47,10 @@ double momentum_residual(const Problem& problem, std::vector<double>& out) {
     const double* mass = problem.mass_of(i);
     const double* v = problem.velocity.data() + problem.offset[i];
     double* to = out.data() + problem.offset[i];
-    for (int r = 0; r < n; ++r) {
-      double sum = problem.time_step * tree.damping[r] * v[r];
-      for (int c = 0; c < n; ++c) sum += mass[r * n + c] * v[c];
-      to[r] -= sum;
-      worst = std::max(worst, std::abs(to[r]) / mass[r * n + r]);
-    }
+    for (int r = 0; r < n; ++r) to[r] -= problem.time_step * tree.damping[r] * v[r];
+    add_momentum(mass, -1, v, n, to);
+    const double* inverse = problem.inverse_mass.data() + problem.offset[i];
+    for (int r = 0; r < n; ++r) worst = std::max(worst, std::abs(to[r]) * inverse[r]);
   }
   return worst;
 }
@@ -74,8 +63,7 @@ bool is_momentum_balanced(const Problem& problem, std::span<const double> residu
     for (std::size_t e = 0; index >= 0 && e < dofs.size(); ++e) {
       double& sum = impulse_sum[problem.offset[index] + dofs[e]];
       for (int r = 0; r < constraint.rows; ++r)
-        sum += std::abs(problem.jacobian[first + dofs[e] * constraint.rows + r] *
-                        constraint.impulse[r]);
+        sum += std::abs(problem.jacobian[first + r * dofs.size() + e] * constraint.impulse[r]);
     }
   };
   for (const Constraint& constraint : problem.constraints) {

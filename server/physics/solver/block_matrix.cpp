@@ -1,9 +1,12 @@
 #include "physics/solver/block_matrix.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <type_traits>
+#include <utility>
 
 namespace ziggurat::dynamics {
 namespace {
@@ -34,12 +37,51 @@ void subtract_product(const double* a, const double* b, double* c, int n, int in
   }
 }
 
+/// Calls f with a size as a compile-time constant, or with 0 if it is no usual one.
+template <class F>
+auto dispatch_size(int size, F f) {
+  switch (size) {  // of one body, and of robots with few joints
+    case 6:
+      return f(std::integral_constant<int, 6>());
+    case 8:
+      return f(std::integral_constant<int, 8>());
+    case 10:
+      return f(std::integral_constant<int, 10>());
+    default:
+      return f(std::integral_constant<int, 0>());
+  }
+}
+
+/// Eliminates column k of an n x n matrix below its diagonal, two entries at a time.
+template <int N, int K>
+bool eliminate_column(double* a) {
+  constexpr int even = (K + 1) / 2 * 2;
+  using Rest = Eigen::Array<double, N - even, 1>;
+  const double pivot = a[K * N + K];
+  if (!(std::abs(pivot) > least_pivot)) return false;
+  const double inverse = 1 / pivot;
+  a[K * N + K] = inverse;
+  for (int i = K + 1; i < N; ++i) {
+    const double ratio = a[i * N + K] * inverse;
+    Eigen::Map<Rest>(a + i * N + even) -= ratio * Eigen::Map<const Rest>(a + K * N + even);
+    a[i * N + K] = ratio;
+  }
+  return true;
+}
+
 /// A := L U in place, L with ones on its diagonal. The inverses of U's diagonal take its place.
 /// Sliding friction makes the matrix unsymmetric, so a pivot may be negative; it must only not be
 /// lost in rounding.
 template <int N>
-bool factor_block(double* a, int size) {
-  const int n = N > 0 ? N : size;
+bool factor_block(double* a) {
+  return [&]<int... K>(std::integer_sequence<int, K...>) {
+    return (eliminate_column<N, K>(a) && ...);
+  }
+  (std::make_integer_sequence<int, N>());
+}
+
+/// The same for any size n.
+bool factor_block(double* a, int n) {
   for (int k = 0; k < n; ++k) {
     const double pivot = a[k * n + k];
     if (!(std::abs(pivot) > least_pivot)) return false;
@@ -52,19 +94,6 @@ bool factor_block(double* a, int size) {
     }
   }
   return true;
-}
-
-bool factor_block(double* a, int size) {
-  switch (size) {  // of one body, and of robots with few joints: the compiler knows their size
-    case 6:
-      return factor_block<6>(a, 6);
-    case 8:
-      return factor_block<8>(a, 8);
-    case 10:
-      return factor_block<10>(a, 10);
-    default:
-      return factor_block<0>(a, size);
-  }
 }
 
 /// B := L^-1 B, of m columns.
@@ -205,7 +234,11 @@ bool BlockMatrix::factor() {
   for (int step = 0; step < n; ++step) {
     const int k = order_[step], size = sizes_[k];
     double* pivot = block(k, k);
-    if (!factor_block(pivot, size)) return false;
+    const bool regular = dispatch_size(size, [&](auto n) {
+      if constexpr (n() > 0) return factor_block<n()>(pivot);
+      return factor_block(pivot, size);
+    });
+    if (!regular) return false;
     const int begin = first_later_[step], end = first_later_[step + 1];
     for (int e = begin; e < end; ++e) {
       const int i = later_[e];
@@ -232,11 +265,7 @@ void BlockMatrix::solve(double* x) const {
   for (int step = 0; step < n; ++step) {
     const int k = order_[step], size = sizes_[k];
     double* part = x + offsets_[k];
-    if (size == 6) {
-      solve_lower<6, 1>(at(k, k), 6, part, 1);
-    } else {
-      solve_lower<0, 1>(at(k, k), size, part, 1);
-    }
+    dispatch_size(size, [&](auto n) { solve_lower<n(), 1>(at(k, k), size, part, 1); });
     for (int e = first_later_[step]; e < first_later_[step + 1]; ++e) {
       const int i = later_[e];
       subtract_applied(at(i, k), part, x + offsets_[i], sizes_[i], size);
@@ -249,7 +278,7 @@ void BlockMatrix::solve(double* x) const {
       const int i = later_[e];
       subtract_applied(at(k, i), x + offsets_[i], part, size, sizes_[i]);
     }
-    size == 6 ? solve_upper<6>(at(k, k), 6, part) : solve_upper<0>(at(k, k), size, part);
+    dispatch_size(size, [&](auto n) { solve_upper<n()>(at(k, k), size, part); });
   }
 }
 

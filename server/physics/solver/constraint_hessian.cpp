@@ -7,11 +7,13 @@ namespace {
 
 /// One side of a constraint of R rows.
 struct Side {
-  int index = -1;                   // of its tree in the island
-  int dofs = 0;                     // of the tree
-  const double* columns = nullptr;  // R values per dof
-  std::span<const int> touched;     // dofs whose columns are not zero, ascending
-  int leading = 0;                  // 6 of a free root, or 0
+  int index = -1;                // of its tree in the island
+  int dofs = 0;                  // of the tree
+  const double* rows = nullptr;  // see jacobian.h
+  std::span<const int> touched;  // dofs that move it, ascending
+  int leading = 0;               // 6 of a free root, or 0
+  /// Entry of a row and a touched dof.
+  double entry(int row, std::size_t e) const { return rows[row * touched.size() + e]; }
 };
 
 Side side_of(const Problem& problem, int index, int first, std::span<const int> dofs) {
@@ -26,23 +28,20 @@ template <int R>
 void add_any(const Side& s, const Side (&sides)[2], const double* slope,
              std::vector<double>& sloped, BlockMatrix& matrix) {
   const std::size_t count = s.touched.size();
-  sloped.resize(count * R);
-  for (std::size_t e = 0; e < count; ++e) {
-    const double* column = s.columns + s.touched[e] * R;
-    for (int r = 0; r < R; ++r) {
-      double sum = 0;
-      for (int c = 0; c < R; ++c) sum += slope[r * R + c] * column[c];
-      sloped[r * count + e] = sum;
+  sloped.assign(count * R, 0.0);
+  for (int r = 0; r < R; ++r) {
+    for (int c = 0; c < R; ++c) {
+      for (std::size_t e = 0; e < count; ++e)
+        sloped[r * count + e] += slope[r * R + c] * s.entry(c, e);
     }
   }
   for (const Side& t : sides) {
     if (t.index < 0) continue;
-    for (const int k : t.touched) {
-      const double* column = t.columns + k * R;
-      double* row = matrix.block(t.index, s.index) + k * s.dofs;
+    for (std::size_t f = 0; f < t.touched.size(); ++f) {
+      double* row = matrix.block(t.index, s.index) + t.touched[f] * s.dofs;
       for (std::size_t e = 0; e < count; ++e) {
         double sum = row[s.touched[e]];
-        for (int r = 0; r < R; ++r) sum += column[r] * sloped[r * count + e];
+        for (int r = 0; r < R; ++r) sum += t.entry(r, f) * sloped[r * count + e];
         row[s.touched[e]] = sum;
       }
     }
@@ -54,49 +53,42 @@ void add_any(const Side& s, const Side (&sides)[2], const double* slope,
 template <int R, int T>
 void add_leading(const Side& s, const Side (&sides)[2], const double* slope, BlockMatrix& matrix) {
   using Six = Eigen::Array<double, 6, 1>;
-  Six rows[R], sloped[R];
-  double tail_rows[R][T + 1], tail[R][T + 1];
-  int tail_dof[T + 1];
+  Six sloped[R];
+  double tail[R][T + 1];
   for (int r = 0; r < R; ++r) {
-    for (int e = 0; e < 6; ++e) rows[r][e] = s.columns[e * R + r];
-  }
-  for (int e = 0; e < T; ++e) {
-    tail_dof[e] = s.touched[6 + e];
-    for (int r = 0; r < R; ++r) tail_rows[r][e] = s.columns[tail_dof[e] * R + r];
-  }
-  for (int r = 0; r < R; ++r) {
-    sloped[r] = slope[r * R] * rows[0];
-    for (int c = 1; c < R; ++c) {
-      if (depends(r, c)) sloped[r] += slope[r * R + c] * rows[c];
-    }
-    for (int e = 0; e < T; ++e) {
-      tail[r][e] = slope[r * R] * tail_rows[0][e];
-      for (int c = 1; c < R; ++c) {
-        if (depends(r, c)) tail[r][e] += slope[r * R + c] * tail_rows[c][e];
+    for (int c = 0; c < R; ++c) {
+      if (!depends(r, c)) continue;
+      const double factor = slope[r * R + c];
+      const Eigen::Map<const Six> row(s.rows + c * (6 + T));
+      if (c == 0) {
+        sloped[r] = factor * row;
+      } else {
+        sloped[r] += factor * row;
       }
+      for (int e = 0; e < T; ++e)
+        tail[r][e] = (c == 0 ? 0 : tail[r][e]) + factor * s.rows[c * (6 + T) + 6 + e];
     }
   }
   for (const Side& t : sides) {
     if (t.index < 0) continue;
     double* out = matrix.block(t.index, s.index);
-    const auto add = [&](int k, auto rows_of_dof) {
-      const double* column = t.columns + k * R;
-      double* row = out + k * s.dofs;
+    const auto add = [&](std::size_t f, auto rows_of_dof) {
+      double* row = out + t.touched[f] * s.dofs;
       Eigen::Map<Six> leading(row);
       Six sum = leading;
-      for (int r = 0; r < rows_of_dof(); ++r) sum += column[r] * sloped[r];
+      for (int r = 0; r < rows_of_dof(); ++r) sum += t.entry(r, f) * sloped[r];
       leading = sum;
       for (int e = 0; e < T; ++e) {
-        double entry = row[tail_dof[e]];
-        for (int r = 0; r < rows_of_dof(); ++r) entry += column[r] * tail[r][e];
-        row[tail_dof[e]] = entry;
+        double entry = row[s.touched[6 + e]];
+        for (int r = 0; r < rows_of_dof(); ++r) entry += t.entry(r, f) * tail[r][e];
+        row[s.touched[6 + e]] = entry;
       }
     };
     using All = std::integral_constant<int, R>;
     // Moving a body, by dofs 3 to 5 of a free root, does not turn it.
     using Moving = std::integral_constant<int, std::min(R, 3)>;
     for (int k = 0; k < t.leading; ++k) k < 3 ? add(k, All()) : add(k, Moving());
-    for (std::size_t e = t.leading; e < t.touched.size(); ++e) add(t.touched[e], All());
+    for (std::size_t f = t.leading; f < t.touched.size(); ++f) add(f, All());
   }
 }
 

@@ -33,8 +33,8 @@ struct Constraint {
   int rows = 0;        ///< 1, 3 or 6
   int a = -1, b = -1;  ///< indices of the trees in the island, or -1
   int jacobian_a = 0,
-      jacobian_b = 0;  ///< into Problem::jacobian: per dof of the tree, a column of `rows`
-  std::span<const int> dofs_a, dofs_b;  ///< that move each side, ascending; other columns are zero
+      jacobian_b = 0;                   ///< into Problem::jacobian: `rows` rows, see jacobian.h
+  std::span<const int> dofs_a, dofs_b;  ///< that move each side, ascending
   std::array<double, 3>
       friction{};  ///< coefficients of the discs: sliding [1], spinning and rolling [m]
   double lower = 0,

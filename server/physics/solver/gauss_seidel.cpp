@@ -108,8 +108,9 @@ void GaussSeidel::add(const Problem& problem, const Constraint& constraint, int 
     double* out = rows_.data() + first + r * (size[0] + size[1]);
     for (int s = 0; s < 2; ++s) {
       if (size[s] == 0) continue;
-      const double* column = problem.jacobian.data() + jacobians[s];
-      for (int k = 0; k < size[s]; ++k) out[k] = column[k * constraint.rows + r];
+      const std::span<const int> dofs = s == 0 ? constraint.dofs_a : constraint.dofs_b;
+      const double* row = problem.jacobian.data() + jacobians[s] + r * dofs.size();
+      for (std::size_t e = 0; e < dofs.size(); ++e) out[dofs[e]] = row[e];
       const double* c = factors_.data() + factor_of_[trees[s]];
       size[s] == 6 ? whiten<6>(c, 6, out) : whiten<-1>(c, size[s], out);
       square += dot<-1>(out, out, size[s]);

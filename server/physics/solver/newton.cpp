@@ -12,34 +12,6 @@ namespace {
 
 using Speeds = std::vector<std::array<double, Constraint::most_rows>>;
 
-/// right += the columns of a side times the impulses of R rows.
-template <int R>
-void add_impulse_of(const double* columns, std::span<const int> dofs, const double* impulse,
-                    double* right) {
-  const auto add = [&](int k) {
-    double sum = right[k];
-    for (int r = 0; r < R; ++r) sum += columns[k * R + r] * impulse[r];
-    right[k] = sum;
-  };
-  const bool leading = begins_with_floating_base(dofs);
-  for (int k = 0; k < 6 && leading; ++k) add(k);
-  for (std::size_t e = leading ? 6 : 0; e < dofs.size(); ++e) add(dofs[e]);
-}
-
-/// out += J^T impulse of a constraint, row by row.
-void add_rows_of(const Problem& problem, const Constraint& constraint, const double* impulse,
-                 std::vector<double>& out) {
-  const auto add_side = [&](int index, int first, std::span<const int> dofs) {
-    if (index < 0) return;
-    dispatch_rows(constraint.rows, [&](auto rows) {
-      add_impulse_of<rows()>(problem.jacobian.data() + first, dofs, impulse,
-                             out.data() + problem.offset[index]);
-    });
-  };
-  add_side(constraint.a, constraint.jacobian_a, constraint.dofs_a);
-  add_side(constraint.b, constraint.jacobian_b, constraint.dofs_b);
-}
-
 /// Sets a constraint's impulses by its linearised law.
 template <int R>
 void set_impulse(const LinearisedLaw& linear, const double* u, Constraint& constraint) {
@@ -122,14 +94,12 @@ bool have_similar_masses(std::span<const double> masses) {
 }
 
 /// Initial velocities of an unsolved problem.
-InitialVelocities initial_velocities(const Problem& problem) {
+InitialVelocities initial_velocities(const Problem& problem, const Speeds& speeds) {
   InitialVelocities out;
-  for (const Constraint& constraint : problem.constraints) {
-    if (constraint.kind != Constraint::Kind::contact) continue;
-    double u[Constraint::most_rows];
-    problem.constraint_velocity(constraint, u);
-    for (int r = 0; r < std::min(constraint.rows, 3); ++r)
-      out.fastest_contact = std::max(out.fastest_contact, std::abs(u[r]));
+  for (std::size_t i = 0; i < problem.constraints.size(); ++i) {
+    if (problem.constraints[i].kind != Constraint::Kind::contact) continue;
+    for (int r = 0; r < std::min(problem.constraints[i].rows, 3); ++r)
+      out.fastest_contact = std::max(out.fastest_contact, std::abs(speeds[i][r]));
   }
   for (const Tree* tree : problem.trees)
     out.gravity_change = std::max(out.gravity_change, problem.time_step * tree->gravity.norm());
@@ -168,7 +138,7 @@ bool VelocitySolver::newton_step(Problem& problem) {
     linearise(problem.constraints[i], constraint_velocities_[i].data(), laws_[i]);
     add_constraint_hessian(problem, problem.constraints[i], laws_[i], hessian_jacobian_, matrix_);
     if (laws_[i].is_zero) continue;
-    add_rows_of(problem, problem.constraints[i], laws_[i].constant.data(), problem.velocity);
+    add_impulse(problem, problem.constraints[i], laws_[i].constant.data(), problem.velocity);
   }
   if (!matrix_.factor()) {
     problem.velocity = kept_velocity_;
@@ -315,11 +285,12 @@ bool VelocitySolver::newton(Problem& problem, SolverResult& outcome, int most_fa
   return false;
 }
 
-/// Analyses the matrix, if it is not too large for that, and saves the state.
+/// Analyses the matrix, if it is not too large for that, and saves the state. Constraint velocities
+/// must be valid.
 /// @return  multiplications that a factorisation takes
 double VelocitySolver::analyse(Problem& problem) {
   start_.save(problem);
-  initial_ = initial_velocities(problem);
+  initial_ = initial_velocities(problem, constraint_velocities_);
   if (problem.trees.size() > options.most_factored_trees) return HUGE_VAL;
   sizes_.clear();
   for (const Tree* tree : problem.trees) sizes_.push_back(tree->dofs);

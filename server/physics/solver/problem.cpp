@@ -41,9 +41,9 @@ bool has_normal_mobility(const Problem& problem, const Constraint& constraint) {
   const auto moves = [&](int index, int first, std::span<const int> dofs) {
     if (index < 0) return false;
     if (problem.trees[index]->has_floating_base) return true;
-    return std::ranges::any_of(dofs, [&](int k) {
-      return std::abs(problem.jacobian[first + k * constraint.rows]) > tangential_mobility;
-    });
+    const auto normal = std::span(problem.jacobian).subspan(first, dofs.size());
+    return std::ranges::any_of(normal,
+                               [](double entry) { return std::abs(entry) > tangential_mobility; });
   };
   return moves(constraint.a, constraint.jacobian_a, constraint.dofs_a) ||
          moves(constraint.b, constraint.jacobian_b, constraint.dofs_b);
@@ -112,75 +112,91 @@ void Problem::add(Tree& tree, Workspace& work, bool is_driven) {
   velocity.insert(velocity.end(), tree.v.begin(), tree.v.end());
 }
 
-/// Adds columns of zeros for a tree.
-/// @return  where they begin in the Jacobian
-int Problem::add_columns(const Tree& tree, int rows) {
-  const int first = static_cast<int>(jacobian.size());
-  jacobian.resize(jacobian.size() + static_cast<std::size_t>(tree.dofs) * rows, 0.0);
-  return first;
+/// Adds rows of zeros for some dofs.
+/// @param first  out: where they begin in the Jacobian
+double* Problem::add_rows(int rows, std::size_t dofs, int& first) {
+  first = static_cast<int>(jacobian.size());
+  jacobian.resize(jacobian.size() + dofs * rows, 0.0);
+  return jacobian.data() + first;
 }
 
-/// Adds the Jacobian columns of a contact on one side.
-/// @return  where they begin in the Jacobian
-int Problem::add_contact_columns(const Tree& tree, int link, const Vector3& point,
-                                 const Constraint& constraint, double sign) {
-  const int rows = constraint.rows, first = add_columns(tree, rows);
-  const Matrix3 frame = sign * constraint.frame;
-  const Vector3 arm = point - tree.origin;
-  const std::span<const int> dofs = tree.dofs_of(link);
+namespace {
+
+/// Sets the R Jacobian rows of a contact on one side.
+/// @param frame  its directions, away from the side;  @param arm  of its point from the origin [m]
+template <int R>
+void set_contact_rows(const Tree& tree, std::span<const int> dofs, const Matrix3& frame,
+                      const Vector3& arm, double* out) {
+  const std::size_t size = dofs.size();
   const std::size_t root = tree.has_floating_base ? 6 : 0;  // dofs along the world's axes
-  for (const int k : dofs.subspan(root)) {
-    const Motion& axis = tree.motion_subspace[k];
-    double* column = jacobian.data() + first + k * rows;
-    const Vector3 speed = axis.linear + axis.angular.cross(arm);
-    column[0] = frame.col(0).dot(speed);
-    for (int r = 1; r < std::min(rows, 3); ++r) column[r] = frame.col(r).dot(speed);
-    for (int r = 3; r < rows; ++r) column[r] = frame.col(r - 3).dot(axis.angular);
-  }
-  for (int r = 0; r < rows && root > 0; ++r) {
+  for (int r = 0; r < R && root > 0; ++r) {
     const Vector3 direction = frame.col(r % 3);
     const Vector3 moment = r < 3 ? Vector3(arm.cross(direction)) : direction;
-    double* row = jacobian.data() + first + r;
+    double* row = out + r * size;
     for (int k = 0; k < 3; ++k) {
-      row[k * rows] = moment[k];
-      if (r < 3) row[(3 + k) * rows] = direction[k];
+      row[k] = moment[k];
+      row[3 + k] = r < 3 ? direction[k] : 0;
     }
   }
-  return first;
+  for (std::size_t e = root; e < size; ++e) {
+    const Motion& axis = tree.motion_subspace[dofs[e]];
+    const Vector3 speed = axis.linear + axis.angular.cross(arm);
+    for (int r = 0; r < R; ++r)
+      out[r * size + e] = r < 3 ? frame.col(r % 3).dot(speed) : frame.col(r % 3).dot(axis.angular);
+  }
+}
+
+/// Adds J_k^2 / M_kk of each dof to the mobility of R rows of one side.
+template <int R>
+void add_mobility(const double* jacobian, std::span<const int> dofs, const double* inverse_mass,
+                  double* mobility) {
+  const std::size_t size = dofs.size(), root = begins_with_floating_base(dofs) ? 6 : 0;
+  for (int r = 0; r < R; ++r) {
+    const double* row = jacobian + r * size;
+    Pair both(0, 0);
+    for (std::size_t k = 0; k < root; k += 2)
+      both += pair_at(row + k) * pair_at(row + k) * pair_at(inverse_mass + k);
+    double sum = both[0] + both[1];
+    for (std::size_t e = root; e < size; ++e) sum += row[e] * row[e] * inverse_mass[dofs[e]];
+    mobility[r] += sum;
+  }
+}
+
+}  // namespace
+
+/// Adds the Jacobian rows of a contact on one side.
+/// @param sign  1: side a, -1: side b
+void Problem::add_contact_rows(const Tree& tree, int link, const Vector3& point,
+                               Constraint& constraint, double sign) {
+  const std::span<const int> dofs = tree.dofs_of(link);
+  (sign > 0 ? constraint.dofs_a : constraint.dofs_b) = dofs;
+  double* const out = add_rows(constraint.rows, dofs.size(),
+                               sign > 0 ? constraint.jacobian_a : constraint.jacobian_b);
+  dispatch_rows(constraint.rows, [&](auto rows) {
+    set_contact_rows<rows()>(tree, dofs, sign * constraint.frame, point - tree.origin, out);
+  });
 }
 
 /// Computes the velocity change by a unit impulse, without coupling of dofs; equal for the rows of
 /// a friction disc.
 void Problem::compute_mobility(Constraint& constraint) const {
-  constraint.mobility.fill(0);
-  const auto add_side = [&](int index, int first, std::span<const int> dofs) {
-    if (index < 0) return;
-    const double* inverse = inverse_mass.data() + offset[index];
-    dispatch_rows(constraint.rows, [&](auto rows) {
-      constexpr int R = rows();
-      const double* columns = jacobian.data() + first;
-      double sum[R];
-      std::copy_n(constraint.mobility.data(), R, sum);
-      const auto add = [&](int k) {
-        for (int r = 0; r < R; ++r) {
-          sum[r] += columns[k * R + r] * columns[k * R + r] * inverse[k];
-        }
-      };
-      const bool leading = begins_with_floating_base(dofs);
-      for (int k = 0; k < 6 && leading; ++k) add(k);
-      for (std::size_t e = leading ? 6 : 0; e < dofs.size(); ++e) add(dofs[e]);
-      std::copy_n(sum, R, constraint.mobility.data());
-    });
-  };
-  add_side(constraint.a, constraint.jacobian_a, constraint.dofs_a);
-  add_side(constraint.b, constraint.jacobian_b, constraint.dofs_b);
-  for (const FrictionDisc& disc : discs_of(constraint.rows)) {
-    double &first = constraint.mobility[disc.first],
-           &last = constraint.mobility[disc.first + disc.size - 1];
-    first = last = (first + last) / 2;
-  }
-  for (int r = 0; r < constraint.rows; ++r)
-    constraint.mobility[r] = std::max(constraint.mobility[r], 1e-12);
+  constexpr double least = 1e-12;
+  const double *columns = jacobian.data(), *inverse = inverse_mass.data();
+  dispatch_rows(constraint.rows, [&](auto rows) {
+    constexpr int R = rows();
+    double sum[R] = {};
+    if (constraint.a >= 0)
+      add_mobility<R>(columns + constraint.jacobian_a, constraint.dofs_a,
+                      inverse + offset[constraint.a], sum);
+    if (constraint.b >= 0)
+      add_mobility<R>(columns + constraint.jacobian_b, constraint.dofs_b,
+                      inverse + offset[constraint.b], sum);
+    for (const FrictionDisc& disc : discs_of(R)) {
+      double &first = sum[disc.first], &last = sum[disc.first + disc.size - 1];
+      first = last = (first + last) / 2;
+    }
+    for (int r = 0; r < R; ++r) constraint.mobility[r] = std::max(sum[r], least);
+  });
 }
 
 /// Bias acceleration of a link at a point of contact, at dv/dt = 0 [m/s^2].
@@ -264,15 +280,10 @@ void Problem::add(const ContactPoint& contact, int a, int b, int source) {
   const Constraint* other = constraints.size() > 1 ? &constraints[constraints.size() - 2] : nullptr;
   const bool same = other && other->frame.col(0) == contact.normal;
   constraint.frame = same ? other->frame : frame_about(contact.normal);
-  if (a >= 0) {
-    constraint.jacobian_a =
-        add_contact_columns(*trees[a], contact.a.link, contact.point, constraint, 1);
-    constraint.dofs_a = trees[a]->dofs_of(contact.a.link);
-  }
+  if (a >= 0) add_contact_rows(*trees[a], contact.a.link, contact.point, constraint, 1);
   if (b >= 0) {
-    constraint.jacobian_b = add_contact_columns(
-        *trees[b], contact.b.link, contact.point + contact.offset_to_b, constraint, -1);
-    constraint.dofs_b = trees[b]->dofs_of(contact.b.link);
+    add_contact_rows(*trees[b], contact.b.link, contact.point + contact.offset_to_b, constraint,
+                     -1);
   }
   compute_mobility(constraint);
   constraint.source = source;
@@ -283,11 +294,10 @@ void Problem::add(const ContactPoint& contact, int a, int b, int source) {
     constraint.law = Constraint::Law::off;
     return;
   }
-  const Vector3 impulse = constraint.frame.transpose() * contact.impulse;
-  const Vector3 angular = constraint.frame.transpose() * contact.angular_impulse;
-  constraint.impulse[0] = std::max(0.0, impulse[0]);
-  for (int r = 1; r < std::min(constraint.rows, 3); ++r) constraint.impulse[r] = impulse[r];
-  for (int r = 3; r < constraint.rows; ++r) constraint.impulse[r] = angular[r - 3];
+  for (int r = 0; r < constraint.rows; ++r)
+    constraint.impulse[r] =
+        constraint.frame.col(r % 3).dot(r < 3 ? contact.impulse : contact.angular_impulse);
+  constraint.impulse[0] = std::max(0.0, constraint.impulse[0]);
   set_normal_target(constraint);
   if (a >= 0 && b >= 0) add_rotation_correction(constraint, contact);
   constraint.restitution = contact.restitution;
@@ -302,18 +312,16 @@ void Problem::add(const Servo& servo, int index, int source) {
   Constraint& constraint = constraints.emplace_back();
   set_law(servo, constraint);
   constraint.a = index;
-  constraint.jacobian_a = add_columns(tree, 1);
+  constraint.dofs_a = servo.dof >= 0 ? tree.dof_span(servo.dof) : tree.dofs_of(servo.link);
+  double* row = add_rows(1, constraint.dofs_a.size(), constraint.jacobian_a);
   if (servo.dof >= 0) {
-    jacobian[constraint.jacobian_a + servo.dof] = 1;
-    constraint.dofs_a = tree.dof_span(servo.dof);
+    *row = 1;
   } else {
     const Vector3 arm = tree.position[servo.link] - tree.origin;
-    constraint.dofs_a = tree.dofs_of(servo.link);
     for (const int k : constraint.dofs_a) {
       const Motion& axis = tree.motion_subspace[k];
-      jacobian[constraint.jacobian_a + k] =
-          servo.direction.angular.dot(axis.angular) +
-          servo.direction.linear.dot(axis.linear + axis.angular.cross(arm));
+      *row++ = servo.direction.angular.dot(axis.angular) +
+               servo.direction.linear.dot(axis.linear + axis.angular.cross(arm));
     }
   }
   compute_mobility(constraint);
@@ -330,8 +338,7 @@ void Problem::add(const Limit& limit, int index, int source) {
   Constraint& constraint = constraints.emplace_back();
   set_law(limit, constraint);
   constraint.a = index;
-  constraint.jacobian_a = add_columns(tree, 1);
-  jacobian[constraint.jacobian_a + dof] = at_lower ? 1 : -1;
+  *add_rows(1, 1, constraint.jacobian_a) = at_lower ? 1 : -1;
   constraint.dofs_a = tree.dof_span(dof);
   compute_mobility(constraint);
   constraint.gap = at_lower ? q - limit.lower : limit.upper - q;
@@ -339,34 +346,6 @@ void Problem::add(const Limit& limit, int index, int source) {
   constraint.target_velocity[0] = constraint.gap > 0 ? -constraint.gap / time_step : 0;
   constraint.impulse[0] = std::max(0.0, at_lower ? limit.impulse : -limit.impulse);
   constraint.source = source;
-}
-
-namespace {
-
-/// u += the columns of a side times the speeds of its dofs, of R rows.
-template <int R>
-void add_speeds(const double* columns, std::span<const int> dofs, const double* v, double* u) {
-  double sum[R] = {};
-  const auto add = [&](int k) {
-    for (int r = 0; r < R; ++r) sum[r] += columns[k * R + r] * v[k];
-  };
-  const bool leading = begins_with_floating_base(dofs);
-  for (int k = 0; k < 6 && leading; ++k) add(k);
-  for (std::size_t e = leading ? 6 : 0; e < dofs.size(); ++e) add(dofs[e]);
-  for (int r = 0; r < R; ++r) u[r] += sum[r];
-}
-
-}  // namespace
-
-void Problem::constraint_velocity(const Constraint& constraint, double* u, const double* v) const {
-  const double* j = jacobian.data();
-  dispatch_rows(constraint.rows, [&](auto rows) {
-    for (int r = 0; r < rows(); ++r) u[r] = 0;
-    if (constraint.a >= 0)
-      add_speeds<rows()>(j + constraint.jacobian_a, constraint.dofs_a, v + offset[constraint.a], u);
-    if (constraint.b >= 0)
-      add_speeds<rows()>(j + constraint.jacobian_b, constraint.dofs_b, v + offset[constraint.b], u);
-  });
 }
 
 bool Problem::switch_limits() {
@@ -377,7 +356,7 @@ bool Problem::switch_limits() {
     double speed = 0;
     constraint_velocity(constraint, &speed);
     if (constraint.gap + time_step * speed <= constraint.range + rounding) continue;
-    double& direction = jacobian[constraint.jacobian_a + constraint.dofs_a[0]];
+    double& direction = jacobian[constraint.jacobian_a];
     direction = -direction;
     constraint.gap = constraint.range - constraint.gap;
     constraint.target_velocity[0] = -std::max(0.0, constraint.gap) / time_step;

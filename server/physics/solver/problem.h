@@ -12,6 +12,7 @@
 
 #include "physics/multibody/equations.h"
 #include "physics/solver/contact_law.h"
+#include "physics/solver/jacobian.h"
 
 namespace ziggurat::dynamics {
 
@@ -27,7 +28,7 @@ struct Problem {
   std::vector<std::array<double, 6>> root_bias_impulse;  ///< of each tree, see predict_momentum()
   std::vector<double> bias_velocity_change;              ///< of each tree, see Workspace
   std::vector<Constraint> constraints;
-  std::vector<double> jacobian;
+  std::vector<double> jacobian;  ///< see Constraint::jacobian_a
   std::vector<double> momentum;  ///< p
   std::vector<double>
       inverse_mass;  ///< of each dof as if it were alone: 1 / M_kk [1/kg] or [1/(kg m^2)]
@@ -82,9 +83,9 @@ struct Problem {
   bool become_displacement();
 
  private:
-  int add_columns(const Tree& tree, int rows);
-  int add_contact_columns(const Tree& tree, int link, const Vector3& point,
-                          const Constraint& constraint, double sign);
+  double* add_rows(int rows, std::size_t dofs, int& first);
+  void add_contact_rows(const Tree& tree, int link, const Vector3& point, Constraint& constraint,
+                        double sign);
   void compute_mobility(Constraint& constraint) const;
   Vector3 point_bias_acceleration(int tree, int link, const Vector3& point,
                                   const ContactPoint& contact) const;
@@ -92,10 +93,18 @@ struct Problem {
   void add_rotation_correction(Constraint& constraint, const ContactPoint& contact) const;
 };
 
-/// Whether a side's dofs begin with the first six of its tree: those of a floating base, or of the
-/// first joints of a fixed one.
-inline bool begins_with_floating_base(std::span<const int> dofs) {
-  return dofs.size() >= 6 && dofs[5] == 5;
+inline void Problem::constraint_velocity(const Constraint& constraint, double* u,
+                                         const double* v) const {
+  const double* j = jacobian.data();
+  dispatch_rows(constraint.rows, [&](auto rows) {
+    for (int r = 0; r < rows(); ++r) u[r] = 0;
+    if (constraint.a >= 0)
+      add_velocity<rows()>(j + constraint.jacobian_a, constraint.dofs_a, v + offset[constraint.a],
+                           u);
+    if (constraint.b >= 0)
+      add_velocity<rows()>(j + constraint.jacobian_b, constraint.dofs_b, v + offset[constraint.b],
+                           u);
+  });
 }
 
 }  // namespace ziggurat::dynamics

@@ -96,9 +96,9 @@ bool VelocitySolver::augmented_lagrangian_after_gauss_seidel(Problem& problem,
 
 void VelocitySolver::solve_displacement(Problem& problem) {
   SolverResult outcome;
+  compute_constraint_velocities(problem);
   const double work = analyse(problem);
   if (options.suits_newton(problem.trees.size(), work)) {
-    compute_constraint_velocities(problem);
     if (newton(problem, outcome, options.most_iterations)) return;
     start_.restore(problem);
   }

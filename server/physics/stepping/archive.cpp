@@ -40,6 +40,8 @@ void System::archive(math::Archive& archive) {
         return next >= -1 && next < static_cast<int>(sleep_.ring.size());
       });
   if (!is_right) wake_all();
+  ++sleep_.changes;
+  list_flagged(sleep_);
   archive.require(is_right, "knows sleepers that are no trees");
 }
 

@@ -81,7 +81,7 @@ void write_impulses(const Problem& problem, const ConstraintLists& constraints) 
         break;
       case Constraint::Kind::limit:  // along the joint at the lower bound, against it at the upper
         constraints.limits[constraint.source].impulse =
-            problem.jacobian[constraint.jacobian_a + constraint.dofs_a[0]] * g[0];
+            problem.jacobian[constraint.jacobian_a] * g[0];
         break;
     }
   }
@@ -218,6 +218,21 @@ void integrate_island(const IslandStep& step) {
 }
 
 }  // namespace
+
+void add(const Report& island, Report& all) {
+  all.islands += island.islands;
+  all.not_converged += island.not_converged;
+  all.most_iterations = std::max(all.most_iterations, island.most_iterations);
+  all.most_augmented_lagrangian_steps =
+      std::max(all.most_augmented_lagrangian_steps, island.most_augmented_lagrangian_steps);
+  all.most_interior_point_steps =
+      std::max(all.most_interior_point_steps, island.most_interior_point_steps);
+  all.most_passes = std::max(all.most_passes, island.most_passes);
+  all.residual = std::max(all.residual, island.residual);
+  if (island.most_evaluations <= all.most_evaluations) return;
+  all.most_evaluations = island.most_evaluations;
+  all.most_evaluated_tree = island.most_evaluated_tree;
+}
 
 void assemble_problem(const IslandStep& step) {
   IslandMemory& memory = step.memory;

@@ -28,6 +28,9 @@ struct Report {
   int most_evaluated_tree = -1;  ///< the first tree with so many
 };
 
+/// Adds the statistics of an island that follows.
+void add(const Report& island, Report& all);
+
 /// Options of a step.
 struct StepOptions {
   static constexpr double default_compliance_factor = 5e-5;
@@ -49,7 +52,7 @@ struct RotationUntilImpact {
 };
 
 /// Memory of the stages of an island's step; the next island uses it again.
-struct IslandMemory {
+struct alignas(64) IslandMemory {
   Workspace work;
   Problem problem;
   VelocitySolver solver;

@@ -123,7 +123,7 @@ void hash_servo_commands(Sleep& sleep, std::span<const Servo> servos) {
   for (std::size_t i = 0; i < servos.size(); ++i) {
     const Servo& servo = servos[i];
     if (servo.tree < 0) continue;
-    sleep.flags[servo.tree] |= Sleep::commanded;
+    set_flag(sleep, servo.tree, Sleep::commanded);
     SleepState& sleeper = sleep.states[servo.tree];
     sleep.next_servo[i] = std::exchange(sleeper.first_servo, static_cast<int>(i));
     std::uint64_t& command = sleeper.command;
@@ -134,8 +134,32 @@ void hash_servo_commands(Sleep& sleep, std::span<const Servo> servos) {
 
 }  // namespace
 
+void set_flag(Sleep& sleep, int tree, Sleep::Flag flag) {
+  unsigned char& flags = sleep.flags[tree];
+  if (flags == 0) sleep.flagged.push_back(tree);
+  flags |= flag;
+}
+
+void list_flagged(Sleep& sleep) {
+  sleep.flagged.clear();
+  for (std::size_t i = 0; i < sleep.flags.size(); ++i) {
+    if (sleep.flags[i] != 0) sleep.flagged.push_back(static_cast<int>(i));
+  }
+}
+
+void list_awake(Sleep& sleep, std::size_t trees) {
+  if (sleep.listed == sleep.changes && sleep.tree_count == trees) return;
+  sleep.listed = sleep.changes;
+  sleep.tree_count = trees;
+  sleep.awake.clear();
+  for (int tree = 0; tree < static_cast<int>(trees); ++tree) {
+    if (!sleep.is_asleep(tree)) sleep.awake.push_back(tree);
+  }
+}
+
 void wake(Sleep& sleep, int tree) {
   if (!sleep.is_asleep(tree)) return;
+  ++sleep.changes;
   while (sleep.ring[tree] >= 0) {
     const int next = sleep.ring[tree];
     sleep.ring[tree] = -1;
@@ -145,6 +169,7 @@ void wake(Sleep& sleep, int tree) {
 }
 
 void wake_all(Sleep& sleep, std::size_t trees) {
+  ++sleep.changes;
   sleep.states.assign(trees, SleepState{});
   sleep.ring.assign(trees, -1);
 }
@@ -154,10 +179,13 @@ bool wake_disturbed(Sleep& sleep, const std::vector<Tree>& trees, std::span<cons
   if (sleep.states.size() > trees.size()) wake_all(sleep, trees.size());
   sleep.states.resize(trees.size());
   sleep.ring.resize(trees.size(), -1);
-  sleep.flags.resize(trees.size(), 0);
+  if (sleep.flags.size() != trees.size()) {
+    sleep.flags.resize(trees.size(), 0);
+    list_flagged(sleep);
+  }
   hash_servo_commands(sleep, constraints.servos);
   bool woke = false;
-  for_each_active(active, trees.size(), [&](int tree) {
+  for_each_flagged(sleep, active, [&](int tree) {
     if (sleep.flags[tree] == 0 || !sleep.is_asleep(tree) ||
         !has_changed_load(sleep.states[tree], trees[tree]))
       return;
@@ -197,6 +225,7 @@ void update_sleep(Sleep& sleep, const SleepOptions& options, std::vector<Tree>& 
     least = std::min(least, sleeper.time_at_rest);
   }
   if (!quiet || least < (is_heap ? options.heap_time : options.time)) return;
+  ++sleep.changes;
   for (std::size_t i = 0; i < island.size(); ++i) {
     const int index = island[i];
     Tree& tree = trees[index];
@@ -213,9 +242,8 @@ void update_sleep(Sleep& sleep, const SleepOptions& options, std::vector<Tree>& 
     }
     sleep.ring[index] = island[(i + 1) % island.size()];
     sleeper.command_asleep = sleeper.command;
-    unsigned char& flags = sleep.flags[index];
-    flags = static_cast<unsigned char>((flags & ~Sleep::loaded_asleep) |
-                                       (is_held ? Sleep::loaded_asleep : 0));
+    sleep.flags[index] &= static_cast<unsigned char>(~Sleep::loaded_asleep);
+    if (is_held) set_flag(sleep, index, Sleep::loaded_asleep);
     sleeper.force_bound = options.force_change * (mass * tree.gravity.norm() + force);
   }
 }

@@ -45,12 +45,26 @@ struct Sleep {
   /// now.
   enum Flag : unsigned char { commanded = 1, loaded_asleep = 2, loaded = 4, subdivided = 8 };
   std::vector<unsigned char> flags;
+  std::vector<int> flagged;     ///< trees that have flags, in any order, and some that had them
   std::vector<int> next_servo;  ///< of each servo: the next of its tree; -1: none
+  std::vector<int> awake;       ///< trees that are awake, ascending: see list_awake()
+  std::size_t tree_count = 0;   ///< of all trees when they were listed
+  std::uint64_t changes = 1;    ///< how often a tree fell asleep or woke
+  std::uint64_t listed = 0;     ///< `changes` when they were listed
 
   bool is_asleep(int tree) const {
     return static_cast<std::size_t>(tree) < ring.size() && ring[tree] >= 0;
   }
 };
+
+/// Sets a flag of a tree.
+void set_flag(Sleep& sleep, int tree, Sleep::Flag flag);
+
+/// Lists the trees that have flags again.
+void list_flagged(Sleep& sleep);
+
+/// Lists the awake trees of so many, if some fell asleep, woke, came or went since the last call.
+void list_awake(Sleep& sleep, std::size_t trees);
 
 /// Wakes a tree and its island.
 void wake(Sleep& sleep, int tree);
@@ -72,14 +86,11 @@ void update_sleep(Sleep& sleep, const SleepOptions& options, std::vector<Tree>& 
                   std::span<const int> island, double time_step, bool is_carried,
                   double heap_residual);
 
-/// Calls visit(tree) for the active trees, ascending; none: all.
+/// Calls visit(tree) for all active trees with flags, and for some without.
+/// @param active  none: all
 template <class Visit>
-void for_each_active(std::span<const int> active, std::size_t trees, Visit visit) {
-  if (!active.empty()) {
-    for (const int tree : active) visit(tree);
-  } else {
-    for (int tree = 0; tree < static_cast<int>(trees); ++tree) visit(tree);
-  }
+void for_each_flagged(const Sleep& sleep, std::span<const int> active, Visit visit) {
+  for (const int tree : active.empty() ? std::span<const int>(sleep.flagged) : active) visit(tree);
 }
 
 }  // namespace ziggurat::dynamics

@@ -13,27 +13,34 @@ void IslandsToSubdivide::add(std::span<const int> of_island, int parts, double i
 /// Lists the active trees that are awake, and sorts them and their constraints by island.
 void System::find_islands() {
   awake_.clear();
-  for_each_active(active_, trees.size(), [&](int tree) {
+  if (active_.empty()) list_awake(sleep_, trees.size());
+  for (const int tree : active_.empty() ? std::span<const int>(sleep_.awake) : active_) {
     if (trees[tree].dofs > 0 && !is_asleep(tree)) awake_.push_back(tree);
-  });
+  }
   build_islands(trees, sleep_, awake_, constraints_, islands_);
 }
 
-IslandStep System::island_step(std::size_t island) {
+IslandStep System::island_step(std::size_t island, IslandMemory& memory, Report& report) {
   return {trees,   islands_,   islands_[island], constraints_, rotations_until_impact,
-          options, time_step_, memory_,          report_};
+          options, time_step_, memory,           report};
+}
+
+void System::set_threads(unsigned threads) {
+  std::shared_ptr<Team> made = threads > 1 ? std::make_shared<Team>(threads) : nullptr;
+  memories_.resize(std::max(1U, threads));
+  team_ = std::move(made);
 }
 
 void System::apply_wrench(int tree, int link, const Wrench& wrench) {
   Wrench& external = trees[tree].external[link];
   external = external + wrench;
   if (sleep_.flags.size() < trees.size()) sleep_.flags.resize(trees.size(), 0);
-  sleep_.flags[tree] |= Sleep::loaded;
+  set_flag(sleep_, tree, Sleep::loaded);
 }
 
 /// Clears the wrenches of the active trees, but of those that the step left unchanged.
 void System::clear_wrenches() {
-  for_each_active(active_, trees.size(), [&](int tree) {
+  for_each_flagged(sleep_, active_, [&](int tree) {
     unsigned char& flags = sleep_.flags[tree];
     if (flags & Sleep::subdivided) {
       flags &= static_cast<unsigned char>(~Sleep::subdivided);
@@ -43,6 +50,7 @@ void System::clear_wrenches() {
     flags &= static_cast<unsigned char>(~Sleep::loaded);
     std::ranges::fill(trees[tree].external, Wrench{});
   });
+  std::erase_if(sleep_.flagged, [&](int tree) { return sleep_.flags[tree] == 0; });
 }
 
 bool System::wake_disturbed(double time_step, std::span<ContactPoint> contacts,
@@ -63,33 +71,74 @@ Report System::step(double time_step, std::span<ContactPoint> contacts, std::spa
 
 /// Leaves an island unchanged, to be stepped in parts.
 void System::subdivide(std::span<const int> island, const IslandOutcome& outcome) {
-  for (const int tree : island) sleep_.flags[tree] |= Sleep::subdivided;
+  for (const int tree : island) set_flag(sleep_, tree, Sleep::subdivided);
   islands_to_subdivide.add(island, outcome.parts, outcome.impact_time);
+}
+
+/// Advances an island. It changes nothing of other islands.
+void System::advance_island(std::size_t island, IslandMemory& memory) {
+  prefetch_after(islands_, island, trees, constraints_.contacts);
+  AdvancedIsland& out = advanced_[island];
+  out = {};
+  out.outcome = step_island(island_step(island, memory, out.report));
+  out.ran_out_of_steps = std::exchange(memory.work.ran_out_of_steps, false);
+}
+
+/// Shares the islands among the team's threads, in blocks of similar estimated cost.
+void System::share_islands() {
+  constexpr double blocks_of_thread = 8;
+  const auto cost_of = [&](std::size_t i) {
+    const double size = static_cast<double>(islands_[i].trees.size());
+    return size * size + static_cast<double>(islands_[i].items.size());
+  };
+  double all = 0;
+  for (std::size_t i = 0; i < islands_.size(); ++i) all += cost_of(i);
+  blocks_.clear();
+  for (std::size_t i = 0; i < islands_.size(); ++i) {
+    if (blocks_.empty() || blocks_.back().cost * blocks_of_thread * team_->size() >= all)
+      blocks_.push_back({i, i, 0});
+    blocks_.back().last = i + 1;
+    blocks_.back().cost += cost_of(i);
+  }
+  for (IslandMemory& memory : memories_) memory.solver.options = solver().options;
+  team_->share(blocks_.size(), [&](std::size_t block, unsigned member) {
+    for (std::size_t i = blocks_[block].first; i < blocks_[block].last; ++i)
+      advance_island(i, memories_[member]);
+  });
+}
+
+/// Advances all islands.
+void System::advance_islands() {
+  constexpr std::size_t few = 64;  // constraints that are not worth waking a thread
+  advanced_.resize(islands_.size());
+  if (team_ && islands_.size() > 1 && islands_.items.size() >= few) return share_islands();
+  for (std::size_t i = 0; i < islands_.size(); ++i) advance_island(i, memories_.front());
 }
 
 Report System::advance(std::span<Limit> limits) {
   constraints_.limits = limits;
-  report_ = {};
+  Report report;
   islands_to_subdivide.islands.clear();
   islands_to_subdivide.trees.clear();
   find_islands();
-  report_.awake = static_cast<int>(awake_.size());
+  report.awake = static_cast<int>(awake_.size());
+  advance_islands();
   for (std::size_t i = 0; i < islands_.size(); ++i) {
-    prefetch_after(islands_, i, trees, constraints_.contacts);
-    const IslandOutcome outcome = step_island(island_step(i));
-    if (outcome.is_left()) {
-      subdivide(islands_[i].trees, outcome);
+    const AdvancedIsland& island = advanced_[i];
+    add(island.report, report);
+    if (island.outcome.is_left()) {
+      subdivide(islands_[i].trees, island.outcome);
     } else {
-      update_sleep(sleep_, sleeping, trees, islands_[i].trees, time_step_, outcome.is_carried,
-                   outcome.heap_residual);
+      update_sleep(sleep_, sleeping, trees, islands_[i].trees, time_step_,
+                   island.outcome.is_carried, island.outcome.heap_residual);
     }
-    if (!std::exchange(memory_.work.ran_out_of_steps, false)) continue;
-    ++report_.not_converged;
-    report_.islands = std::max(report_.islands, report_.not_converged);
+    if (!island.ran_out_of_steps) continue;
+    ++report.not_converged;
+    report.islands = std::max(report.islands, report.not_converged);
   }
   clear_wrenches();
   active_ = {};
-  return report_;
+  return report;
 }
 
 void System::apply_impacts(std::span<ContactPoint> contacts, std::span<Servo> servos,
@@ -102,8 +151,10 @@ void System::apply_impacts(std::span<ContactPoint> contacts, std::span<Servo> se
   active_ = chosen;
   time_step_ = instant;
   find_islands();
+  Report report;
   for (std::size_t i = 0; i < islands_.size(); ++i) {
-    if (islands_[i].has_contact()) dynamics::apply_impacts(island_step(i));
+    if (islands_[i].has_contact())
+      dynamics::apply_impacts(island_step(i, memories_.front(), report));
   }
   active_ = {};
 }
@@ -114,8 +165,9 @@ void System::separate(std::span<ContactPoint> contacts, std::span<const int> cho
   constraints_.servos = {};
   active_ = chosen;
   find_islands();
+  Report report;
   for (std::size_t i = 0; i < islands_.size(); ++i) {
-    if (islands_[i].has_contact()) dynamics::separate(island_step(i));
+    if (islands_[i].has_contact()) dynamics::separate(island_step(i, memories_.front(), report));
   }
   active_ = {};
 }

@@ -2,11 +2,13 @@
 // All trees, stepped together. Islands of trees in contact are solved one by one, each from its own
 // trees, contacts, servos and limits alone.
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "physics/stepping/island_step.h"
 #include "physics/stepping/sleeping.h"
+#include "physics/stepping/team.h"
 
 namespace ziggurat::dynamics {
 
@@ -46,6 +48,8 @@ class System {
   /// Whether a tree sleeps. Then a substep leaves it as it is, and ignores its contacts, until its
   /// island wakes: by an approaching contact, a change of its wrenches or servos, or wake().
   bool is_asleep(int tree) const { return sleep_.is_asleep(tree); }
+  /// Grows when a tree falls asleep or wakes.
+  std::uint64_t sleep_changes() const { return sleep_.changes; }
   /// Wakes a tree and its island: to be called when its pose, velocity or gravity was set, or a
   /// body that it touches was moved or removed.
   void wake(int tree) { dynamics::wake(sleep_, tree); }
@@ -97,7 +101,15 @@ class System {
   /// @param chosen    as in step(): no others have contacts
   void separate(std::span<ContactPoint> contacts, std::span<const int> chosen = {});
 
-  VelocitySolver& solver() { return memory_.solver; }
+  /// The solver, whose options hold for all threads.
+  VelocitySolver& solver() { return memories_.front().solver; }
+
+  /// Islands are stepped by a team of so many threads, with the same bits for any number. 1: by the
+  /// caller's, as at first.
+  /// @throws std::system_error if the system allows no more threads; then nothing changes
+  void set_threads(unsigned threads);
+  /// The team of set_threads(); null: one thread.
+  Team* team() { return team_.get(); }
 
   /// State of all trees and their sleep. Between two substeps, without wrenches.
   void archive(math::Archive& archive);
@@ -105,7 +117,10 @@ class System {
  private:
   void clear_wrenches();
   void find_islands();
-  IslandStep island_step(std::size_t island);
+  IslandStep island_step(std::size_t island, IslandMemory& memory, Report& report);
+  void advance_island(std::size_t island, IslandMemory& memory);
+  void advance_islands();
+  void share_islands();
   void subdivide(std::span<const int> island, const IslandOutcome& outcome);
 
   Sleep sleep_;
@@ -115,8 +130,21 @@ class System {
   std::span<const int> active_;
   std::vector<int> awake_;
   Islands islands_;
-  IslandMemory memory_;
-  Report report_;
+  std::vector<IslandMemory> memories_{1};  // of each thread
+  /// An island that was advanced.
+  struct AdvancedIsland {
+    IslandOutcome outcome;
+    Report report;
+    bool ran_out_of_steps = false;
+  };
+  std::vector<AdvancedIsland> advanced_;  // of each island
+  /// Islands that follow each other, which one thread takes.
+  struct IslandBlock {
+    std::size_t first = 0, last = 0;
+    double cost = 0;
+  };
+  std::vector<IslandBlock> blocks_;
+  std::shared_ptr<Team> team_;  // null: one thread
   // Memory of predict_velocities().
   std::vector<int> disturbed_;
   std::vector<unsigned char> is_fast_;  // of each tree: an impact may deflect it

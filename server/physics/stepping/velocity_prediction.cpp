@@ -86,7 +86,7 @@ bool System::predict_velocities(std::span<Limit> limits, double far,
   const double fast = far / time_step_;
   const auto moves = [&](int tree) { return trees[tree].dofs > 0 && !is_asleep(tree); };
   disturbed_.clear();
-  for_each_active(active_, trees.size(), [&](int tree) {
+  for_each_flagged(sleep_, active_, [&](int tree) {
     if ((sleep_.flags[tree] & Sleep::loaded) && moves(tree) &&
         wrench_velocity(trees[tree], time_step_) > fast)
       disturbed_.push_back(tree);
@@ -105,14 +105,16 @@ bool System::predict_velocities(std::span<Limit> limits, double far,
   for (int& tree : disturbed_) tree = islands_.of_tree[tree];
   std::ranges::sort(disturbed_);
   disturbed_.erase(std::unique(disturbed_.begin(), disturbed_.end()), disturbed_.end());
+  IslandMemory& memory = memories_.front();
+  Report report;
   for (const int number : disturbed_) {
-    const IslandStep step = island_step(number);
+    const IslandStep step = island_step(number, memory, report);
     if (step.island.trees.size() > most_bodies) continue;
     assemble_problem(step);
-    solve_velocities(memory_.problem, memory_.solver);
+    solve_velocities(memory.problem, memory.solver);
     out.trees.insert(out.trees.end(), step.island.trees.begin(), step.island.trees.end());
-    out.velocities.insert(out.velocities.end(), memory_.problem.velocity.begin(),
-                          memory_.problem.velocity.end());
+    out.velocities.insert(out.velocities.end(), memory.problem.velocity.begin(),
+                          memory.problem.velocity.end());
   }
   return !out.trees.empty();
 }

@@ -22,6 +22,8 @@ constexpr Option run_options[] = {
      "S simulated seconds instead of the scene's length; 0 is until Ctrl-C"},
     {"seed", "N", of_world | by_render, common, settings, read_seed,
      "random seed; 0 draws one from the system and prints it"},
+    {"threads", "N", of_world, common, scene, read_threads,
+     "N threads share the physics, with the same results for any number; default 1"},
     {"real-time", "FACTOR", of_world | by_replay, common, settings, read_real_time,
      "pace to the wall clock, FACTOR times as fast (default 1)", "1"},
     {"settings", "FILE.toml", of_world | by_render, common, command_line, &Options::settings_file,

@@ -131,6 +131,16 @@ void read_lua_processes(Options& options, const std::string& value) {
       static_cast<unsigned>(std::min(text::to_integer("--lua-processes", value), most));
 }
 
+void read_threads(Options& options, const std::string& value) {
+  constexpr std::uint64_t most_threads = 256;
+  const std::uint64_t threads = text::to_integer("--threads", value);
+  if (threads == 0 || threads > most_threads) {
+    throw text::UsageError(
+        fmt::format("--threads is {}; it must be from 1 to {}", threads, most_threads));
+  }
+  options.threads = static_cast<unsigned>(threads);
+}
+
 void trust_scripts(Options& options, const std::string&) {
   options.lua_arguments.emplace_back("--trust-scripts");
 }

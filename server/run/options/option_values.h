@@ -21,6 +21,7 @@ void add_restart(Options& options, const std::string& value);
 void add_deadline(Options& options, const std::string& value);
 void add_injection(Options& options, const std::string& value);
 void read_lease(Options& options, const std::string& value);
+void read_threads(Options& options, const std::string& value);
 void read_lua_processes(Options& options, const std::string& value);
 void trust_scripts(Options& options, const std::string&);
 void read_lua_memory(Options& options, const std::string& value);

@@ -15,6 +15,7 @@ TEST(Options, DefaultsAreThoseOfTheHelp) {
   const auto options = run({"scene.argos"});
   EXPECT_EQ(run::only_scene(options), "scene.argos");
   EXPECT_EQ(options.lua_processes, 1u);
+  EXPECT_EQ(options.threads, 1u);
   EXPECT_EQ(options.scene_file.max_size, std::size_t{64} << 20);
   EXPECT_FALSE(options.ticks || options.duration || options.seed || options.scene_file.clock ||
                options.real_time || options.hash || options.quiet || options.insecure);
@@ -29,6 +30,8 @@ TEST(Options, AreTakenFromTheCommandLine) {
                             "beta50",
                             "--real-time",
                             "2",
+                            "--threads",
+                            "3",
                             "--lua-processes",
                             "0",
                             "--controller",
@@ -53,6 +56,7 @@ TEST(Options, AreTakenFromTheCommandLine) {
   EXPECT_EQ(options.scene_file.clock, scene::Clock::beta50);
   EXPECT_EQ(options.real_time, 2.0);
   EXPECT_EQ(options.lua_processes, 0u);
+  EXPECT_EQ(options.threads, 3u);
   ASSERT_EQ(options.controllers.size(), 1u);
   EXPECT_EQ(options.controllers[0], (std::pair<std::string, std::string>("a", "x --y=z")));
   EXPECT_EQ(options.endpoints, (std::vector<std::string>{"tcp://127.0.0.1:1", "ipc:///tmp/x"}));
@@ -64,8 +68,9 @@ TEST(Options, WrongValuesAreRefused) {
   for (const Arguments& arguments :
        {Arguments{"--ticks", "-1"}, Arguments{"--duration", "-1"}, Arguments{"--duration", "nan"},
         Arguments{"--duration", "1e10"}, Arguments{"--ticks", "9007199254740993"},
-        Arguments{"--real-time=0"}, Arguments{"--clock", "fast"}, Arguments{"--controller", "x"},
-        Arguments{"--controller", "=x"}, Arguments{"--set", "arena"}, Arguments{"--param", "=1"},
+        Arguments{"--threads", "0"}, Arguments{"--real-time=0"}, Arguments{"--clock", "fast"},
+        Arguments{"--controller", "x"}, Arguments{"--controller", "=x"},
+        Arguments{"--set", "arena"}, Arguments{"--param", "=1"},
         Arguments{"--ticks", "1", "--duration", "1"}}) {
     EXPECT_THROW(run(arguments), text::UsageError) << arguments.front();
   }
