@@ -69,7 +69,7 @@ LIBRARIES = {
     "SQLite": (r"sqlite3\.h$", ["sweep"]),
     "toml++": (r"toml\+\+/", ["sweep"]),
     "OpenGL": (r"(GL|EGL|GLES\d?)/", ["render"]),
-    "libpng": (r"png\.h$", ["recording"]),
+    "libpng": (r"png\.h$", ["recording", "scene"]),
     "libzstd": (r"zstd\.h$", ["mcap"]),
     "liblz4": (r"lz4\w*\.h$", ["mcap"]),
     "zlib": (r"zlib\.h$", ["mcap"]),

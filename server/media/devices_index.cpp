@@ -42,7 +42,11 @@ DevicesIndex::DevicesIndex(const world::Layout& layout) {
   radios = append(layout.radios, true, mounts_);
   range_and_bearing = append(layout.range_and_bearing, true, mounts_);
   senders_ = mounts_.size();
-  leds = append(layout.leds, detected(&Camera::leds), mounts_);
+  std::vector<double> reaches;
+  for (const world::DescribedDevice& device : layout.described) {
+    if (device.sight > 0) reaches.push_back(device.sight);
+  }
+  leds = append(layout.leds, detected(&Camera::leds) || !reaches.empty(), mounts_);
   directional_leds = append(layout.directional_leds, detected(&Camera::directional_leds), mounts_);
   tags = append(layout.tags, detected(&Camera::tags), mounts_);
   positions_.resize(mounts_.size());
@@ -50,7 +54,6 @@ DevicesIndex::DevicesIndex(const world::Layout& layout) {
   for (const auto& device : layout.range_and_bearing) ranges_.push_back(device.range);
   // Cells of what cameras see are as large as a usual view, however far apart devices are: then
   // those in other places cost a view nothing.
-  std::vector<double> reaches;
   for (const Camera& camera : layout.cameras) reaches.push_back(reach(camera));
   std::ranges::sort(reaches);
   if (!reaches.empty()) visible_cell_ = reaches[reaches.size() / 2];

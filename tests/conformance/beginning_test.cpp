@@ -16,7 +16,7 @@ TEST(Hello, H2_AHelloWithoutVersionIsToldThat) {
   const auto refusal = peers.told("p").refusal();
   EXPECT_EQ(refusal.error().code(), v1::Error::VERSION_MISMATCH);
   EXPECT_EQ(refusal.error().message(),
-            "The Hello has no major version of the protocol; write the one of the client, as 1.4, "
+            "The Hello has no major version of the protocol; write the one of the client, as 1.5, "
             "the server's.");
 }
 

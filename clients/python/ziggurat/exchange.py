@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from itertools import accumulate
+from operator import mul
 from typing import Any, Callable, Dict, Generic, List, Optional, Sequence, Set, Tuple, TypeVar
 
 from . import protocol_pb2 as v1
@@ -20,6 +21,8 @@ class Exchange:
         self.heard: Dict[int, List[bytes]] = {}  # by radio
         self.packets: Dict[int, List[Any]] = {}  # by robot
         self.begins: Dict[str, List[int]] = {}  # by detector: each camera's first reading
+        self.row_widths: List[int] = []  # of each device that reads rows: the values of one
+        self.row_begins: List[int] = []  # of each of them: its first value of device_row_values; then their end
         # By field of Command, a value for each device.
         self.values: Dict[str, List[Any]] = defaultdict(list)
         self.data = bytearray()  # of all range-and-bearing actuators
@@ -35,6 +38,11 @@ class Exchange:
         """Adds the value of the next device; returns its place."""
         self.values[field].append(value)
         return len(self.values[field]) - 1
+
+    def places(self, kind: str, count: int) -> int:
+        """The first of the next places among the readings of a kind of device."""
+        self._places[kind] += count
+        return self._places[kind] - count
 
     def place(self, kind: str, is_there: bool = True) -> int:
         """The next place among the readings of a kind of device; -1 for one that is not there."""
@@ -90,6 +98,8 @@ class Exchange:
         for kind in ("led", "directional_led", "tag"):
             counts = getattr(observation, kind + "_counts")
             self.begins[kind] = [0, *accumulate(counts)]
+        if self.row_widths:
+            self.row_begins = [0, *accumulate(map(mul, observation.device_rows, self.row_widths))]
 
     def command(self, tick: int) -> v1.ClientMessage:
         """A command with the values that were set after the last one."""

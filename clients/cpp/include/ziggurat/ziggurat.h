@@ -3,6 +3,7 @@
 // docs/cpp-client.md.
 
 #include "ziggurat/camera.h"
+#include "ziggurat/device.h"
 #include "ziggurat/director.h"
 #include "ziggurat/entity.h"
 #include "ziggurat/error.h"
