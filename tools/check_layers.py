@@ -71,7 +71,7 @@ LIBRARIES = {
     "SQLite": (r"sqlite3\.h$", ["sweep"]),
     "toml++": (r"toml\+\+/", ["cli", "sweep"]),
     "OpenGL": (r"(GL|EGL|GLES\d?)/", ["render"]),
-    "libpng": (r"png\.h$", ["outputs"]),
+    "libpng": (r"png\.h$", ["outputs", "scene"]),
     "libzstd": (r"zstd\.h$", ["recording/mcap"]),
     "liblz4": (r"lz4\w*\.h$", ["recording/mcap"]),
     "zlib": (r"zlib\.h$", ["recording/mcap"]),

@@ -39,6 +39,14 @@ def rover(id: str) -> dict:
         "wheels": {"axle_length": 0.14, "drives": True, "measures": True},
         "turret": {"drives": True, "measures": True},
         "contact_sensors": [{"id": "skin", "anchor": "base"}],
+        "device_kinds": [
+            {"name": "lamp", "readings": [{"name": "value"}], "properties": [{"name": "angle", "unit": "rad"}],
+             "commands": [{"name": "power", "unit": "W", "least": 0.0, "most": 2.0, "initial": 1.0}],
+             "devices": [{"anchor": "origin", "position": [0.0, 0.0, 0.1], "orientation": [1.0, 0.0, 0.0, 0.0],
+                          "properties": [0.5]}] * 2},
+            {"name": "unheard-of", "readings": [{"name": "x"}, {"name": "y", "unit": "m"}], "most_rows": 3,
+             "devices": [{"id": "only", "anchor": "base", "position": [0.0] * 3,
+                          "orientation": [1.0, 0.0, 0.0, 0.0]}]}],
         "imus": [{"id": "imu", "anchor": "base", "position": [0.0, 0.0, 0.1],
                   "orientation": [1.0, 0.0, 0.0, 0.0]}],
     }
@@ -52,6 +60,7 @@ _VALUES = {
     "wheels": ([0.1, 0.2, 0.01, 0.02], [0.0] * 4), "turret_rotations": ([0.5],) * 2,
     "imus": ([0.1, -0.2, 9.8, 0.0, 0.0, 1.0],) * 2,
     "contact_sensors": ([1.0, 0.0, 0.5, 9.8, 10.0], [0.0] * 5),
+    "device_readings": ([0.25], [0.0]), "device_rows": ([2], [0]),
 }
 
 
@@ -61,6 +70,7 @@ def readings(robots: Iterable, tick: int) -> dict:
     for field, values in _VALUES.items():
         one = values[tick == 0]
         told[field] = one * (sum(map(PER_ROBOT[field], robots)) // len(one))
+    told["device_row_values"] = [0.5, -1.5, 2.5, 3.5] * (len(told["device_rows"]) if tick else 0)
     told["camera_images"] = [bytes(3 * camera.width * camera.height) if tick else b""
                              for robot in robots for camera in robot.cameras if camera.image]
     return told

@@ -25,9 +25,11 @@ Entity::Kind kind_of(scene::EntityKind kind) {
     case scene::EntityKind::foot_bot:
       return Entity::FOOT_BOT;
     case scene::EntityKind::e_puck:
+      return Entity::E_PUCK;
+    case scene::EntityKind::light:
       break;
   }
-  return Entity::E_PUCK;
+  return Entity::LIGHT;
 }
 
 /// Linear light -> 0xRRGGBB.

@@ -21,13 +21,39 @@ std::unique_ptr<Kind> make_cameras();
 std::unique_ptr<Kind> make_pictures();
 std::unique_ptr<Kind> make_imus();
 std::unique_ptr<Kind> make_contact_sensors();
+std::unique_ptr<Kind> make_light();
+std::unique_ptr<Kind> make_footbot_light();
+std::unique_ptr<Kind> make_eyebot_light();
+std::unique_ptr<Kind> make_ground();
+std::unique_ptr<Kind> make_footbot_base_ground();
+std::unique_ptr<Kind> make_footbot_motor_ground();
+std::unique_ptr<Kind> make_distance_scanner();
+std::unique_ptr<Kind> make_omnidirectional_camera();
+std::unique_ptr<Kind> make_perspective_camera();
 
 Devices::Devices() {
-  constexpr std::array kinds{
-      make_joints,         make_wheels,    make_turrets,           make_visible,
-      make_radios,         make_proximity, make_range_and_bearing, make_positioning,
-      make_batteries,      make_cameras,   make_pictures,          make_imus,
-      make_contact_sensors};
+  constexpr std::array kinds{make_joints,
+                             make_wheels,
+                             make_turrets,
+                             make_visible,
+                             make_radios,
+                             make_proximity,
+                             make_range_and_bearing,
+                             make_positioning,
+                             make_batteries,
+                             make_cameras,
+                             make_pictures,
+                             make_imus,
+                             make_contact_sensors,
+                             make_light,
+                             make_footbot_light,
+                             make_eyebot_light,
+                             make_ground,
+                             make_footbot_base_ground,
+                             make_footbot_motor_ground,
+                             make_distance_scanner,
+                             make_omnidirectional_camera,
+                             make_perspective_camera};
   for (const auto make : kinds) kinds_.push_back(make());
 }
 

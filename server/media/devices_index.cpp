@@ -40,7 +40,12 @@ DevicesIndex::DevicesIndex(const world::Layout& layout) {
   radios = append(layout.radios, mounts_);
   range_and_bearing = append(layout.range_and_bearing, mounts_);
   senders_ = mounts_.size();
+  std::vector<double> reaches;
+  for (const world::DescribedDevice& device : layout.described) {
+    if (device.sight > 0) reaches.push_back(device.sight);
+  }
   leds = append_detected(layout.leds, &Camera::leds);
+  if (leds.count == 0 && !reaches.empty()) leds = append(layout.leds, mounts_);
   directional_leds = append_detected(layout.directional_leds, &Camera::directional_leds);
   tags = append_detected(layout.tags, &Camera::tags);
   positions_.resize(mounts_.size());
@@ -48,7 +53,6 @@ DevicesIndex::DevicesIndex(const world::Layout& layout) {
   for (const auto& device : layout.range_and_bearing) ranges_.push_back(device.range);
   // Cells of what cameras see are as large as a usual view, however far apart devices are: then
   // those in other places cost a view nothing.
-  std::vector<double> reaches;
   for (const Camera& camera : layout.cameras) reaches.push_back(reach(camera));
   std::ranges::sort(reaches);
   if (!reaches.empty()) visible_cell_ = reaches[reaches.size() / 2];

@@ -20,6 +20,8 @@ const char* name_of(world::Ray::Kind kind) {
       return "range_and_bearing";
     case world::Ray::Kind::camera:
       return "camera";
+    case world::Ray::Kind::device:
+      return "device";
   }
   return "";
 }

@@ -128,24 +128,78 @@ std::string id_of_sensor(const world::DeviceLists& lists, const world::Range& ra
   return sensor.id;
 }
 
+template <const auto& table, std::size_t row, class Struct>
+void add_channel(const Moment& moment, const world::RobotLayout& robot, const Struct& from,
+                 Message& out) {
+  constexpr const auto& channel = std::get<row>(table);
+  const world::Range range = channel.devices(moment.layout, robot);
+  constexpr bool is_joints = std::string_view(channel.recorded) == "joint_encoders";
+  for (std::size_t device = range.begin; device < range.end(); ++device) {
+    const auto id = is_joints ? id_of_sensor(moment.layout, range, device)
+                              : id_in(moment.layout, channel.id, device);
+    write(out, channel.recorded, id ? &*id : nullptr, (from.*channel.values)[device]);
+  }
+}
+
+/// All channels that have a field of their own.
 template <const auto& table, class Struct>
 void add(const Moment& moment, const world::RobotLayout& robot, const Struct& from, Message& out) {
   world::for_each_channel(table, [&](auto i) {
-    const auto& channel = std::get<i>(table);
-    const world::Range range = channel.devices(moment.layout, robot);
-    const bool is_joints = std::string_view(channel.recorded) == "joint_encoders";
-    for (std::size_t device = range.begin; device < range.end(); ++device) {
-      const auto id = is_joints ? id_of_sensor(moment.layout, range, device)
-                                : id_in(moment.layout, channel.id, device);
-      write(out, channel.recorded, id ? &*id : nullptr, (from.*channel.values)[device]);
+    constexpr std::size_t row = i;
+    if constexpr (std::get<row>(table).recorded != nullptr) {
+      add_channel<table, row>(moment, robot, from, out);
     }
   });
+}
+
+// --- described devices --------------------------------------------------------------------------
+
+using Values = google::protobuf::Map<std::string, double>;
+using DeviceMap = google::protobuf::Map<std::string, v1::Devices>;
+
+template <class Fields>
+void set_values(const Fields& fields, const double* values, Values& out) {
+  for (const auto& field : fields) out[field.name] = *values++;
+}
+
+void set_readings(const Moment& moment, const world::DescribedDevice& device, v1::Device& out) {
+  const auto& readings = device.kind->readings;
+  const world::Observations& seen = moment.observations;
+  if (device.readings.count > 0) {
+    set_values(readings, &seen.device_readings[device.readings.begin], *out.mutable_values());
+  }
+  if (device.rows.count == 0) return;
+  const std::vector<double>& rows = seen.device_rows[device.rows.begin].values;
+  for (std::size_t first = 0; first < rows.size(); first += readings.size()) {
+    set_values(readings, &rows[first], *out.add_rows()->mutable_values());
+  }
+}
+
+void set_commands(const Moment& moment, const world::DescribedDevice& device, v1::Device& out) {
+  const std::vector<double>& commands = moment.commands.device_commands;
+  set_values(device.kind->commands, &commands[device.commands.begin], *out.mutable_values());
+}
+
+/// Adds the robot's described devices for which `has` is true.
+template <class Has, class Set>
+void add_described(const Moment& moment, const world::RobotLayout& robot, DeviceMap& out, Has has,
+                   Set set) {
+  for (std::size_t i = robot.described.begin; i < robot.described.end(); ++i) {
+    const world::DescribedDevice& device = moment.layout.described[i];
+    if (!has(device)) continue;
+    v1::Device& to = *out[device.kind->name].add_devices();
+    to.set_id(v1::valid_utf8(device.id));
+    set(moment, device, to);
+  }
 }
 
 /// Adds a robot's readings and shown values of fixed size.
 void add_channels(const Moment& moment, const world::RobotLayout& robot,
                   v1::RobotObservation& out) {
   add<world::sensed>(moment, robot, moment.observations, out);
+  add_described(
+      moment, robot, *out.mutable_devices(), [](const auto& device) { return device.measures(); },
+      set_readings);
   world::for_each_channel(world::state_fields, [&](auto i) {
     constexpr auto& shown = std::get<i>(world::state_fields);
     if constexpr (shown.recorded != nullptr) {
@@ -160,6 +214,9 @@ void add_channels(const Moment& moment, const world::RobotLayout& robot,
 /// Adds the values that it set.
 void add_channels(const Moment& moment, const world::RobotLayout& robot, v1::RobotCommand& out) {
   add<world::commanded>(moment, robot, moment.commands, out);
+  add_described(
+      moment, robot, *out.mutable_devices(),
+      [](const auto& device) { return device.commands.count > 0; }, set_commands);
 }
 
 /// Readings of a camera; they ascend by camera.

@@ -54,6 +54,8 @@ constexpr std::tuple packed{
                             &Commands::turret_rotations, &Commands::mutable_turret_rotations},
     Packed<double, Numbers>{&world::Commands::turret_speeds, &Commands::has_turret_speeds,
                             &Commands::turret_speeds, &Commands::mutable_turret_speeds},
+    Packed<double, Numbers>{&world::Commands::device_commands, &Commands::has_device_commands,
+                            &Commands::device_commands, &Commands::mutable_device_commands},
 };
 
 /// Whether each channel of world::commanded is in one row.
@@ -66,6 +68,12 @@ consteval bool packs_all() {
   return all;
 }
 static_assert(packs_all(), "list each channel of world::commanded in the table `packed`");
+
+/// The array of a channel in words.
+template <class Channel>
+constexpr const char* array_name(const Channel& channel) {
+  return channel.recorded ? channel.recorded : channel.name;
+}
 
 /// Equal bits: 0.0 and -0.0 differ.
 template <class T>
@@ -140,7 +148,7 @@ std::optional<std::string> read_channel(const Commands& from, world::Commands& t
   auto& values = to.*row.values;
   if ((from.*row.has)() && !read((from.*row.get)(), values)) {
     return fmt::format("the array {} has a value that is out of range or half a value",
-                       channel.recorded);
+                       array_name(channel));
   }
   if (!(from.*row.has)()) return std::nullopt;
   constexpr auto holds = channel.rule.holds;  // null: all values are right
@@ -273,11 +281,18 @@ std::optional<std::string> unpack(const v1::Commands& from, const world::Layout&
     fault = read_channel<i>(from, to);
     const std::size_t count = (to.*row.values).size(), expected = (like.*row.values).size();
     if (fault || count == expected) return;
-    fault = fmt::format("the array {} has {} values; the world has {} {}", channel.recorded, count,
-                        expected, channel.device_words);
+    fault = fmt::format("the array {} has {} values; the world has {} {}", array_name(channel),
+                        count, expected, channel.device_words);
   });
   if (!fault) fault = read_radio_messages(from, layout, state, to.radio_messages);
-  return fault ? fault : read_pushes(from, layout, state, to.pushes);
+  if (!fault) fault = read_pushes(from, layout, state, to.pushes);
+  for (std::size_t i = 0; !fault && i < to.device_commands.size(); ++i) {
+    const world::DeviceCommand& field = *layout.device_commands[i];
+    if (to.device_commands[i] >= field.least && to.device_commands[i] <= field.most) continue;
+    fault = fmt::format("the command number {} of a device must be from {} to {}", i, field.least,
+                        field.most);
+  }
+  return fault;
 }
 
 void StatePacker::pack(std::uint64_t epoch, const world::State& state, v1::ExactState& to) {

@@ -23,6 +23,7 @@ Float3 color_of(const world::Ray& ray) {
     case world::Ray::Kind::range_and_bearing:
       return ray.hit ? Float3{0.86f, 0.20f, 0.16f} : Float3{0.10f, 0.62f, 0.45f};
     case world::Ray::Kind::camera:
+    case world::Ray::Kind::device:
       break;
   }
   return ray.hit ? Float3{0.86f, 0.20f, 0.16f} : Float3{0.93f, 0.62f, 0.10f};

@@ -1,27 +1,66 @@
 // <arena>: its volume, its entities, then its distributions.
 
+#include <algorithm>
 #include <array>
+#include <filesystem>
+#include <memory>
+#include <variant>
 
+#include "scene/additions.h"
 #include "scene/draft.h"
+#include "scene/files.h"
+#include "scene/floor_image.h"
 
 namespace ziggurat::scene {
 namespace {
 
+/// The picture of a floor: beside the scene's file, or as other versions have it in the working
+/// folder.
+std::variant<FloorImage, std::string> open_picture(Draft& draft, const Element& element,
+                                                   const std::string& written) {
+  const std::filesystem::path name = written;
+  if (!stays_inside(name)) {
+    return "leads out of its folder; write a path without .. that is relative to the scene's file";
+  }
+  constexpr std::size_t most_bytes = std::size_t{64} << 20;
+  const auto folder = folder_of(draft.scene, element.where());
+  auto opened = draft.options.open(folder / name, most_bytes);
+  if (std::holds_alternative<std::string>(opened)) {
+    auto other = draft.options.open(name, most_bytes);
+    if (std::holds_alternative<File>(other)) opened = std::move(other);
+  }
+  if (std::string* why = std::get_if<std::string>(&opened)) return std::move(*why);
+  return read_floor_image(std::get<File>(opened).text);
+}
+
+void read_picture(Draft& draft, Element& element) {
+  const std::string name = element.required("path", path);
+  if (name.empty()) return;
+  auto picture = open_picture(draft, element, name);
+  if (FloorImage* image = std::get_if<FloorImage>(&picture)) {
+    draft.scene.floor_image = std::make_shared<const FloorImage>(std::move(*image));
+    return;
+  }
+  const std::string why =
+      fmt::format("names {}, which {}", in_quotes(name), std::get<std::string>(picture));
+  if (!draft.options.lenient) return element.fault_at("path", why);
+  draft.report.notice(element.where("path"),
+                      element.sentence("path", why) + "; the floor is white");
+}
+
 /// The coloured floor that ground sensors see; the floor that bodies stand on is the engine's.
-void read_ground(Draft& draft, Element element) {
-  draft.report.no_effect_yet(element.where(), "ground colours (<floor> of the arena)");
+void read_floor(Draft& draft, Element element, bool is_last) {
   const std::string id = element.required("id", identifier);
   const std::string source = element.required("source", Words{"image", "loop_functions"});
-  if (source == "image") element.required("path", path);
-  if (source == "loop_functions" && draft.options.lenient) {
-    draft.report.notice(
-        element.where("source"),
-        "<floor source=\"loop_functions\"> is white here: what a library would draw is not drawn");
+  if (!is_last) {
+    draft.report.notice(element.where(), "this <floor> has no effect: a later one replaces it");
+    element.without_effect("path", text, "a later <floor> replaces this one");
+  } else if (source == "image") {
+    read_picture(draft, element);
   } else if (source == "loop_functions") {
-    element.fault_at(
-        "source",
-        "is not supported: libraries are not loaded into the server; write source=\"image\" "
-        "and a path, or run with --lenient, which makes the floor white");
+    draft.report.notice(element.where("source"),
+                        "<floor source=\"loop_functions\"> is white: no library is loaded that "
+                        "would colour it");
   }
   element.optional("pixels_per_meter", positive);
   take_entity_id(draft, element, id);
@@ -34,16 +73,13 @@ void add_entity(Draft& draft, Element& element) {
   draft.scene.entities.push_back(std::move(entity));
 }
 
-void read_placed(Draft& draft, Element& element) {
+void read_placed(Draft& draft, Element& element, bool is_last_floor) {
   if (entity_kind(element.name())) {
     add_entity(draft, element);
-  } else if (element.name() == "light") {
-    const std::string id = read_light(draft, element, Placement::explicit_pose);
-    take_entity_id(draft, element, id);
   } else if (element.name() == "floor") {
-    read_ground(draft, element);
+    read_floor(draft, element, is_last_floor);
   } else if (element.name() != "distribute") {
-    element.unknown_in("arena", entity_names({"light", "floor", "distribute"}));
+    element.unknown_in("arena", entity_names({"floor", "distribute"}));
   }
 }
 
@@ -59,7 +95,11 @@ void read_arena(Draft& draft, Element& root) {
   }
   draft.scene.arena.center = arena->optional("center", position, math::Vector3::Zero());
   std::vector<Element> children = arena->children();
-  for (Element& element : children) read_placed(draft, element);
+  const auto last_floor =
+      std::ranges::find(children.rbegin(), children.rend(), "floor", &Element::name);
+  for (Element& element : children) {
+    read_placed(draft, element, last_floor != children.rend() && &element == &*last_floor);
+  }
   for (Element& element : children) {
     if (element.name() == "distribute") read_distribution(draft, element);
   }

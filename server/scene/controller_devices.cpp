@@ -23,6 +23,7 @@ struct Enabling {
   Element& element;
   ControllerDevices& devices;
   ControllerUse& use;
+  DescribedUse* described = nullptr;  ///< of a device that describes itself
 };
 
 using Enable = void (*)(const Enabling&);
@@ -32,7 +33,8 @@ struct DeviceRow {
   std::string_view implementation;
   std::string_view subject;  ///< of the notice that it has no effect yet; empty: it has
   Enable enable;
-  bool is_carried = true;  ///< an entity must carry it: controllers.cpp checks that
+  bool is_carried = true;        ///< an entity must carry it: controllers.cpp checks that
+  std::string_view places = {};  ///< of a device that describes itself: DevicePlace::name
 };
 
 // --- joints -------------------------------------------------------------------------------------
@@ -262,17 +264,33 @@ void enable_turret(const Enabling& e) { use_of(e.devices.turret).actuator = true
 void enable_turret_encoder(const Enabling& e) { use_of(e.devices.turret).encoder = true; }
 void enable_footbot_proximity(const Enabling& e) { enable_rays(e, "proximity").footbot = true; }
 
+// --- devices that describe themselves -----------------------------------------------------------
+
+void enable_rays_and_noise(const Enabling& e) {
+  if (e.element.optional("show_rays", boolean, false)) e.described->show_rays = true;
+  e.described->noise = e.element.optional("noise_level", non_negative, 0.0);
+}
+
+/// The sensor is also the switch: scripts turn the camera on.
+void enable_blob_camera(const Enabling& e) {
+  e.described->actuator = true;
+  e.described->medium = read_medium(e.draft, e.element, MediumKind::led);
+  e.described->noise = e.element.optional("noise_std_dev", non_negative, 0.0);
+  e.described->show_rays = e.element.optional("show_rays", boolean, false);
+}
+
+void enable_scanner(const Enabling& e) {
+  if (e.element.optional("show_rays", boolean, false)) e.described->show_rays = true;
+  e.element.without_effect("noise_range", text, "the distance scanner has no noise");
+}
+
+void enable_nothing(const Enabling&) {}
+
 // --- devices that are only checked so far -------------------------------------------------------
 
 void enable_plain(const Enabling& e) {
   e.element.optional("show_rays", boolean);
   e.element.optional("noise_level", non_negative);
-}
-
-void enable_blob_camera(const Enabling& e) {
-  read_medium(e.draft, e.element, MediumKind::led);
-  e.element.optional("noise_std_dev", non_negative);
-  e.element.optional("show_rays", boolean);
 }
 
 // --- the tables ---------------------------------------------------------------------------------
@@ -291,10 +309,10 @@ constexpr std::array<DeviceRow, 14> actuator_rows{{
     {"quadrotor_speed", "default", "quadrotor_speed devices", enable_plain},
     {"footbot_turret", "default", "", enable_turret},
     {"footbot_gripper", "default", "footbot_gripper devices", enable_plain},
-    {"footbot_distance_scanner", "default", "footbot_distance_scanner devices", enable_plain},
+    {"footbot_distance_scanner", "default", "", enable_nothing, true, "footbot_distance_scanner"},
 }};
 
-constexpr std::array<DeviceRow, 20> sensor_rows{{
+constexpr std::array<DeviceRow, 21> sensor_rows{{
     {"joints", "default", "", enable_joint_sensors, false},
     {"radios", "default", "", enable_radios_sensor},
     {"cameras", "default", "", enable_cameras, false},
@@ -304,18 +322,21 @@ constexpr std::array<DeviceRow, 20> sensor_rows{{
     {"positioning", "default", "", enable_positioning, false},
     {"differential_steering", "default", "", enable_wheel_encoders},
     {"battery", "default", "", enable_battery},
-    {"ground", "rot_z_only", "ground sensors", enable_plain},
-    {"light", "default", "light sensors", enable_plain},
+    {"ground", "rot_z_only", "", enable_rays_and_noise, true, "ground"},
+    {"light", "default", "", enable_rays_and_noise, true, "light"},
     {"range_and_bearing", "medium", "", enable_range_and_bearing_sensor},
-    {"colored_blob_omnidirectional_camera", "rot_z_only", "coloured-blob cameras",
-     enable_blob_camera},
-    {"colored_blob_perspective_camera", "default", "coloured-blob cameras", enable_blob_camera},
+    {"colored_blob_omnidirectional_camera", "rot_z_only", "", enable_blob_camera, true,
+     "colored_blob_omnidirectional_camera"},
+    {"colored_blob_perspective_camera", "default", "", enable_blob_camera, true,
+     "colored_blob_perspective_camera"},
     {"footbot_proximity", "default", "", enable_footbot_proximity},
-    {"footbot_light", "rot_z_only", "footbot_light sensors", enable_plain},
-    {"footbot_base_ground", "rot_z_only", "footbot_base_ground sensors", enable_plain},
-    {"footbot_motor_ground", "rot_z_only", "footbot_motor_ground sensors", enable_plain},
+    {"footbot_light", "rot_z_only", "", enable_rays_and_noise, true, "light"},
+    {"eyebot_light", "rot_z_only", "", enable_rays_and_noise, true, "light"},
+    {"footbot_base_ground", "rot_z_only", "", enable_rays_and_noise, true, "base_ground"},
+    {"footbot_motor_ground", "rot_z_only", "", enable_rays_and_noise, true, "motor_ground"},
     {"footbot_turret_encoder", "default", "", enable_turret_encoder},
-    {"footbot_distance_scanner", "rot_z_only", "footbot_distance_scanner devices", enable_plain},
+    {"footbot_distance_scanner", "rot_z_only", "", enable_scanner, true,
+     "footbot_distance_scanner"},
 }};
 
 void read_device(const Enabling& e, const DeviceRow& row) {
@@ -327,19 +348,35 @@ void read_device(const Enabling& e, const DeviceRow& row) {
         fmt::format("{} do not work yet: <{}> is checked, and its table in Lua is empty",
                     row.subject, row.name));
   }
-  if (row.is_carried) e.use.devices.push_back({std::string(row.name), e.element.where()});
+  if (row.is_carried) {
+    e.use.devices.push_back({std::string(row.name), e.element.where(), row.places});
+  }
   row.enable(e);
   e.element.done();
+}
+
+/// The use of a device that describes itself: its actuator and its sensor share one.
+DescribedUse* described_use(const DeviceRow& row, ControllerDevices& devices, bool is_sensor) {
+  if (row.places.empty()) return nullptr;
+  auto use = std::ranges::find(devices.described, row.name, &DescribedUse::element);
+  if (use == devices.described.end()) {
+    use = devices.described.insert(devices.described.end(), DescribedUse());
+    use->element = row.name;
+    use->places = row.places;
+  }
+  (is_sensor ? use->sensor : use->actuator) = true;
+  return &*use;
 }
 
 void read_device_list(Draft& draft, Element& list, ControllerDevices& devices, ControllerUse& use,
                       std::span<const DeviceRow> rows) {
   for (Element& element : last_of_each_name(list)) {
-    const Enabling enabling{draft, element, devices, use};
+    Enabling enabling{draft, element, devices, use};
     bool known = false;
     for (const DeviceRow& row : rows) {
       if (row.name != element.name()) continue;
       known = true;
+      enabling.described = described_use(row, devices, list.name() == "sensors");
       read_device(enabling, row);
     }
     if (known) continue;

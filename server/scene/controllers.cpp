@@ -140,6 +140,11 @@ std::string_view kind_of(const Entity& entity) {
 /// Part that an entity needs for a device and does not have, or nothing.
 std::optional<std::string> missing_for(const Entity& entity, const DeviceUse& use) {
   const bool prototype = entity.kind == EntityKind::prototype;
+  const auto& places = entity.devices.places;
+  if (!use.places.empty() &&
+      std::ranges::find(places, use.places, &DevicePlace::name) != places.end()) {
+    return {};
+  }
   const auto component = std::ranges::find(components, use.name, &Component::device);
   if (component != components.end()) {
     if (component->is_carried(entity)) return {};
@@ -147,7 +152,7 @@ std::optional<std::string> missing_for(const Entity& entity, const DeviceUse& us
       return fmt::format("has none; write <{}> into {}, or remove the device", component->element,
                          prototype ? "its <devices>" : "it");
     }
-  } else if (!prototype && comes_with(entity, use.name)) {
+  } else if (use.places.empty() && !prototype && comes_with(entity, use.name)) {
     return {};
   }
   return fmt::format("is of kind {} and has none; remove the device, or use another controller",

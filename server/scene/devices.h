@@ -123,6 +123,14 @@ struct Battery {
   Location where;
 };
 
+/// Place on a robot for devices that describe themselves.
+struct DevicePlace {
+  std::string_view name;  ///< of all places that a sensor uses: "light"
+  Anchor anchor;
+  math::Pose pose;               ///< in the anchor frame
+  std::vector<double> settings;  ///< their meaning is the kind's
+};
+
 /// Devices of an entity. Containers keep document order. A container's medium is an index into
 /// Scene::media.
 struct Devices {
@@ -139,6 +147,7 @@ struct Devices {
   std::optional<RangeAndBearing> range_and_bearing;
   std::optional<std::size_t> range_and_bearing_medium;
   std::optional<Battery> battery;
+  std::vector<DevicePlace> places;
 };
 
 enum class JointMode { disabled, position, velocity };
@@ -263,6 +272,16 @@ struct CamerasUse {
   std::vector<Camera> cameras;
 };
 
+/// A device that describes itself (world/described.h), as a controller enables it.
+struct DescribedUse {
+  std::string_view element;  ///< name of its element, of the table of all devices
+  std::string_view places;   ///< name of the places that it uses
+  bool actuator = false, sensor = false;
+  bool show_rays = false;
+  double noise = 0;                   ///< in the kind's unit, >= 0
+  std::optional<std::size_t> medium;  ///< index into Scene::media
+};
+
 /// Devices that a controller's <actuators> and <sensors> enable. Kinds without settings are a bool.
 struct ControllerDevices {
   JointsUse joints;
@@ -280,6 +299,7 @@ struct ControllerDevices {
   std::optional<CamerasUse> cameras;
   std::vector<Imu> imus;
   std::vector<ContactSensor> contact_sensors;
+  std::vector<DescribedUse> described;
   std::vector<std::string>
       to_come;  ///< elements of devices that have no readings and do nothing yet
   /// About what those that are fixed to an anchor take in each robot [bytes].

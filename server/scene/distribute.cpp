@@ -111,11 +111,8 @@ void read_pattern(Draft& draft, const Element& entity, Element& pattern, Distrib
     take_copies(draft, entity, each, std::max(out.quantity, 1u) - 1);
     take_ids(draft, pattern, out.entity.id, out);
     draft.scene.distributions.push_back(std::move(out));
-  } else if (pattern.name() == "light") {
-    const std::string id = read_light(draft, pattern, Placement::distributed);
-    take_ids(draft, pattern, id, out);
   } else {
-    pattern.unknown_in("entity", entity_names({"light"}));
+    pattern.unknown_in("entity", entity_names());
   }
 }
 

@@ -31,6 +31,7 @@ struct BodyDefaults {
 struct DeviceUse {
   std::string name;  ///< of the element: "radios"
   Location where;
+  std::string_view places = {};  ///< of one that describes itself: DevicePlace::name
 };
 
 /// An anchor that a controller names for a device; each entity with the controller must have it.
@@ -102,7 +103,7 @@ struct Draft {
   std::unordered_map<std::string, std::size_t> controllers;  ///< id -> index
   std::set<Location> blamed;  ///< what entities have in common and is reported once already
   Ids entity_ids;
-  std::uint64_t copies = 0;  ///< of all <distribute> so far, lights included
+  std::uint64_t copies = 0;                              ///< of all <distribute> so far
   std::unordered_map<std::string, std::size_t> anchors;  ///< link id -> index, of the entity
                                                          ///< being read
 
@@ -179,7 +180,7 @@ const Controller* controller_of(const Draft& draft, const Entity& entity);
 /// place or id that counts.
 enum class Placement { explicit_pose, distributed, looked_at };
 
-/// Reads <box>, <cylinder>, <sphere>, <prototype>, <foot-bot> or <e-puck>.
+/// Reads <box>, <cylinder>, <sphere>, <prototype>, <foot-bot>, <e-puck> or <light>.
 Entity read_entity(Draft& draft, Element& element, Placement placement);
 std::optional<EntityKind> entity_kind(std::string_view name);
 /// The names of all kinds of entities, and others behind them.
@@ -200,9 +201,6 @@ void report_missing(Draft& draft, std::vector<PendingFault>& missing_parts);
 
 /// Reads a <foot-bot> or <e-puck> into an entity whose kind is set.
 void read_robot(Draft& draft, Element& element, Entity& entity);
-
-/// Reads <light>, whose effects are still to come; returns its id.
-std::string read_light(Draft& draft, Element& element, Placement placement);
 
 void read_distribution(Draft& draft, Element& element);
 

@@ -1,4 +1,5 @@
-// The elements of an arena: <box>, <cylinder>, <sphere>, <prototype>; robots are read in robots/.
+// The elements of an arena: <box>, <cylinder>, <sphere>, <prototype>, <light>; robots are read in
+// robots/.
 
 #include <algorithm>
 #include <array>
@@ -13,13 +14,14 @@ namespace {
 constexpr Surface single_body_surface{0.5, 2e-4};
 constexpr Damping single_body_damping{0.0, 0.0};
 
-constexpr std::array<std::pair<std::string_view, EntityKind>, 6> kinds{{
+constexpr std::array<std::pair<std::string_view, EntityKind>, 7> kinds{{
     {"box", EntityKind::box},
     {"cylinder", EntityKind::cylinder},
     {"sphere", EntityKind::sphere},
     {"prototype", EntityKind::prototype},
     {"foot-bot", EntityKind::foot_bot},
     {"e-puck", EntityKind::e_puck},
+    {"light", EntityKind::light},
 }};
 
 Link read_single_link(Draft& draft, Element& element, Entity& entity) {
@@ -48,6 +50,30 @@ void read_prototype(Draft& draft, Element& element, Entity& entity) {
   const bool rooted = read_links(draft, element, entity);
   read_joints(draft, element, entity, rooted);
   read_devices(draft, element, entity);
+}
+
+/// A point that shines: a frame without body, with an LED that cameras see.
+void read_light(Draft& draft, Element& element, Entity& entity) {
+  entity.movable = false;
+  Link& frame = entity.links.emplace_back();
+  frame.where = element.where();
+  frame.geometry = Sphere{0};
+  frame.collides = false;
+  entity.intensity = element.required("intensity", non_negative, 0.0);
+  entity.devices.leds.push_back(
+      {"light", {}, math::Vector3::Zero(), element.required("color", color), element.where()});
+  entity.devices.led_medium = read_medium(draft, element, MediumKind::led);
+}
+
+/// The place of a light, which has no <body>.
+math::Pose read_light_pose(Element& element, Placement placement) {
+  if (placement != Placement::explicit_pose) {
+    element.optional("position", position);
+    element.optional("orientation", orientation);
+    return {};
+  }
+  element.required("position", position, math::Vector3::Zero());
+  return read_pose(element);
 }
 
 /// Beginning of the ids of copies; empty: they are numbers alone.
@@ -167,6 +193,9 @@ void read_body_and_devices(Draft& draft, Element& element, Entity& entity) {
     case EntityKind::e_puck:
       read_robot(draft, element, entity);
       break;
+    case EntityKind::light:
+      read_light(draft, element, entity);
+      break;
   }
 }
 
@@ -185,7 +214,8 @@ Entity read_entity(Draft& draft, Element& element, Placement placement) {
   } else {
     read_body_and_devices(draft, element, entity);
   }
-  entity.pose = read_body(element, placement);
+  entity.pose = entity.kind == EntityKind::light ? read_light_pose(element, placement)
+                                                 : read_body(element, placement);
   if (may_have_controller(entity.kind)) {
     if (auto own = read_controller_choice(draft, element)) controller = std::move(own);
     const bool lacks_controller = needs_controller(entity.kind) && !controller;
@@ -203,24 +233,6 @@ Entity read_entity(Draft& draft, Element& element, Placement placement) {
   }
   draft.report.subject.clear();
   return entity;
-}
-
-std::string read_light(Draft& draft, Element& element, Placement placement) {
-  draft.report.no_effect_yet(element.where(), "lights");
-  const std::string id = read_entity_id(element, placement);
-  draft.report.subject = fmt::format("light {}", in_quotes(id));
-  if (placement == Placement::explicit_pose) {
-    element.required("position", position);
-  } else {
-    element.optional("position", position);
-  }
-  element.optional("orientation", orientation);
-  element.required("color", color);
-  element.required("intensity", non_negative);
-  read_medium(draft, element, MediumKind::led);
-  element.done();
-  draft.report.subject.clear();
-  return id;
 }
 
 }  // namespace ziggurat::scene

@@ -130,6 +130,11 @@ std::optional<std::string> fault_of_file(const fs::path& path) {
   return std::nullopt;
 }
 
+bool stays_inside(const std::filesystem::path& path) {
+  if (path.is_absolute() || path.has_root_path()) return false;
+  return std::ranges::find(path, "..") == path.end();
+}
+
 std::variant<File, std::string> open_file(const fs::path& path, std::size_t max_size) {
   if (auto fault = fault_of_file(path)) return *std::move(fault);
   std::error_code error;

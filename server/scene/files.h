@@ -15,6 +15,9 @@ struct File {
   std::string text;
 };
 
+/// Whether a path can't lead out of the folder that it is relative to.
+bool stays_inside(const std::filesystem::path& path);
+
 /// Opens a file of at most `max_size` bytes. If that fails: why, as `does not exist; …`.
 using OpenFile = std::function<std::variant<File, std::string>(const std::filesystem::path&,
                                                                std::size_t max_size)>;

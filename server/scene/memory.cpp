@@ -17,6 +17,7 @@ constexpr std::size_t of_led = 350, of_directional_led = 450, of_tag = 550, of_r
                       of_magnet = 1100;
 constexpr std::size_t of_proximity = 250, of_range_and_bearing = 1000, of_param = 200;
 constexpr std::size_t of_ancestor = 20;  // of a link, that moves by a joint of its own
+constexpr std::size_t of_place = 500;
 constexpr std::size_t of_joint_use = 300, of_camera = 600, of_mounted = 500;
 constexpr std::size_t copies_of_text = 4;
 
@@ -55,6 +56,7 @@ std::size_t memory_of(const Devices& devices) {
                     memory_of_each(devices.magnets, of_magnet);
   for (const Tag& tag : devices.tags) sum += memory_of_text(tag.payload);
   for (const ProximitySensor& sensor : devices.proximity_sensors) sum += memory_of(sensor);
+  sum += of_place * devices.places.size();
   if (devices.range_and_bearing)
     sum += of_range_and_bearing + 3 * devices.range_and_bearing->data_size;
   return sum;

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +18,7 @@
 #include "math/pose.h"
 #include "scene/deadline.h"
 #include "scene/devices.h"
+#include "scene/floor_image.h"
 #include "scene/geometry.h"
 #include "scene/problem.h"
 
@@ -110,14 +112,15 @@ struct Joint {
   Location where;
 };
 
-enum class EntityKind { box, cylinder, sphere, prototype, foot_bot, e_puck };
+enum class EntityKind { box, cylinder, sphere, prototype, foot_bot, e_puck, light };
 
 /// The name of its element.
 std::string_view to_string(EntityKind kind);
 
-/// Whether it is one body and no more, without joints, controller or name for its link.
+/// Whether it is one body or light and no more, without joints, controller or name for its link.
 constexpr bool is_single(EntityKind kind) {
-  return kind == EntityKind::box || kind == EntityKind::cylinder || kind == EntityKind::sphere;
+  return kind == EntityKind::box || kind == EntityKind::cylinder || kind == EntityKind::sphere ||
+         kind == EntityKind::light;
 }
 
 /// Traction that keeps a body upright and holds its motion over the ground. It is that of driven
@@ -140,6 +143,7 @@ struct Entity {
   std::optional<Traction> traction;   ///< robots on wheels; their body is the reference link
   std::optional<double> axle_length;  ///< distance between its two driven wheels [m]
   std::optional<std::size_t> turret;  ///< index into links: a frame that turns about its z
+  std::optional<double> intensity;    ///< of a light, which has one LED and no body; >= 0
   Devices devices;
   std::optional<std::size_t> controller;                    ///< index into Scene::controllers
   std::vector<std::pair<std::string, std::string>> params;  ///< the entity's own <params>, if
@@ -265,7 +269,8 @@ struct Scene {
   std::vector<Director> directors;
   std::vector<ModelName> models;
   Arena arena;
-  std::vector<Entity> entities;  ///< explicitly placed, in document order
+  std::shared_ptr<const FloorImage> floor_image;  ///< over the whole arena; null: it is white
+  std::vector<Entity> entities;                   ///< explicitly placed, in document order
   std::vector<Distribution> distributions;
   Physics physics;
   std::vector<Medium> media;

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "scene/draft.h"
+#include "scene/files.h"
 #include "scene/mesh_file.h"
 
 namespace ziggurat::scene {
@@ -44,12 +45,6 @@ std::vector<math::Vector3> listed_vertices(Element& hull) {
     vertex.done();
   }
   return points;
-}
-
-/// Whether a path leads into the folder that it is relative to.
-bool stays_inside(const std::filesystem::path& path) {
-  if (path.is_absolute() || path.has_root_path()) return false;
-  return std::ranges::find(path, "..") == path.end();
 }
 
 /// The vertices in a file, times `scale`.

@@ -118,6 +118,8 @@ class SceneWarnings {
         return "foot-bot";
       case scene::EntityKind::e_puck:
         return "e-puck";
+      case scene::EntityKind::light:
+        return "light";
     }
     return "entity";
   }

@@ -82,12 +82,16 @@ void append(const google::protobuf::RepeatedPtrField<v1::LogLine>& log, const Ro
 void reset_commands(const world::Layout& layout, std::size_t robot, world::Commands& commands) {
   world::for_each_channel(world::commanded, [&](auto i) {
     const auto& channel = std::get<i>(world::commanded);
-    if (channel.released == world::Released::kept) return;
+    if (channel.released != world::Released::zeroed) return;
     auto& values = commands.*channel.values;
     const world::Range range = channel.devices(layout, layout.robots[robot]);
     std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(range.begin), range.count,
                 typename std::decay_t<decltype(values)>::value_type{});
   });
+  const world::Range& described = layout.robots[robot].device_commands;
+  for (std::size_t i = described.begin; i < described.end(); ++i) {
+    commands.device_commands[i] = layout.device_commands[i]->released;
+  }
 }
 
 void forget_radio_messages(const Roster& roster, world::RadioMessages& messages) {

@@ -32,7 +32,8 @@ constexpr Shared shared_in_json{64 * kibibyte, 128 * kibibyte};
 std::size_t bytes_of(const world::RobotLayout& robot, const world::Layout& layout) {
   const std::size_t values = robot.joint_actuators.count + robot.leds.count +
                              robot.directional_leds.count + robot.tags.count + robot.magnets.count +
-                             2 * robot.wheels.count + 3 * robot.turrets.count;
+                             2 * robot.wheels.count + 3 * robot.turrets.count +
+                             robot.device_commands.count;
   std::size_t bytes = bytes_per_robot + bytes_per_value * values + bytes_per_tag * robot.tags.count;
   for (std::size_t i = 0; i < robot.range_and_bearing.count; ++i) {
     bytes += layout.range_and_bearing[robot.range_and_bearing.begin + i].data.count;

@@ -21,6 +21,8 @@ constexpr std::tuple observation_fields{
     ObservationField{&world::Observations::imus, &v1::Observation::mutable_imus},
     ObservationField{&world::Observations::contact_sensors,
                      &v1::Observation::mutable_contact_sensors},
+    ObservationField{&world::Observations::device_readings,
+                     &v1::Observation::mutable_device_readings},
 };
 
 constexpr std::tuple command_fields{
@@ -44,6 +46,8 @@ constexpr std::tuple command_fields{
                  &v1::Command::mutable_turret_rotations},
     CommandField{&world::Commands::turret_speeds, &v1::Command::turret_speeds,
                  &v1::Command::mutable_turret_speeds},
+    CommandField{&world::Commands::device_commands, &v1::Command::device_commands,
+                 &v1::Command::mutable_device_commands},
 };
 
 // --- descriptions in Welcome --------------------------------------------------------------------
@@ -174,6 +178,51 @@ void describe_contact_sensors(const world::Layout& all, const world::RobotLayout
   }
 }
 
+void describe_fields(std::initializer_list<world::DeviceField> fields,
+                     google::protobuf::RepeatedPtrField<v1::DeviceField>& to) {
+  for (const world::DeviceField& field : fields) {
+    v1::DeviceField& described = *to.Add();
+    described.set_name(field.name);
+    described.set_unit(field.unit);
+  }
+}
+
+/// @param first  a device of the kind: all of a robot are sensed and set alike
+void describe_kind(const world::DescribedDevice& first, v1::DeviceKind& to) {
+  const world::DeviceKind& kind = *first.kind;
+  to.set_name(kind.name);
+  describe_fields(kind.properties, *to.mutable_properties());
+  if (first.measures()) {
+    describe_fields(kind.readings, *to.mutable_readings());
+    to.set_most_rows(static_cast<std::uint32_t>(kind.most_rows));
+  }
+  if (first.commands.count == 0) return;
+  for (const world::DeviceCommand& command : kind.commands) {
+    v1::DeviceCommand& described = *to.add_commands();
+    described.set_name(command.name);
+    described.set_unit(command.unit);
+    described.set_least(command.least);
+    described.set_most(command.most);
+    described.set_initial(command.initial);
+    described.set_released(command.released);
+  }
+}
+
+void describe_itself(const world::Layout& all, const world::RobotLayout& robot,
+                     v1::RobotDescription& description) {
+  const world::DeviceKind* last = nullptr;
+  for (std::size_t i = robot.described.begin; i < robot.described.end(); ++i) {
+    const world::DescribedDevice& device = all.described[i];
+    if (device.kind != last) describe_kind(device, *description.add_device_kinds());
+    last = device.kind;
+    const int kinds = description.device_kinds_size();
+    v1::DescribedDevice& to = *description.mutable_device_kinds(kinds - 1)->add_devices();
+    to.set_id(v1::valid_utf8(device.id));
+    describe_mount(all, device.mount, to);
+    to.mutable_properties()->Add(device.properties.begin(), device.properties.end());
+  }
+}
+
 void describe_driving(const world::Layout& all, const world::RobotLayout& robot,
                       v1::RobotDescription& description) {
   if (robot.wheels.count > 0) {
@@ -210,6 +259,7 @@ void describe(const Run& run, std::size_t robot, v1::RobotDescription& descripti
   describe_driving(run.layout, layout, description);
   describe_imus(run.layout, layout, description);
   describe_contact_sensors(run.layout, layout, description);
+  describe_itself(run.layout, layout, description);
   for (std::size_t i = layout.magnets.begin; i < layout.magnets.end(); ++i) {
     description.add_magnets()->set_id(v1::valid_utf8(run.layout.magnets[i].id));
   }
@@ -258,6 +308,39 @@ std::size_t payload_bytes(const Roster& roster, const world::Commands& from) {
   return bytes;
 }
 
+namespace {
+
+/// The device that the command at a place of Commands::device_commands belongs to.
+const world::DescribedDevice& device_of(const world::Layout& layout, const world::Range& devices,
+                                        std::size_t command) {
+  std::size_t i = devices.begin;
+  while (layout.described[i].commands.end() <= command) ++i;
+  return layout.described[i];
+}
+
+/// Each command of a described device is within its limits; the first that is not is named.
+std::optional<Fault> check_device_commands(const v1::Command& command, const Roster& roster,
+                                           const world::Layout& layout) {
+  constexpr std::size_t row = world::row_of(world::commanded, &world::Commands::device_commands);
+  for (int i = 0; i < command.device_commands_size(); ++i) {
+    const auto [robot, place] =
+        owner(command, roster, layout, roster.commanded[row], static_cast<std::size_t>(i));
+    const world::DeviceCommand& field = *layout.device_commands[place];
+    const double value = command.device_commands(i);
+    if (field.least <= value && value <= field.most) continue;
+    const world::DescribedDevice& device = device_of(layout, robot->described, place);
+    return make_fault(
+        ErrorCode::bad_value, "device_commands",
+        fmt::format("The {} of {}{} of robot '{}' is {}; it must be from {} to {}.", field.name,
+                    device.kind->name, device.id.empty() ? "" : fmt::format(" '{}'", device.id),
+                    robot->id, value, field.least, field.most),
+        robot->id);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::optional<Fault> check_channels(const v1::Command& command, const Roster& roster,
                                     const world::Layout& layout) {
   std::optional<Fault> found;
@@ -273,7 +356,7 @@ std::optional<Fault> check_channels(const v1::Command& command, const Roster& ro
     found = check_values(command, roster, layout, roster.commanded[i],
                          std::get<i>(world::commanded), (command.*field.packed)());
   });
-  return found;
+  return found ? found : check_device_commands(command, roster, layout);
 }
 
 void apply_channels(const v1::Command& command, const Roster& roster, world::Commands& commands) {

@@ -36,7 +36,7 @@ struct Version {
 };
 
 /// Version of the server. A client must have the same major version.
-inline constexpr Version version{1, 4};
+inline constexpr Version version{1, 5};
 /// From this minor version on a session is told of dropped and spawned robots, and what was
 /// commanded before it was resumed.
 inline constexpr std::uint32_t minor_with_events = 1;

@@ -55,6 +55,21 @@ void add_packets(const Roster& roster, const world::Observations& from, v1::Obse
       });
 }
 
+/// Calls visit(rows) for each device of the session that reads rows.
+template <typename Visit>
+void for_each_list(const Roster& roster, const world::Observations& from, Visit visit) {
+  for (const Packing::Stretch& piece : roster.device_lists.stretches) {
+    for (std::size_t i = 0; i < piece.count; ++i) visit(from.device_rows[piece.flat + i]);
+  }
+}
+
+void add_rows(const Roster& roster, const world::Observations& from, v1::Observation& to) {
+  for_each_list(roster, from, [&](const world::DeviceRows& rows) {
+    to.add_device_rows(static_cast<std::uint32_t>(rows.count()));
+    to.mutable_device_row_values()->Add(rows.values.begin(), rows.values.end());
+  });
+}
+
 }  // namespace
 
 ReadingSize size_of_readings(const Roster& roster, const world::Observations& from,
@@ -73,6 +88,9 @@ ReadingSize size_of_readings(const Roster& roster, const world::Observations& fr
       [&](const world::RangeAndBearingPacket& packet, std::size_t) {
         size.size += size_of_packet + packet.data.count;
       });
+  for_each_list(roster, from, [&](const world::DeviceRows& rows) {
+    size.add(rows.values.size(), sizeof(double), sizeof(double));
+  });
   count_cameras(roster, from, tag_payloads, size);
   return size;
 }
@@ -84,6 +102,7 @@ void fill(const Roster& roster, const world::Observations& from,
   add_channels(roster, from, to);
   add_radio_messages(roster, from.radio_messages, to);
   add_packets(roster, from, to);
+  add_rows(roster, from, to);
   add_cameras(roster, from, tag_payloads, to);
 }
 

@@ -72,6 +72,7 @@ Roster make_roster(const world::Layout& layout, std::span<const std::size_t> rob
     append_channels(world::commanded, layout, robot, roster.commanded);
     roster.radios.append(robot.radios);
     roster.range_and_bearing.append(robot.range_and_bearing);
+    roster.device_lists.append(robot.device_lists);
     append_cameras(layout, robot, roster);
   }
   return roster;

@@ -44,6 +44,7 @@ struct Roster {
   std::array<Packing, std::tuple_size_v<decltype(world::commanded)>> commanded;
   Packing radios;
   Packing range_and_bearing;  ///< devices: 0 or 1 of each robot
+  Packing device_lists;       ///< described devices with rows: into Observations::device_rows
 
   // Cameras that have the detector, or take pictures: into Layout::cameras, ascending.
   std::vector<std::size_t> led_cameras;

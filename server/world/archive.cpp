@@ -60,7 +60,7 @@ void archive(math::Archive& archive, const Layout& layout, State& state) {
   archive("magnet_fields", state.magnet_fields);
   archive("range_and_bearing_data", state.range_and_bearing_data);
   archive.list("rays", state.rays, [&](Ray& ray) {
-    math::archive_choice(archive, "kind", ray.kind, Ray::Kind::camera);
+    math::archive_choice(archive, "kind", ray.kind, Ray::Kind::device);
     math::archive_index(archive, "robot", ray.robot, layout.robots.size());
     archive("start", ray.start);
     archive("end", ray.end);
@@ -113,11 +113,22 @@ void archive_sights(math::Archive& archive, const Layout& layout, const State& s
   }
 }
 
+/// Rows of the described devices, which are in the layout's order.
+void archive_rows(math::Archive& archive, const Layout& layout, std::vector<DeviceRows>& rows) {
+  for (const DescribedDevice& device : layout.described) {
+    if (device.rows.count == 0) continue;
+    DeviceRows& read = rows[device.rows.begin];
+    archive.list("device_rows", read.values);
+    archive.require(read.values.size() % read.width == 0 && read.count() <= device.kind->most_rows,
+                    "has half a row or too many");
+  }
+}
+
 }  // namespace
 
 void archive(math::Archive& archive, const Layout& layout, const State& state,
              Observations& observations) {
-  static_assert(field_count<Observations>() == 17);
+  static_assert(field_count<Observations>() == 19);
   archive("tick", observations.tick);
   archive("time_ns", observations.time_ns);
   archive("joint_readings", observations.joint_readings);
@@ -131,6 +142,8 @@ void archive(math::Archive& archive, const Layout& layout, const State& state,
   }
   archive_sights(archive, layout, state, observations);
   archive("turrets", observations.turrets);
+  archive("device_readings", observations.device_readings);
+  archive_rows(archive, layout, observations.device_rows);
   for_each_channel(sensed, [&](auto i) {
     constexpr auto& channel = std::get<i>(sensed);
     auto& values = observations.*channel.values;
@@ -142,7 +155,7 @@ void archive(math::Archive& archive, const Layout& layout, const State& state,
 }
 
 void archive(math::Archive& archive, const Layout& layout, Commands& commands) {
-  static_assert(field_count<Commands>() == 12);
+  static_assert(field_count<Commands>() == 13);
   archive("joint_targets", commands.joint_targets);
   archive("led_colors", commands.led_colors);
   archive("directional_led_colors", commands.directional_led_colors);
@@ -161,6 +174,7 @@ void archive(math::Archive& archive, const Layout& layout, Commands& commands) {
     archive("force", push.force);
     archive("torque", push.torque);
   });
+  archive("device_commands", commands.device_commands);
 }
 
 }  // namespace ziggurat::world

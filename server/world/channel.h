@@ -73,7 +73,7 @@ ByHand(T Owner::*, Hashed) -> ByHand<Owner, T>;
 template <class T>
 struct Sensed {
   std::vector<T> Observations::*values;
-  const char* recorded;  ///< field of RobotObservation in recording.proto
+  const char* recorded;  ///< field of RobotObservation in recording.proto; null: by description
   DevicesOf devices;
   IdOf id = nullptr;  ///< null: recorded by position
   Hashed hashed = Hashed::second;
@@ -97,14 +97,19 @@ struct Rule {
 };
 
 /// Treatment of a channel's values when their robot leaves.
-enum class Released { kept, zeroed };
+enum class Released {
+  kept,
+  zeroed,
+  described,  ///< each gets DeviceCommand::released
+};
 
 /// Channel of a robot's commands.
 template <class T>
 struct Commanded {
   std::vector<T> Commands::*values;
   const char* name;          ///< field of Command in protocol.proto
-  const char* recorded;      ///< of RobotCommand in recording.proto; "a.b": field b of message a
+  const char* recorded;      ///< of RobotCommand in recording.proto; "a.b": field b of message a;
+                             ///< null: by description
   const char* value_words;   ///< "target of joint"
   const char* device_words;  ///< "joint actuators"
   DevicesOf devices;

@@ -47,6 +47,7 @@ struct Commands {
   RadioMessages radio_messages;
   /// By directors, during the next tick, which empties it; no robot sets any.
   std::vector<Push> pushes;
+  std::vector<double> device_commands;  ///< within the limits of Layout::device_commands
 };
 
 /// The bytes that a robot broadcasts, if its controller has the actuator.
@@ -109,6 +110,9 @@ inline constexpr std::tuple commanded{
         driven_turret, nullptr, finite, Released::zeroed},
     ByHand{&Commands::radio_messages, Hashed::no},
     ByHand{&Commands::pushes, Hashed::no},
+    Commanded<double>{&Commands::device_commands, "device_commands", nullptr,
+        "command of a device", "commands of devices",
+        all<&Ranges::device_commands>, nullptr, finite, Released::described},
 };
 // clang-format on
 

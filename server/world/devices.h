@@ -13,6 +13,8 @@
 
 #include "math/pose.h"
 #include "world/channel.h"
+#include "world/described.h"
+#include "world/mount.h"
 #include "world/radio_messages.h"
 
 namespace ziggurat::world {
@@ -21,13 +23,6 @@ namespace ziggurat::world {
 
 /// A colour as 0xRRGGBB. 0 is off: not visible to anyone.
 using Color = std::uint32_t;
-
-/// Mount of a device.
-struct Mount {
-  std::size_t entity = 0;           ///< into Layout::entities and State::origins
-  std::optional<std::size_t> link;  ///< into State::links; none: the entity's origin frame
-  math::Pose pose;                  ///< X_AD of the device in that frame
-};
 
 /// A joint with an encoder: an entry of Observations::joint_readings.
 struct JointSensorLayout {
@@ -182,6 +177,9 @@ struct DeviceLists {
   std::vector<TurretLayout> turrets;
   std::vector<ImuLayout> imus;
   std::vector<ContactSensorLayout> contact_sensors;
+  std::vector<DescribedDevice> described;             ///< robot by robot, kind by kind
+  std::size_t device_readings = 0, device_lists = 0;  ///< values and lists of all of them
+  std::vector<const DeviceCommand*> device_commands;  ///< field of each of their commands
 };
 
 /// Devices of one robot: into the list of the same name. Empty unless its controller enables them.
@@ -200,6 +198,8 @@ struct DeviceRanges {
   Range turrets;
   Range imus;
   Range contact_sensors;
+  Range described;
+  Range device_readings, device_lists, device_commands;  ///< of the described ones
 };
 
 // --- what a robot senses ------------------------------------------------------------------------
@@ -285,7 +285,9 @@ struct Observations {
   std::vector<double> turrets;               ///< about +z of the robot's origin, [-pi, pi] [rad]
   std::vector<ImuReading> imus;
   std::vector<ContactReading> contact_sensors;
-  std::vector<Image> images;  ///< of cameras that take pictures
+  std::vector<Image> images;            ///< of cameras that take pictures
+  std::vector<double> device_readings;  ///< of described devices without rows
+  std::vector<DeviceRows> device_rows;  ///< of each described device with rows
 };
 
 // clang-format off
@@ -311,6 +313,8 @@ inline constexpr std::tuple sensed{
     Sensed<ContactReading>{&Observations::contact_sensors, "contact_sensors",
                            all<&Ranges::contact_sensors>, id<&Lists::contact_sensors>},
     ByHand{&Observations::images, Hashed::no},
+    Sensed<double>{&Observations::device_readings, nullptr, all<&Ranges::device_readings>},
+    ByHand{&Observations::device_rows, Hashed::second},
 };
 // clang-format on
 

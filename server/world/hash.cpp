@@ -72,6 +72,12 @@ struct Hasher {
       add(data.subspan(packet.data.begin, packet.data.count));
     }
   }
+  void add(const std::vector<DeviceRows>& lists) {
+    for (const DeviceRows& rows : lists) {
+      add(std::uint64_t{rows.count()});
+      add(rows.values);
+    }
+  }
   void add(const std::vector<LedReading>& readings) {
     add(std::uint64_t{readings.size()});
     for (const LedReading& reading : readings) {

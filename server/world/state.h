@@ -29,6 +29,7 @@ struct Ray {
     radio,              ///< from the sender to the receiver of at least one message
     range_and_bearing,  ///< from the sender to the receiver of a packet, or to what was in between
     camera,             ///< from the camera to what it looked for, or to what was in between
+    device,             ///< likewise, of a described device
   };
   Kind kind = Kind::proximity;
   /// Into Layout::robots: the one with the device; of a link, with the receiver.

@@ -25,7 +25,7 @@ TEST(LaterVersions, H2_TheLowerMinorVersionCounts) {
     const SmallRun small(1);
     Peers peers(small);
     peers.say("p", hello("*", minor));
-    EXPECT_EQ(peers.told("p").welcome().version().minor(), std::min(minor, 4U));
+    EXPECT_EQ(peers.told("p").welcome().version().minor(), std::min(minor, 5U));
   }
 }
 

@@ -108,6 +108,10 @@ void see_robot(Robot& robot) {
   }
   if (const auto* sensor = robot.positioning()) seen += sensor->orientation[3];
   for (const auto& imu : robot.imus()) seen += imu.acceleration()[0] + imu.angular_velocity()[2];
+  for (const auto& device : robot.devices()) {
+    for (const double reading : device.readings()) seen += reading;
+    for (std::size_t i = 0; i < device.row_count(); ++i) seen += device.row(i)[0];
+  }
   for (const auto& sensor : robot.contact_sensors()) seen += sensor.force()[2] + sensor.strength();
   if (const auto* sensor = robot.battery()) seen += sensor->time_left;
   if (const auto* wheels = robot.wheels()) seen += wheels->reading().distance_right;

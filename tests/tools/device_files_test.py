@@ -1,5 +1,5 @@
-"""The list of files in docs/adding-a-device.md is that of the files that name the IMU, without examples, which use it;
-the contact sensor is in no more.
+"""The list of files in docs/adding-a-device.md is that of the files that name the light sensors, without examples; the
+distance scanner is in no more.
 
 usage: device_files_test.py SOURCE_FOLDER
 """
@@ -10,35 +10,33 @@ from pathlib import Path
 
 root = Path(sys.argv[1])
 sources = ("server", "clients", "protocol", "cmake", "tools")
-endings = {".cpp", ".h", ".py", ".proto", ".txt", ".cmake", ".lua"}
+endings = {".cpp", ".h", ".py", ".proto", ".ts", ".txt", ".cmake", ".lua"}
+most = 6
 
-
-IMU = re.compile(r"(\w+_)?imus?(_\w+)?|Imus?([A-Z]\w*)?")
-CONTACT_SENSOR = re.compile(r"(\w+_)?contact_sensors?(_\w+)?|ContactSensors?([A-Z]\w*)?")
+LIGHT = re.compile(r"\b(\w+_)?(footbot|eyebot)_light(s|_\w+)?\b|_place\(entity, \"light\"")
+SCANNER = re.compile(r"\b(\w+_)?distance_scanner(s|_\w+)?\b|DistanceScanner")
 
 
 def files_that_name(device):
     for folder in sources:
         for path in (root / folder).rglob("*"):
-            if path.suffix not in endings or not path.is_file() or "examples" in path.parts:
+            if path.suffix not in endings or not path.is_file() or {"examples", "node_modules"} & set(path.parts):
                 continue
-            words = re.findall(r"\w+", path.read_text())
-            if any(device.fullmatch(word) for word in words):
+            if device.search(path.read_text()):
                 yield path.relative_to(root).as_posix()
 
 
-found = set(files_that_name(IMU))
+found = set(files_that_name(LIGHT))
 table = (root / "docs" / "adding-a-device.md").read_text().split("## 1.")[0]
 listed = set(re.findall(r"^\| `([^`]+)` \|", table, re.MULTILINE))
 
 for path in sorted(found - listed):
-    print(f"{path} names the IMU; list it in docs/adding-a-device.md, or keep the IMU out of it")
+    print(f"{path} names light sensors; list it in docs/adding-a-device.md, or keep them out of it")
 for path in sorted(listed - found):
-    print(f"docs/adding-a-device.md lists {path}, which does not name the IMU")
-most = 14
+    print(f"docs/adding-a-device.md lists {path}, which does not name light sensors")
 if len(listed) > most:
-    print(f"the IMU is in {len(listed)} files; a device must cost at most {most}")
-others = set(files_that_name(CONTACT_SENSOR))
+    print(f"light sensors are in {len(listed)} files; a device must cost at most {most}")
+others = set(files_that_name(SCANNER))
 if len(others) > len(listed):
-    print(f"the contact sensor is in {len(others)} files: {', '.join(sorted(others))}")
+    print(f"the distance scanner is in {len(others)} files: {', '.join(sorted(others))}")
 sys.exit(found != listed or len(listed) > most or len(others) > len(listed))

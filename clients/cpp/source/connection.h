@@ -16,7 +16,7 @@ namespace ziggurat {
 
 // Version of the protocol.
 inline constexpr std::uint32_t version_major = 1;
-inline constexpr std::uint32_t version_minor = 4;
+inline constexpr std::uint32_t version_minor = 5;
 
 class Connection {
  public:

@@ -24,6 +24,7 @@ struct Layout {
     add_batteries();
     add_cameras();
     add_contact_sensors();
+    add_described();
     add_imus();
     add_joints();
     add_leds();
@@ -41,6 +42,7 @@ struct Layout {
   void add_batteries();
   void add_cameras();
   void add_contact_sensors();
+  void add_described();
   void add_imus();
   void add_joints();
   void add_leds();

@@ -1,5 +1,6 @@
 #include "script/robot_table.h"
 
+#include "devices/described_devices.h"
 #include "devices/device_table.h"
 #include "devices/devices_to_come.h"
 #include "script/metric_function.h"
@@ -7,6 +8,8 @@
 
 namespace ziggurat::lua {
 namespace {
+
+constexpr char described_key = 0;  // its address is a key beside those of the kinds
 
 /// Sets robot.<name>, and in the table `kept` what its fill() gets. The table of the robot is
 /// beneath that table, which is on top.
@@ -34,6 +37,10 @@ void push_robot(lua_State* state, Robot& robot) {
   for (const DeviceKind* kind : device_kinds()) {
     if (kind->is_present(robot)) add_devices(state, *kind, robot);
   }
+  lua_insert(state, -2);  // the robot's table on top
+  make_described(state, robot);
+  lua_rawsetp(state, -3, &described_key);
+  lua_insert(state, -2);
   lua_rawsetp(state, LUA_REGISTRYINDEX, &robot);
 }
 
@@ -45,7 +52,9 @@ void refresh_robot(lua_State* state, Robot& robot) {
     kind->fill(state, robot);
     lua_pop(state, 1);
   }
-  lua_pop(state, 1);
+  lua_rawgetp(state, -1, &described_key);
+  fill_described(state, robot);
+  lua_pop(state, 2);
 }
 
 }  // namespace ziggurat::lua

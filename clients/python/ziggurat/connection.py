@@ -13,7 +13,7 @@ from .errors import ConnectionLost, Malformed, ProtocolError, Refused, Timeout, 
 from .find_server import find_server
 from .transport import LINGER, SLICE, Transport, has_unknown_host
 
-VERSION = v1.Version(major=1, minor=4)
+VERSION = v1.Version(major=1, minor=5)
 
 
 class Wait:

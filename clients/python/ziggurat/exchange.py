@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from itertools import accumulate
+from operator import mul
 from typing import Any, Callable, Dict, Generic, List, Optional, Sequence, Set, Tuple, TypeVar
 
 from . import protocol_pb2 as v1
@@ -18,6 +19,7 @@ class Exchange:
     def __init__(self) -> None:
         self.seen = v1.Observation()  # the last one
         self._sorted: Dict[str, Any] = {}  # what it has, by device: sorted when it is asked for
+        self.row_widths: List[int] = []  # of each device that reads rows: the values of one
         # By field of Command, a value for each device.
         self.values: Dict[str, List[Any]] = defaultdict(list)
         self.data = bytearray()  # of all range-and-bearing actuators
@@ -33,6 +35,11 @@ class Exchange:
         """Adds the value of the next device; returns its place."""
         self.values[field].append(value)
         return len(self.values[field]) - 1
+
+    def places(self, kind: str, count: int) -> int:
+        """The first of the next places among the readings of a kind of device."""
+        self._places[kind] += count
+        return self._places[kind] - count
 
     def place(self, kind: str, is_there: bool = True) -> int:
         """The next place among the readings of a kind of device; -1 for one that is not there."""
@@ -105,6 +112,13 @@ class Exchange:
         if kind not in self._sorted:
             self._sorted[kind] = [0, *accumulate(getattr(self.seen, kind + "_counts"))]
         return self._sorted[kind]
+
+    @property
+    def row_begins(self) -> List[int]:
+        """Of each device that reads rows, its first value of device_row_values, and their end."""
+        if "rows" not in self._sorted:
+            self._sorted["rows"] = [0, *accumulate(map(mul, self.seen.device_rows, self.row_widths))]
+        return self._sorted["rows"]
 
     def command(self, tick: int) -> v1.ClientMessage:
         """A command with the values that were set after the last one."""

@@ -22,7 +22,8 @@ Randomize = Callable[[Supervisor, Any], None]
 
 
 def all_readings(robot: Robot) -> List[float]:
-    """Of the robot's sensors that have a fixed number of values: joint sensors, Robot.sensed, wheels (4), turret.
+    """Of the robot's sensors that have a fixed number of values: joint sensors, Robot.sensed, wheels (4), turret, devices that
+    describe themselves.
     Messages, packets and what cameras see are not in it."""
     values = [reading for joint in robot.joints for reading in joint.readings]
     values.extend(robot.sensed)
@@ -30,6 +31,9 @@ def all_readings(robot: Robot) -> List[float]:
         values.extend((*robot.wheels.velocity, *robot.wheels.distance))
     if robot.turret is not None and robot.turret.measures:
         values.append(robot.turret.rotation)
+    for devices in robot.devices.values():
+        for device in devices:
+            values.extend(device.readings)
     return values
 
 

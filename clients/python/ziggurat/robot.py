@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Callable, Dict, Optional
 
 from . import protocol_pb2 as v1
-from .devices import Camera, Joint, Led, Magnet, Radio, RangeAndBearing, Sensors, Tag, Turret, \
+from .devices import Camera, DevicesByKind, Joint, Led, Magnet, Radio, RangeAndBearing, Sensors, Tag, Turret, \
     Wheels
 from .devices.joint import joints_of
 from .exchange import Exchange
@@ -35,6 +35,8 @@ class Robot(Sensors):
         self._position = position
         self._find_leave = find_leave
 
+        # Devices that describe themselves, by kind: robot.devices["light"][0].value.
+        self.devices = DevicesByKind(exchange, given)
         self._keep("joints", joints_of(exchange, given))
         self._keep("radios", [Radio(exchange, radio) for radio in given.radios])
         self._keep("leds", [Led(exchange, "led_colors", led) for led in given.leds])
@@ -63,7 +65,7 @@ class Robot(Sensors):
     def _lacks(self) -> str:
         """What of it is None, and what it has."""
         names = ("range_and_bearing", "wheels", "turret", "joints", "radios", "leds", "directional_leds", "tags",
-                 "magnets", "cameras") + Sensors._names
+                 "magnets", "cameras", "devices") + Sensors._names
         devices = {name: getattr(self, name) for name in names}
         absent = [name for name, device in devices.items() if device is None]
         there = [name for name, device in devices.items() if device]

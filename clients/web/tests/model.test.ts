@@ -82,6 +82,22 @@ const robot = { id: "r", jointSensors: [{ id: "lift", mode: 2 }, { id: "wheel", 
   leds: [], directionalLeds: [], tags: [], magnets: [], proximitySensors: [{ range: 0.1 }], positioning: false,
   battery: true, cameras: [], imus: [], contactSensors: [], params: [] } as unknown as Description;
 
+test("devices that describe themselves are named by their description", () => {
+  const deviceKinds = [
+    { name: "lamp", readings: [{ name: "value", unit: "" }, { name: "heat", unit: "K" }], commands: [], mostRows: 0,
+      devices: [{ id: "left" }, { id: "" }] },
+    { name: "ear", readings: [{ name: "pitch", unit: "Hz" }], commands: [], mostRows: 9, devices: [{ id: "" }] }];
+  const seen = { jointReadings: [], proximity: [], batteries: [], rangeAndBearing: [], radioMessages: [],
+    deviceReadings: [1, 2, 3, 4], deviceRows: [2], deviceRowValues: [440, 880] } as unknown as Observation;
+  const groups = observed("/t", { ...robot, deviceKinds } as Description, seen, () => undefined);
+  const lamp = groups.find((one) => one.device === "lamp");
+  assert.deepEqual(lamp?.readings.map(({ label, value }) => [label, value]),
+                   [["left value", 1], ["left heat", 2], ["1 value", 3], ["1 heat", 4]]);
+  assert.equal(lamp?.readings[3].series?.path, "deviceReadings.3");
+  const ear = groups.find((one) => one.device === "ear");
+  assert.deepEqual(ear?.readings.map(({ text }) => text), ["2.0000", "pitch 440.0000 Hz", "pitch 880.0000 Hz"]);
+});
+
 test("of the readings of a device the first are made, and the others are counted", () => {
   const packet = { range: 1, horizontalBearing: 0, verticalBearing: 0, data: new Uint8Array(1) };
   const many = 1_000_000;

@@ -1,5 +1,5 @@
-"""Section 3.1: wheels, turrets, pictures, IMUs and contact sensors, in a scene of their own. rover0 and rover1 drive and
-measure, rover2 only measures. rover1 has an IMU and a contact sensor."""
+"""Section 3.1: wheels, turrets, pictures, IMUs, contact sensors and devices that describe themselves, in a scene of
+their own. rover0 and rover1 drive and measure, rover2 only measures. rover1 has all of the others."""
 
 import math
 
@@ -93,6 +93,36 @@ def _touches(stage) -> str:
     return f"contact_sensors is {found}; [1, x, y, force up, strength] is expected" if wrong else ""
 
 
+def _kind(stage, name: str):
+    return next(kind for kind in stage.peer("p").welcome.robots[1].device_kinds if kind.name == name)
+
+
+def _described(stage) -> str:
+    light, scanner = _kind(stage, "footbot_light"), _kind(stage, "footbot_distance_scanner")
+    found = [[field.name for field in fields] for fields in (light.readings, light.properties, scanner.commands)]
+    if found != [["value"], ["angle"], ["mode", "angle", "speed"]] or len(light.devices) != 24 or not scanner.most_rows:
+        return f"rover1 is told of the devices {stage.peer('p').welcome.robots[1].device_kinds}"
+    return ""
+
+
+def _sees_light(stage) -> str:
+    """A light of intensity 1 is 1 m ahead."""
+    angles = [device.properties[0] for device in _kind(stage, "footbot_light").devices]
+    expected = [math.exp(-2) * max(0.0, 1 - 2 * abs(angle) / math.pi) for angle in angles]
+    found = list(stage.peer("p").observation.device_readings)
+    wrong = len(found) != 24 or any(abs(a - b) > 1e-6 for a, b in zip(found, expected))
+    return f"device_readings is {found}; {expected} is expected" if wrong else ""
+
+
+def _rows(count: int) -> Check:
+    def check(stage) -> str:
+        told = stage.peer("p").observation
+        wrong = list(told.device_rows) != [count] or len(told.device_row_values) != 3 * count
+        return f"device_rows is {list(told.device_rows)}; [{count}] is expected" if wrong else ""
+
+    return Check("rows", check)
+
+
 def _bad(rule: str, name: str, title: str, field: str, values: list, **more) -> Case:
     """A command that is BAD_VALUE and has no effect; a right one follows."""
     return _case(f"{rule}.{name}", title, ALL, _stands(), answer("p", **{field: values}, **more),
@@ -176,6 +206,25 @@ CASES = [
     _case("D10.described", "Welcome says which contact sensors there are",
           Join("p", hello("*"), {"robots": [
               {}, {"contact_sensors": [{"id": "skin", "anchor": "origin"}]}, {}]})),
+    _case("D11.described", "Welcome says what devices read, have and are told", ALL, Check("kinds", _described)),
+    _case("D11.values", "Their readings are in the order of the description", ALL, answer("p"), observe("p"),
+          Check("lights", _sees_light)),
+    _case("D12.rows", "A device with rows says how many; there are none until it is commanded", ALL, _rows(0),
+          answer("p", device_commands=[1.0, 0.0, 0.0]), observe("p"), _rows(4),
+          answer("p", device_commands=[0.0, 0.0, 0.0]), observe("p"), _rows(0), fresh=True),
+    _case("D13.stays", "What devices are told stays until changed", ALL,
+          answer("p", device_commands=[1.0, 0.0, 0.0]), observe("p"), answer("p"), observe("p"), _rows(4),
+          answer("p", robots=[1], device_commands=[0.0, 0.0, 0.0]), observe("p"), _rows(0)),
+    _case("D13.left", "Commands of a robot that left are released", ALL,
+          answer("p", device_commands=[2.0, 0.0, 1.0]), observe("p"), _rows(24), leave("p", 1), answer("p"), observe("p"),
+          _rows(0), fresh=True),
+    *[_bad("D13", name, title, "device_commands", values)
+      for name, title, values in (("short", "Too few commands", [1.0, 0.0]), ("long", "Too many commands", [1.0] * 4),
+                                  ("beyond", "A mode beyond its limit", [3.0, 0.0, 0.0]),
+                                  ("below", "A mode below its limit", [-1.0, 0.0, 0.0]),
+                                  ("nan", "A command that is no number", [1.0, math.nan, 0.0]))],
+    _bad("D13", "of-another", "Commands for a robot that has no such device", "device_commands", [1.0, 0.0, 0.0],
+         robots=[0]),
     _case("D10.five-values", "A contact sensor has five values; on the ground it touches", ALL, _stands(),
           Check("contact_sensors", _touches)),
 ]

@@ -1,4 +1,4 @@
-"""What a server refuses of a Command or a Leave (S6 to S8, S11, D0 to D7, L1)."""
+"""What a server refuses of a Command or a Leave (S6 to S8, S11, D0 to D7, D13, L1)."""
 
 import math
 import re
@@ -21,6 +21,11 @@ def _data_size(robot: protocol.RobotDescription) -> int:
     return robot.range_and_bearing.data_size if robot.range_and_bearing.sends else 0
 
 
+def _device_commands(robot: protocol.RobotDescription) -> list:
+    """The field of each value of `device_commands`."""
+    return [field for kind in robot.device_kinds for _ in kind.devices for field in kind.commands]
+
+
 # Field of Command → how many values a robot has there.
 PER_ROBOT = {
     "joint_targets": lambda robot: len(robot.joint_actuators),
@@ -33,8 +38,9 @@ PER_ROBOT = {
     "turret_modes": lambda robot: int(robot.turret.drives),
     "turret_rotations": lambda robot: int(robot.turret.drives),
     "turret_speeds": lambda robot: int(robot.turret.drives),
+    "device_commands": lambda robot: len(_device_commands(robot)),
 }
-_FINITE = ("joint_targets", "magnet_currents", "wheel_velocities", "turret_rotations", "turret_speeds")
+_FINITE = ("joint_targets", "magnet_currents", "wheel_velocities", "turret_rotations", "turret_speeds", "device_commands")
 _COLORS = ("led_colors", "directional_led_colors")
 
 
@@ -47,7 +53,8 @@ def command_faults(robots: list, left: Collection[int], command: protocol.Comman
     faults = list(_position_faults(len(robots), left, command.robots))
     if not faults:
         spoken_for = [robots[position] for position in command.robots] or robots
-        faults += [*_length_faults(spoken_for, command), *_radio_faults(robots, left, command)]
+        faults += [*_length_faults(spoken_for, command), *_radio_faults(robots, left, command),
+                   *_limit_faults(spoken_for, command)]
     return [*faults, *_value_faults(command), *log_faults(len(robots), command.log)]
 
 
@@ -99,6 +106,12 @@ def _length_faults(spoken_for: list, command: protocol.Command) -> Iterator[Faul
         if found not in (0, expected):
             yield Fault("S6", f"{field} has {found} values; none or {expected} are expected", "BAD_VALUE",
                         field)
+
+
+def _limit_faults(spoken_for: list, command: protocol.Command) -> Iterator[Fault]:
+    fields = [field for robot in spoken_for for field in _device_commands(robot)]
+    if any(not field.least <= value <= field.most for field, value in zip(fields, command.device_commands)):
+        yield Fault("D13", "a value of device_commands is beyond its limits", "BAD_VALUE", "device_commands")
 
 
 def _value_faults(command: protocol.Command) -> Iterator[Fault]:

@@ -1,4 +1,4 @@
-"""What an Observation and a Welcome must hold (S1, S2, D3 to D10, H9, H14)."""
+"""What an Observation and a Welcome must hold (S1, S2, D3 to D12, H9, H14)."""
 
 from typing import Callable, Iterator
 
@@ -28,6 +28,9 @@ PER_ROBOT = {
     "turret_rotations": lambda robot: int(robot.turret.measures),
     "imus": lambda robot: 6 * len(robot.imus),
     "contact_sensors": lambda robot: 5 * len(robot.contact_sensors),
+    "device_readings": lambda robot: sum(len(kind.readings) * len(kind.devices)
+                                         for kind in robot.device_kinds if not kind.most_rows),
+    "device_rows": lambda robot: sum(len(kind.devices) for kind in robot.device_kinds if kind.most_rows),
 }
 
 # Field of Observation → the counts that it belongs to, values for each reading.
@@ -58,11 +61,24 @@ def observation_faults(welcome: protocol.Welcome, told: protocol.Observation) ->
         found, expected = len(getattr(told, field)), per * sum(getattr(told, counts))
         if found != expected:
             yield Fault("D8", f"{field} has {found} values; {expected} are expected by {counts}")
+    yield from _row_faults(robots, told)
     if any(color > _BRIGHTEST for color in (*told.led_colors, *told.directional_led_colors)):
         yield Fault("D8", "a colour is above 0xFFFFFF")
     yield from _radio_faults(robots, told)
     yield from _packet_faults(robots, told)
     yield from _image_faults(robots, told)
+
+
+def _row_faults(robots, told: protocol.Observation) -> Iterator[Fault]:
+    lists = [kind for robot in robots for kind in robot.device_kinds if kind.most_rows for _ in kind.devices]
+    expected = sum(rows * len(kind.readings) for kind, rows in zip(lists, told.device_rows))
+    if len(told.device_row_values) != expected:
+        yield Fault("D12", f"device_row_values has {len(told.device_row_values)} values; {expected} are expected by "
+                    "device_rows")
+    if any(rows > kind.most_rows for kind, rows in zip(lists, told.device_rows)):
+        yield Fault("D12", "a device has more rows than its kind's most_rows")
+    if told.tick == 0 and (any(told.device_rows) or any(told.device_readings)):
+        yield Fault("D12", "there are readings of devices at tick 0")
 
 
 def _radio_faults(robots, told: protocol.Observation) -> Iterator[Fault]:
@@ -93,6 +109,23 @@ def _image_faults(robots, told: protocol.Observation) -> Iterator[Fault]:
         if len(image) not in (0, expected) or (image and told.tick == 0):
             yield Fault("D0", f"the image of camera {camera.id!r} has {len(image)} bytes at tick "
                         f"{told.tick}; {expected} are expected, none at tick 0")
+
+
+def _device_faults(robot) -> Iterator[Fault]:
+    """What is wrong with the description of devices that describe themselves."""
+    kinds = [kind.name for kind in robot.device_kinds]
+    if len(set(kinds)) != len(kinds) or not all(kinds):
+        yield Fault("D11", f"the kinds of devices of robot {robot.id!r} are {kinds}; each name is expected once")
+    for kind in robot.device_kinds:
+        for fields in (kind.readings, kind.commands, kind.properties):
+            names = [field.name for field in fields]
+            if len(set(names)) != len(names) or not all(names):
+                yield Fault("D11", f"fields of {kind.name!r} are named {names}; each name is expected once")
+        if any(len(device.properties) != len(kind.properties) for device in kind.devices):
+            yield Fault("D11", f"a device of kind {kind.name!r} has not one number for each property")
+        if any(not field.least <= value <= field.most
+               for field in kind.commands for value in (field.initial, field.released)):
+            yield Fault("D13", f"a command of {kind.name!r} begins or is released beyond its limits")
 
 
 def _resumed_faults(hello: protocol.Hello, welcome: protocol.Welcome) -> Iterator[Fault]:
@@ -136,6 +169,7 @@ def welcome_faults(hello: protocol.Hello, welcome: protocol.Welcome) -> Iterator
     ids = [robot.id for robot in welcome.robots]
     if len(set(ids)) != len(ids) or not all(ids):
         yield Fault("H9", f"the robots are {ids}; each id is expected once")
+    yield from (fault for robot in welcome.robots for fault in _device_faults(robot))
     own = [robot.HasField("deadline_policy") for robot in welcome.robots]
     if any(own) and (welcome.HasField("deadline_policy") or not all(own)):
         yield Fault("H14", "the deadline policy is told for all robots and for some")

@@ -131,7 +131,7 @@ std::optional<CommandDifference> first_difference(const world::Layout& layout, s
     const world::Range devices = channel.devices(layout, ranges);
     for (std::size_t d = devices.begin; d < devices.end() && !found; ++d) {
       if (is_same(a.at(d), b.at(d))) continue;
-      std::string device = channel.recorded;
+      std::string device = channel.recorded ? channel.recorded : channel.name;
       if constexpr (channel.id != nullptr) {
         device += fmt::format(" of '{}'", channel.id(layout, d));
       } else if (devices.count > 1) {

@@ -26,6 +26,14 @@ constexpr std::array<double, 8> proximity_bearings{5.98, 5.48, 4.71, 3.64, 2.64,
 constexpr double proximity_height = 0.03;  // [m]
 constexpr double proximity_range = 0.04;   // [m]
 
+/// Counter-clockwise from 22.5 degrees, as the dialect has them.
+constexpr unsigned light_sensors = 8;
+constexpr double light_height = 0.03;  // [m]
+
+/// Grey, from right to left [m].
+constexpr double ground_front = 0.03;
+constexpr std::array<double, 3> ground_offsets{-0.009, 0, 0.009};
+
 /// LED0 in front, the others clockwise.
 constexpr unsigned leds = 8;
 constexpr double led_radius = 0.0355;  // just outside of the body [m]
@@ -50,6 +58,11 @@ void equip(Entity& entity) {
   for (const double bearing : proximity_bearings) {
     entity.devices.proximity_sensors.push_back(
         outward_sensor(bearing, proximity_height, body_radius, proximity_range));
+  }
+  for (const double y : ground_offsets) add_place(entity, "ground", {ground_front, y, 0});
+  for (unsigned i = 0; i < light_sensors; ++i) {
+    const double bearing = 2 * std::numbers::pi * (i + 0.5) / light_sensors;
+    add_outward_place(entity, "light", bearing, light_height, body_radius);
   }
   entity.devices.range_and_bearing = level_range_and_bearing(
       range_and_bearing_height, range_and_bearing_range, range_and_bearing_bytes);

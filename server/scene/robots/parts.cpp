@@ -40,6 +40,19 @@ ProximitySensor outward_sensor(double bearing, double height, double radius, dou
   return sensor;
 }
 
+void add_outward_place(Entity& entity, std::string_view name, double bearing, double height,
+                       double radius) {
+  const math::Quaternion turned(Eigen::AngleAxisd(bearing, math::Vector3::UnitZ()));
+  const math::Vector3 offset(radius * std::cos(bearing), radius * std::sin(bearing), height);
+  entity.devices.places.push_back({name, {}, {offset, turned}, {}});
+}
+
+DevicePlace& add_place(Entity& entity, std::string_view name, const math::Vector3& position,
+                       std::vector<double> settings) {
+  return entity.devices.places.emplace_back(
+      DevicePlace{name, {}, {position, math::Quaternion::Identity()}, std::move(settings)});
+}
+
 RangeAndBearing level_range_and_bearing(double height, double range, unsigned data_size) {
   const math::Pose antenna{math::Vector3(0, 0, height), math::Quaternion::Identity()};
   return {{}, antenna, range, data_size, {}};

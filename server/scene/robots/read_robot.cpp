@@ -1,5 +1,7 @@
 // <foot-bot> and <e-puck>: what a scene may say of a robot that comes as it is.
 
+#include <numbers>
+
 #include "scene/draft.h"
 #include "scene/robots/robots.h"
 
@@ -23,12 +25,28 @@ std::optional<std::size_t> first_medium(const Scene& scene, MediumKind kind) {
   return std::nullopt;
 }
 
-/// Attributes of the coloured-blob cameras, which are still to come.
-void check_blob_cameras(Element& element, EntityKind kind) {
-  if (kind == EntityKind::foot_bot) {
-    element.optional("omnidirectional_camera_aperture", half_angle);
-    element.optional("perspective_camera_front", boolean);
-  }
+/// Half-angle of a camera, below 90 degrees.
+double read_aperture(Element& element, const char* name, double usual) {
+  const double found = element.optional(name, half_angle, usual);
+  if (found < std::numbers::pi / 2 && found > 0) return found;
+  element.fault_at(name, "must be more than 0 and less than 90 degrees");
+  return usual;
+}
+
+void read_blob_cameras(Element& element, Entity& entity) {
+  constexpr double degree = std::numbers::pi / 180;
+  foot_bot::BlobCameras cameras{};
+  cameras.omnidirectional_aperture =
+      read_aperture(element, "omnidirectional_camera_aperture", 70 * degree);
+  cameras.looks_ahead = element.optional("perspective_camera_front", boolean, true);
+  cameras.aperture = read_aperture(element, "perspective_camera_aperture", 30 * degree);
+  cameras.focal_length = element.optional("perspective_camera_focal_length", positive, 0.035);
+  cameras.range = element.optional("perspective_camera_range", positive, 2.0);
+  foot_bot::add_blob_cameras(entity, cameras);
+}
+
+/// The e-puck has no such camera.
+void ignore_blob_cameras(Element& element) {
   element.optional("perspective_camera_aperture", half_angle);
   element.optional("perspective_camera_focal_length", positive);
   element.optional("perspective_camera_range", positive);
@@ -50,7 +68,8 @@ void read_robot(Draft& draft, Element& element, Entity& entity) {
       element.optional("rab_data_size", Whole{0, most_data_bytes}, antenna.data_size);
   devices.range_and_bearing_medium = first_medium(draft.scene, MediumKind::range_and_bearing);
   devices.led_medium = first_medium(draft.scene, MediumKind::led);
-  check_blob_cameras(element, entity.kind);
+  entity.kind == EntityKind::foot_bot ? read_blob_cameras(element, entity)
+                                      : ignore_blob_cameras(element);
   if (auto battery = element.child("battery")) devices.battery = read_battery(*battery);
   if (auto engine = element.child("dynamics2d")) read_steering_limits(*engine, *entity.traction);
 }

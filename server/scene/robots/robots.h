@@ -10,7 +10,16 @@ namespace ziggurat::scene {
 /// 24 proximity sensors, range and bearing.
 namespace foot_bot {
 void equip(Entity& entity);
-}
+
+struct BlobCameras {
+  double omnidirectional_aperture = 0;  ///< half-angle [rad]
+  bool looks_ahead = true;              ///< the perspective camera: not upward
+  double aperture = 0;  ///< of the perspective camera: half-angle of its diagonal [rad]
+  double focal_length = 0, range = 0;  ///< likewise [m]
+};
+/// After equip().
+void add_blob_cameras(Entity& entity, const BlobCameras& cameras);
+}  // namespace foot_bot
 
 /// An e-puck: anchor `base`, two wheels, 8 LEDs, 8 proximity sensors, range and bearing.
 namespace e_puck {
@@ -27,6 +36,16 @@ Link frame(std::string id, const math::Pose& offset);
 /// A sensor on the surface of the body that looks outward, level.
 /// @param bearing  about +z from +x [rad];  @param height, radius, range  [m]
 ProximitySensor outward_sensor(double bearing, double height, double radius, double range);
+
+/// Adds a place on the surface of the body that looks outward, level: its x axis.
+/// @param bearing  about +z from +x [rad];  @param height, radius  [m]
+void add_outward_place(Entity& entity, std::string_view name, double bearing, double height,
+                       double radius);
+
+/// Adds a level place that looks ahead.
+/// @param settings  DevicePlace::settings
+DevicePlace& add_place(Entity& entity, std::string_view name, const math::Vector3& position,
+                       std::vector<double> settings = {});
 
 /// A range-and-bearing device on the body's axis, level.
 /// @param height, range  [m];  @param data_size  [bytes]

@@ -149,6 +149,8 @@ MUTANTS = [
     _bent("picture-at-tick-0", "D8.no-picture-at-tick-0"),
     _bent("picture-cut", "D8.picture"),
     _bent("imus-of-three", "D9.six-values"),
+    _bent("device-readings-lost", "D11.values"),
+    _bent("device-rows-lost", "D12.rows"),
     _bent("contacts-lost", "D10.five-values"),
     _bent("waits-always", "W1.hold"),
     _bent("hold-is-zero", "W1.hold-keeps"),

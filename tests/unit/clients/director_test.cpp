@@ -19,7 +19,7 @@ TEST(Director, IsToldOfTheWorldAndAnswers) {
     const auto hello = self.receive().hello();
     EXPECT_EQ(hello.role(), v1::ROLE_DIRECTOR);
     EXPECT_EQ(hello.director(), "judge");
-    EXPECT_EQ(hello.version().minor(), 4U);
+    EXPECT_EQ(hello.version().minor(), 5U);
     ASSERT_EQ(hello.subscription().groups_size(), 1);
     EXPECT_EQ(hello.subscription().groups(0), v1::Subscription::POSES);
     EXPECT_EQ(hello.subscription().entities(0), "a*");

@@ -21,6 +21,14 @@ class OneRobot {
     if (description.battery()) seen.mutable_batteries()->Resize(2, 0);
     if (description.wheels().measures()) seen.mutable_wheels()->Resize(4, 0);
     if (description.turret().measures()) seen.mutable_turret_rotations()->Resize(1, 0);
+    for (const v1::DeviceKind& kind : description.device_kinds()) {
+      if (kind.most_rows() > 0) {
+        seen.mutable_device_rows()->Resize(seen.device_rows_size() + kind.devices_size(), 0);
+      } else {
+        seen.mutable_device_readings()->Resize(
+            seen.device_readings_size() + kind.readings_size() * kind.devices_size(), 0);
+      }
+    }
     seen.mutable_led_counts()->Resize(count_of(&v1::CameraDescription::detects_leds), 0);
     seen.mutable_directional_led_counts()->Resize(
         count_of(&v1::CameraDescription::detects_directional_leds), 0);

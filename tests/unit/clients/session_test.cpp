@@ -80,7 +80,7 @@ TEST(Session, AResumedOneBeginsWithWhatWasCommanded) {
   FakeServer server([](FakeServer& self) {
     const v1::Hello hello = self.receive().hello();
     EXPECT_EQ(hello.session_token(), "token");
-    EXPECT_EQ(hello.version().minor(), 4U);
+    EXPECT_EQ(hello.version().minor(), 5U);
     v1::ServerMessage message;
     message.mutable_welcome()->mutable_version()->set_major(1);
     for (const char* id : {"a", "b"}) {

@@ -106,7 +106,7 @@ TEST_F(Additions, HaveTheSameFaultsAsInTheArena) {
 }
 
 TEST_F(Additions, MustBeEntitiesWithABody) {
-  for (const std::string name : {"light", "distribute", "floor", "argos-configuration", "bax"}) {
+  for (const std::string name : {"distribute", "floor", "argos-configuration", "bax"}) {
     EXPECT_EQ(fault("<" + name + "/>").substr(0, 28 + name.size()),
               "spawn:1:1: unknown element <" + name)
         << name;

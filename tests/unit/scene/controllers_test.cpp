@@ -180,13 +180,18 @@ TEST(Controllers, EveryNameOfTheDialectIsKnown) {
   EXPECT_TRUE(result.ok()) << all_problems(result);
   const auto warnings = texts_of(result, Problem::Severity::warning);
   for (const char* subject :
-       {": light sensors do not work yet: <light> is checked, and its table in Lua is empty",
+       {": gripper devices do not work yet: <gripper> is checked, and its table in Lua is empty",
         "quadrotor_speed devices do not work yet"}) {
     EXPECT_EQ(count_containing(warnings, subject), 1u) << subject << all_problems(result);
   }
   const auto& to_come = result.scene.controllers.at(0).devices.to_come;
-  EXPECT_EQ(to_come.size(), 13u);  // of 32, and the distance scanner twice
-  EXPECT_EQ(std::ranges::count(to_come, "footbot_light"), 1);
+  EXPECT_EQ(to_come.size(), 4u);  // of 32
+  const auto& described = result.scene.controllers.at(0).devices.described;
+  EXPECT_EQ(described.size(), 8u) << "the distance scanner is one device";
+  const auto scanner =
+      std::ranges::find(described, "footbot_distance_scanner", &DescribedUse::element);
+  ASSERT_NE(scanner, described.end());
+  EXPECT_TRUE(scanner->actuator && scanner->sensor);
 }
 
 SceneText with_imus(const std::string& imus) {

@@ -220,17 +220,42 @@ TEST(Distribute, LightsCountAsCopies) {
             1u);
 }
 
-TEST(Arena, LightsAndGroundsAreCheckedWithoutEffect) {
+TEST(Arena, ALightIsAFrameWithAnLed) {
   SceneText text;
   text.media = R"(<media><led id="leds"/></media>)";
   text.arena =
-      arena_with(R"(<light id="l" position="0,0,1" color="yellow" intensity="2" medium="leds"/>)"
-                 R"(<floor id="f" source="image" path="floor.png"/>)");
+      arena_with(R"(<light id="l" position="0,0,1" color="yellow" intensity="2" medium="leds"/>)");
   const ReadResult result = text.read();
   EXPECT_TRUE(result.ok()) << all_problems(result);
-  EXPECT_EQ(count_containing(notices(result), "lights are checked, but have no effect yet"), 1u);
-  EXPECT_EQ(count_containing(notices(result), "ground colours"), 1u);
-  EXPECT_TRUE(result.scene.entities.empty());
+  ASSERT_EQ(result.scene.entities.size(), 1u);
+  const Entity& light = result.scene.entities[0];
+  EXPECT_EQ(light.kind, EntityKind::light);
+  EXPECT_EQ(light.intensity, 2);
+  EXPECT_EQ(light.pose.position, math::Vector3(0, 0, 1));
+  ASSERT_EQ(light.links.size(), 1u);
+  EXPECT_FALSE(light.links[0].collides || light.movable);
+  ASSERT_EQ(light.devices.leds.size(), 1u);
+  EXPECT_EQ(light.devices.leds[0].color, (Color{255, 255, 0}));
+  EXPECT_EQ(light.devices.led_medium, 0u);
+}
+
+TEST(Arena, TheLastFloorCounts) {
+  SceneText text;
+  text.arena = arena_with(R"(<floor id="f" source="image" path="no.png"/>)"
+                          R"(<floor id="g" source="loop_functions"/>)");
+  const ReadResult result = text.read();
+  EXPECT_TRUE(result.ok()) << all_problems(result);
+  EXPECT_EQ(count_containing(notices(result), "a later one replaces it"), 1u);
+  EXPECT_EQ(count_containing(notices(result), "<floor source=\"loop_functions\"> is white"), 1u);
+  EXPECT_EQ(result.scene.floor_image, nullptr);
+}
+
+TEST(Arena, AFloorThatIsNotThereIsWhiteWhenLenient) {
+  SceneText text;
+  text.arena = arena_with(R"(<floor id="f" source="image" path="no.png"/>)");
+  const ReadResult result = text.read({.lenient = true});
+  EXPECT_TRUE(result.ok()) << all_problems(result);
+  EXPECT_EQ(count_containing(notices(result), "the floor is white"), 1u);
 }
 
 TEST(Prototype, ARepeatedLinkIdHidesWhatMayFollowFromIt) {

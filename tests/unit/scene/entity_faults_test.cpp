@@ -61,9 +61,13 @@ constexpr Row entity_rows[] = {
     {"Light_medium", Part::entity,
      R"(<light id="l" position="0,0,1" color="red" intensity="1" medium="tags"/>)",
      "names a medium of type tag; name a led medium"},
-    {"Arena_floor", Part::entity, R"(<floor id="f" source="loop_functions"/>)",
-     R"(source="loop_functions" of <floor> is not supported: libraries are not loaded into the server; write )"
-     R"(source="image" and a path, or run with --lenient, which makes the floor white)"},
+    {"Arena_floor", Part::entity, R"(<floor id="f" source="image" path="no.png"/>)",
+     R"(path="no.png" of <floor> names "no.png", which does not exist; check its path)"},
+    {"Arena_floor_outside", Part::entity, R"(<floor id="f" source="image" path="../no.png"/>)",
+     R"(path="../no.png" of <floor> names "../no.png", which leads out of its folder; write a path )"
+     "without .. that is relative to the scene's file"},
+    {"Light_without_place", Part::entity,
+     R"(<light id="l" color="red" intensity="1" medium="leds"/>)", "<light> lacks position"},
     {"No_extent", Part::entity, R"(<sphere id="a" radius="0" movable="false"><body/></sphere>)",
      R"(5:24: radius="0" of <sphere> is below 1e-6 m, the least length of a scene: what has no extent has no )"
      "inertia and touches nothing; write 1e-6 to 1e6 m"},

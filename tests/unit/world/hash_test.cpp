@@ -42,6 +42,8 @@ Moment full() {
   seen.turrets = {0.125};
   seen.contact_sensors = {{1, {2, 3, 4}, 9}};
   seen.imus = {{{1, 2, 3}, {4, 5, 6}}};
+  seen.device_readings = {0.375};
+  seen.device_rows = {{1, {5}}};
   return moment;
 }
 
@@ -50,6 +52,9 @@ TEST(Hash, IsOfEveryChannelAndEveryListOfReadings) {
   const std::uint64_t before = hash(usual.state, usual.observations);
   const std::vector<std::function<void(Moment&)>> changes{
       [](Moment& m) { m.state.tick = 1; },
+      [](Moment& m) { m.observations.device_readings[0] = 9; },
+      [](Moment& m) { m.observations.device_rows[0].values = {}; },
+      [](Moment& m) { m.observations.device_rows[0].values[0] = 9; },
       [](Moment& m) { m.state.origins[0].position.x() = 1; },
       [](Moment& m) { m.state.links[0].pose.orientation.w() = 0.5; },
       [](Moment& m) { m.state.links[0].velocity.z() = 1; },

@@ -15,6 +15,7 @@
 
 #include "ziggurat/actuators.h"
 #include "ziggurat/camera.h"
+#include "ziggurat/device.h"
 #include "ziggurat/joint.h"
 #include "ziggurat/radio.h"
 #include "ziggurat/range_and_bearing.h"
@@ -64,6 +65,12 @@ class Robot : public Sensors {
   }
   Wheels* wheels() noexcept { return wheels_ ? &*wheels_ : nullptr; }
   Turret* turret() noexcept { return turret_ ? &*turret_ : nullptr; }
+  /// Devices that describe themselves (protocol 1.5), kind by kind, for each in scene order.
+  std::span<Device> devices() noexcept { return devices_; }
+  /// Devices of a kind, by the name of its element in the scene; empty if it has none.
+  std::span<Device> devices(std::string_view kind) noexcept;
+  Device& device(std::string_view kind, std::string_view id);
+
   /// Elements of devices that the scene gives it and that do not work yet, such as `light`.
   const std::vector<std::string>& devices_to_come() const noexcept { return devices_to_come_; }
 
@@ -124,6 +131,8 @@ class Robot : public Sensors {
   std::optional<Wheels> wheels_;
   std::optional<Turret> turret_;
   std::vector<std::string> devices_to_come_;
+  std::vector<DeviceKind> device_kinds_;
+  std::vector<Device> devices_;
   std::uint32_t position_ = 0;  // in the session
   bool failed_ = false;
   bool is_gone_ = false;

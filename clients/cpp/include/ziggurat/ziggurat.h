@@ -4,6 +4,7 @@
 
 #include "ziggurat/actuators.h"
 #include "ziggurat/camera.h"
+#include "ziggurat/device.h"
 #include "ziggurat/director.h"
 #include "ziggurat/entity.h"
 #include "ziggurat/error.h"

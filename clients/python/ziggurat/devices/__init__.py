@@ -6,6 +6,7 @@ to the right and v down.
 """
 
 from .camera import Camera, LedReading, TagReading
+from .described import DescribedDevice, DeviceCommand, DeviceField, DevicesByKind
 from .device import Device, Quaternion, Vector
 from .joint import Joint
 from .led import OFF, Color, Led

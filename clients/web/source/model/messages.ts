@@ -3,7 +3,7 @@
 
 export type Floats = ArrayLike<number>;
 
-export enum Kind { unspecified, box, cylinder, sphere, prototype, footBot, ePuck }
+export enum Kind { unspecified, box, cylinder, sphere, prototype, footBot, ePuck, light }
 
 export interface Entity {
   id: string; kind: Kind; movable: boolean; removed: boolean; model: string;
@@ -51,7 +51,12 @@ export interface Description {
   cameras: { id: string; detectsLeds: boolean; detectsDirectionalLeds: boolean; detectsTags: boolean; image: boolean }[];
   wheels?: { axleLength: number; drives: boolean; measures: boolean };
   turret?: { drives: boolean; measures: boolean };
-  imus: Described[]; contactSensors: Described[];
+  imus: Described[]; contactSensors: Described[]; deviceKinds?: DeviceKind[]; // since protocol 1.5
+}
+export interface DeviceField { name: string; unit: string }
+/** A kind of device that describes itself. */
+export interface DeviceKind {
+  name: string; readings: DeviceField[]; commands: DeviceField[]; mostRows: number; devices: Described[];
 }
 export interface Robot { entity: number; description: Description }
 
@@ -103,15 +108,16 @@ export interface Observation {
   rangeAndBearing: { range: number; horizontalBearing: number; verticalBearing: number; data: Uint8Array }[];
   positioning: Floats; batteries: Floats; ledCounts: Floats; directionalLedCounts: Floats; tagCounts: Floats;
   wheels: Floats; turretRotations: Floats; imus: Floats; contactSensors: Floats;
+  deviceReadings: Floats; deviceRows: Floats; deviceRowValues: Floats;
 }
 export interface Command {
   tick: number; jointTargets: Floats; radioMessages: { radio: number; payload: Uint8Array }[];
   ledColors: Floats; directionalLedColors: Floats; tagPayloads?: Uint8Array[]; magnetCurrents: Floats;
   rangeAndBearingData: Uint8Array; wheelVelocities: Floats; turretModes: Floats; turretRotations: Floats;
-  turretSpeeds: Floats;
+  turretSpeeds: Floats; deviceCommands: Floats;
 }
 
 /** Why an entity is a robot of its own look, and what to call it. */
 export function kindName(kind: Kind): string {
-  return ["?", "box", "cylinder", "sphere", "prototype", "foot-bot", "e-puck"][kind] ?? "?";
+  return ["?", "box", "cylinder", "sphere", "prototype", "foot-bot", "e-puck", "light"][kind] ?? "?";
 }

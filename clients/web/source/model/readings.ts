@@ -1,6 +1,6 @@
 // What one robot senses and is told, device by device, with the place of each number in its message,
 // so that it can be plotted.
-import type { Command, Description, Floats, Observation } from "./messages";
+import type { Command, Description, DeviceField, DeviceKind, Floats, Observation } from "./messages";
 import { beginning } from "./texts";
 
 const mostLetters = 200; // of bytes that are text
@@ -100,6 +100,8 @@ export function observed(topic: string, robot: Description, o: Observation, limi
     axes.forEach((axis, i) => out.add(`Contact ${id}`, `force ${axis}`, "contactSensors", o.contactSensors, 5 * k + 1 + i, "N"));
     out.add(`Contact ${id}`, "strength", "contactSensors", o.contactSensors, 5 * k + 4, "N");
   });
+  addDescribed(out, robot, "deviceReadings", o.deviceReadings, (kind) => kind.mostRows > 0 ? [] : kind.readings);
+  addRows(out, robot, o);
   addCounts(out, robot, o);
   for (const { radio, payload } of out.first("Radio", o.radioMessages)) {
     out.group("Radio").readings.push({ label: `${robot.radios[radio]?.id ?? radio} got`, text: bytesText(payload) });
@@ -109,6 +111,36 @@ export function observed(topic: string, robot: Description, o: Observation, limi
     text: `${number(packet.range, "m")}  ${number(packet.horizontalBearing, "rad")}  ${bytesText(packet.data)}`,
   }));
   return out.groups;
+}
+
+/** Values of devices that describe themselves, in the order of their descriptions. */
+function addDescribed(out: Collector, robot: Description, field: string, values: Floats,
+                      fieldsOf: (kind: DeviceKind) => DeviceField[]): void {
+  let place = 0;
+  for (const kind of robot.deviceKinds ?? []) {
+    const fields = fieldsOf(kind);
+    if (fields.length === 0) continue;
+    out.first(kind.name, kind.devices).forEach(({ id }, i) => fields.forEach(({ name, unit }, k) =>
+      out.add(kind.name, `${id || i} ${name}`, field, values, place + i * fields.length + k, unit)));
+    place += kind.devices.length * fields.length;
+  }
+}
+
+/** Devices that read any number of rows: how many, and what they are. */
+function addRows(out: Collector, robot: Description, o: Observation): void {
+  let list = 0, first = 0;
+  for (const kind of (robot.deviceKinds ?? []).filter(({ mostRows }) => mostRows > 0)) {
+    for (const { id } of out.first(kind.name, kind.devices)) {
+      const rows = o.deviceRows[list] ?? 0;
+      out.add(kind.name, `${id} rows`.trim(), "deviceRows", o.deviceRows, list++);
+      for (const row of out.first(kind.name, Array.from({ length: Math.min(rows, mostReadings + 1) }, (_, i) => i))) {
+        const text = kind.readings.map(({ name, unit }, k) =>
+          `${name} ${number(o.deviceRowValues[first + row * kind.readings.length + k] ?? NaN, unit)}`).join("  ");
+        out.group(kind.name).readings.push({ label: `${row}`, text });
+      }
+      first += rows * kind.readings.length;
+    }
+  }
 }
 
 /** How many LEDs and tags each camera sees. */
@@ -150,6 +182,7 @@ export function commanded(topic: string, robot: Description, c: Command, limits:
   if (c.rangeAndBearingData.length > 0) {
     out.group("Range and bearing").readings.push({ label: "data", text: bytesText(c.rangeAndBearingData) });
   }
+  addDescribed(out, robot, "deviceCommands", c.deviceCommands, (kind) => kind.commands);
   for (const { radio, payload } of out.first("Radio", c.radioMessages)) {
     out.group("Radio").readings.push({ label: `${robot.radios[radio]?.id ?? radio} sends`, text: bytesText(payload) });
   }

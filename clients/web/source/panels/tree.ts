@@ -63,6 +63,7 @@ export class Tree implements Panel {
     const proximity = world.proximitySensors.filter(({ robot }) => robot === entity.robot).map((_, i) => `proximity sensor ${i}`);
     const more = described ? [
       ...described.imus.map(({ id }) => `IMU ${id}`), ...described.contactSensors.map(({ id }) => `contact sensor ${id}`),
+      ...(described.deviceKinds ?? []).flatMap(({ name, devices }) => devices.map(({ id }, i) => `${name} ${id || i}`)),
       ...proximity, ...(described.rangeAndBearing ? ["range and bearing"] : []), ...(described.positioning ? ["positioning"] : []),
       ...(described.battery ? ["battery"] : []), ...(described.wheels ? ["wheels"] : []), ...(described.turret ? ["turret"] : [])] : [];
     return [...own(world.links, "link"), ...own(world.joints, "joint"), ...robot(world.cameras, "camera"),

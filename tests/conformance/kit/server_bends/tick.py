@@ -191,4 +191,6 @@ TOLD["picture-at-tick-0"] = in_kind("observation", lambda _, told: refill(
 TOLD["picture-cut"] = in_kind("observation", lambda _, told: refill(
     told, "camera_images", [image[:-3] for image in told.camera_images]))
 TOLD["imus-of-three"] = in_kind("observation", lambda _, told: refill(told, "imus", told.imus[:3]))
+TOLD["device-readings-lost"] = in_kind("observation", lambda _, told: told.ClearField("device_readings"))
+TOLD["device-rows-lost"] = in_kind("observation", lambda _, told: told.ClearField("device_row_values"))
 TOLD["contacts-lost"] = in_kind("observation", lambda _, told: told.ClearField("contact_sensors"))

@@ -129,7 +129,7 @@ class Lies(SessionCase):
         other = welcome(equipped("a"))
         other.version.CopyFrom(v1.Version(major=9, minor=4))
         self.assertRegex(self.refused(v1.ServerMessage(welcome=other).SerializeToString()),
-                         "VERSION_MISMATCH: .*the server speaks version 9.4 of the protocol, this client 1.4")
+                         "VERSION_MISMATCH: .*the server speaks version 9.4 of the protocol, this client 1.5")
 
     def test_the_json_client_ends_with_a_sentence(self):
         controller = pathlib.Path(__file__).parents[4] / "clients" / "json" / "controller.py"

@@ -30,7 +30,7 @@ class Beginning(SessionCase):
     def test_hello_has_the_options(self):
         def part(server):
             hello = open_with(server)
-            self.assertEqual((hello.version.major, hello.version.minor), (1, 4))
+            self.assertEqual((hello.version.major, hello.version.minor), (1, 5))
             self.assertEqual(hello.role, v1.ROLE_CONTROLLER)
             self.assertEqual(list(hello.robots), ["a*", "b"])
             self.assertEqual(hello.controller, "some")
