@@ -1,7 +1,8 @@
--- Drives straight on until it sees a light, then towards it, and stops where the floor is dark.
+-- Drives straight on until it has seen a light for a while, then towards it, and stops where the floor is dark.
 
 local speed = 10  -- [cm/s]
-local tick, has_arrived = 0, false
+local while_seen = 25  -- [ticks] so that it passes the corner that hid the light
+local tick, seen, has_arrived = 0, 0, false
 
 function init()
    robot.colored_blob_omnidirectional_camera.enable()
@@ -24,7 +25,8 @@ function step()
    local direction, brightness = light()
    local sees = brightness > 0
    robot.leds.set_all_colors(sees and "yellow" or "black")
-   local turn = sees and math.max(-1, math.min(1, 2 * direction)) or 0
+   seen = sees and seen + 1 or 0
+   local turn = seen > while_seen and math.max(-1, math.min(1, 2 * direction)) or 0
    robot.wheels.set_velocity(speed * (1 - turn), speed * (1 + turn))
    if robot.motor_ground[1].value < 0.5 then
       has_arrived = true

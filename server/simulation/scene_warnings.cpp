@@ -65,7 +65,7 @@ class SceneWarnings {
       Extent& extent = extents_.emplace_back();
       for (std::size_t l = 0; l < entities_[e].links.size(); ++l) {
         const scene::Link& link = entities_[e].links[l];
-        if (!link.collides) continue;
+        if (!link.collides && entities_[e].kind != scene::EntityKind::light) continue;
         extent.add(
             extent_of(link, simulation.state().links[layout_.entities[e].links.begin + l].pose));
       }

@@ -20,11 +20,11 @@ class Phototaxis(Recorded):
         self.scene = self.folder / "phototaxis.argos"
 
     def test_it_reaches_the_light_and_its_readings_have_names(self):
-        outcome = self.run_scene("--readings", self.folder / "readings")
+        outcome = self.run_scene("--readings", self.folder / "readings.jsonl")
         arrived = [line for line in outcome.lines if "arrived at tick" in line]
         self.assertEqual(len(arrived), 1, outcome.out)
         self.assertRegex(arrived[0], r"12 long rays, red of the blob: 255$")
-        lines = [json.loads(line) for line in (self.folder / "readings").read_text().splitlines()]
+        lines = [json.loads(line) for line in (self.folder / "readings.jsonl").read_text().splitlines()]
         devices = lines[-1]["observation"]["devices"]
         lights = devices["footbot_light"]["devices"]
         self.assertEqual(len(lights), 24)

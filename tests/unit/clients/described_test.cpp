@@ -59,7 +59,7 @@ class Described : public Devices {
 };
 
 TEST_F(Described, HandlesReadByName) {
-  EXPECT_RUNS(start(""));
+  EXPECT_RUNS(start("function step() end"));
   see();
   EXPECT_RUNS(step());
   ASSERT_EQ(robot().devices("lamp").size(), 2u);
@@ -81,7 +81,7 @@ TEST_F(Described, HandlesReadByName) {
 }
 
 TEST_F(Described, CommandsAreCheckedAndSentTogether) {
-  EXPECT_RUNS(start(""));
+  EXPECT_RUNS(start("function step() end"));
   Device& right = robot().device("lamp", "right");
   EXPECT_EQ(right.commanded("power"), 0.5);
   EXPECT_EQ(command().device_commands_size(), 0);
@@ -96,7 +96,7 @@ TEST_F(Described, CommandsAreCheckedAndSentTogether) {
 }
 
 TEST_F(Described, ReadingsOfAnotherLengthAreRefused) {
-  EXPECT_RUNS(start(""));
+  EXPECT_RUNS(start("function step() end"));
   see();
   seen().add_device_row_values(1);
   EXPECT_THROW(step(), std::runtime_error);

@@ -35,6 +35,15 @@ void expect_one(const std::vector<std::string>& texts, const std::string& part) 
   EXPECT_NE(texts[0].find(part), std::string::npos) << texts[0];
 }
 
+TEST(SceneWarnings, ALightStandsWhereItIs) {
+  const auto light = [](const std::string& position) {
+    return R"(<light id="l" color="red" intensity="1" medium="leds" position=")" + position +
+           "\"/>";
+  };
+  EXPECT_TRUE(found(light("1,0,1")).empty());
+  expect_one(found(light("9,0,1")), "light \"l\" begins outside of the arena");
+}
+
 TEST(SceneWarnings, AreNotRaisedBySoundScenes) {
   EXPECT_TRUE(found("").empty());
   EXPECT_TRUE(found(body("a", "0,0,0") + body("b", "1,0,0") + body("c", "0,0,1")).empty());
