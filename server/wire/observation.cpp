@@ -89,7 +89,7 @@ ReadingSize size_of_readings(const Roster& roster, const world::Observations& fr
         size.size += size_of_packet + packet.data.count;
       });
   for_each_list(roster, from, [&](const world::DeviceRows& rows) {
-    size.add(rows.values.size(), sizeof(double), sizeof(double));
+    size.size += rows.values.size() * sizeof(double);
   });
   count_cameras(roster, from, tag_payloads, size);
   return size;

@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "../described_devices.h"
+#include "wire/command.h"
 #include "wire/command_limits.h"
 #include "wire/devices.h"
 #include "wire/inbox.h"
 #include "wire/observation.h"
-#include "wire/reset_commands.h"
 
 namespace ziggurat::wire::described {
 namespace {
@@ -76,7 +76,6 @@ TEST_F(DescribedWire, ReadingsAndRowsArePackedRobotByRobot) {
 TEST_F(DescribedWire, RowsCountInTheSizeOfAnObservation) {
   const ReadingSize size = size_of_readings(roster, described_observations(), {});
   EXPECT_EQ(size.size, 4 * sizeof(double));
-  EXPECT_EQ(size.memory, 4 * sizeof(double));
 }
 
 TEST_F(DescribedWire, CommandsOfSomeRobots) {
