@@ -67,8 +67,9 @@ Addition Additions::read_shape(std::string text, const Scene& scene, std::size_t
                                const OpenFile& open) const {
   return read_element(
       std::move(text), scene, max_size, open, [&](Draft& draft, Element& element, Entity& entity) {
-        if (is_single(*entity_kind(element.name())) && !element.has("model")) {
-          entity.kind = *entity_kind(element.name());
+        const EntityKind kind = *entity_kind(element.name());
+        if (is_single(kind) && kind != EntityKind::light && !element.has("model")) {
+          entity.kind = kind;
           entity.links.emplace_back().geometry = scene::read_shape(draft, element, element.name());
         } else {
           entity = read_entity(draft, element, Placement::looked_at);

@@ -208,7 +208,7 @@ CASES = [
               {}, {"contact_sensors": [{"id": "skin", "anchor": "origin"}]}, {}]})),
     _case("D11.described", "Welcome says what devices read, have and are told", ALL, Check("kinds", _described)),
     _case("D11.values", "Their readings are in the order of the description", ALL, answer("p"), observe("p"),
-          Check("lights", _sees_light)),
+          Check("lights", _sees_light), fresh=True),
     _case("D12.rows", "A device with rows says how many; there are none until it is commanded", ALL, _rows(0),
           answer("p", device_commands=[1.0, 0.0, 0.0]), observe("p"), _rows(4),
           answer("p", device_commands=[0.0, 0.0, 0.0]), observe("p"), _rows(0), fresh=True),

@@ -137,7 +137,7 @@ class Chance {
         break;
     }
     pb::Message& inner = many ? *of.AddMessage(&to, &field) : *of.MutableMessage(&to, &field);
-    if (levels > 0) fill(inner, levels - 1);
+    if (levels > 0 || field.is_map()) fill(inner, levels - 1);
   }
 
   std::mt19937 draw_;

@@ -67,7 +67,8 @@ constexpr Row entity_rows[] = {
      R"(path="../no.png" of <floor> names "../no.png", which leads out of its folder; write a path )"
      "without .. that is relative to the scene's file"},
     {"Light_without_place", Part::entity,
-     R"(<light id="l" color="red" intensity="1" medium="leds"/>)", "<light> lacks position"},
+     R"(<light id="l" color="red" intensity="1" medium="leds"/>)",
+     "<light> lacks the attribute position"},
     {"No_extent", Part::entity, R"(<sphere id="a" radius="0" movable="false"><body/></sphere>)",
      R"(5:24: radius="0" of <sphere> is below 1e-6 m, the least length of a scene: what has no extent has no )"
      "inertia and touches nothing; write 1e-6 to 1e6 m"},
