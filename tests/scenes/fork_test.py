@@ -167,12 +167,6 @@ class Kept(Fork):
         self.assertEqual(again[20], forked[20])
         self.assertRegex(self.ask("verify", further).out, r"^identical: 11 states")
 
-    def ctl(self, url, *words):
-        outcome = subprocess.run([ZIGGURAT, "ctl", url, *map(str, words)], capture_output=True, text=True,
-                                 timeout=LIMIT, env=self.environment)
-        self.assertEqual(outcome.returncode, 0, outcome.stderr)
-        return outcome.stdout
-
     def connect(self, url, *options):
         self.started.append(subprocess.Popen([LUA, "--connect", url, "--quiet", *options], cwd=self.folder,
                                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
@@ -232,18 +226,13 @@ class Kept(Fork):
             recording = self.folder / f"{steps}.mcap"
             process = self.start("serve", self.scene, "--json", "--paused", "--record", recording, "--ticks", 20)
             url = json.loads(process.stdout.readline())["endpoint"]
-
-            def ctl(*words):
-                outcome = self.ziggurat("ctl", url, *words)
-                self.assertEqual(outcome.code, 0, outcome.err)
-
             if steps:
                 self.connect(url)
-                ctl("step", steps)
-            ctl("remove", "r0")
+                self.ctl(url, "step", steps)
+            self.ctl(url, "remove", "r0")
             if not steps:
                 self.connect(url)
-            ctl("resume")
+            self.ctl(url, "resume")
             self.assertEqual(self.finish(process).code, 0)
             for more in ((), ("--fresh",)):
                 outcome = self.ziggurat("fork", recording, "--at", 10, "--quiet", *more)

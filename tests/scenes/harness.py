@@ -108,6 +108,13 @@ class SceneTest(unittest.TestCase):
     def ziggurat(self, *arguments):
         return self.finish(self.start(*arguments))
 
+    def ctl(self, url, *words, text=None, code=FINISHED):
+        """`ziggurat ctl`: what it prints, or why it fails."""
+        done = subprocess.run([ZIGGURAT, "ctl", url, *map(str, words)], input=text, capture_output=True, text=True,
+                              timeout=LIMIT, cwd=self.folder, env=self.environment)
+        self.assertEqual(done.returncode, code, f"{words}: {done.stderr}")
+        return done.stderr if code else done.stdout
+
     def run_scene(self, *arguments, code=FINISHED, scene=None):
         """Runs the test's scene and expects that exit code."""
         outcome = self.ziggurat("run", scene or self.scene, *arguments)

@@ -8,7 +8,7 @@ import subprocess
 
 import zmq
 
-from harness import FAULT, INTERRUPTED, LUA, ZIGGURAT, SceneTest, main
+from harness import FAULT, INTERRUPTED, LUA, SceneTest, main
 
 BOX = '<box id="{}" size="0.1,0.1,0.1" movable="true" mass="1"><body position="{}"/></box>'
 PACED = "--real-time", 3  # fewer lines to read
@@ -31,20 +31,14 @@ class Spawn(SceneTest):
         """A paused world whose robots have no scripts."""
         self.change('script="swing.lua" ', "")
         process = self.begin("serve", *arguments)
-        self.wait_for(lambda: self.ctl("status"), lambda text: "paused" in text, "pause")
+        self.wait_for(lambda: self.ctl(self.url, "status"), lambda text: "paused" in text, "pause")
         return process
 
-    def ctl(self, *words, text=None, code=0):
-        outcome = subprocess.run([ZIGGURAT, "ctl", self.url, *map(str, words)], input=text,
-                                 capture_output=True, text=True, timeout=60, cwd=self.folder)
-        self.assertEqual(outcome.returncode, code, outcome.stderr)
-        return outcome.stderr if code else outcome.stdout
-
     def spawn(self, text, **options):
-        return self.ctl("spawn", "-", text=text, **options)
+        return self.ctl(self.url, "spawn", "-", text=text, **options)
 
     def read(self, *patterns):
-        return json.loads(self.ctl("read", *patterns, "--json"))
+        return json.loads(self.ctl(self.url, "read", *patterns, "--json"))
 
     def end(self, process):
         self.interrupt(process)
@@ -59,7 +53,7 @@ class Spawn(SceneTest):
         self.read_until(process.stdout, r"^\[\d+ late\] init")
         self.read_until(process.stdout, r"^\[\d+ late\] step 20")
         self.assertEqual(len(self.lua_processes(2)), 2)
-        self.ctl("remove", "late")
+        self.ctl(self.url, "remove", "late")
         self.read_until(process.stdout, r"^\[\d+ late\] destroy")
         self.assertEqual(len(self.lua_processes(2)), 2, "its process waits for other robots")
         tick = int(self.read_until(process.stdout, r"^\[(\d+) r0\]")[1])
@@ -69,20 +63,20 @@ class Spawn(SceneTest):
     def test_a_joint_is_set_and_the_recording_repeats_it(self):
         recording = self.folder / "run.mcap"
         process = self.begin_without_controllers("--record", recording)
-        self.assertEqual(self.ctl("set-joint", "r0", "shoulder", -0.75, 2), "set at tick 0\n")
+        self.assertEqual(self.ctl(self.url, "set-joint", "r0", "shoulder", -0.75, 2), "set at tick 0\n")
         arm = next(link for link in self.read("r0")["entities"][0]["links"] if link["id"] == "arm")
         self.assertAlmostEqual(2 * math.atan2(arm["orientation"][3], arm["orientation"][0]), -0.75, places=12)
         self.assertAlmostEqual(arm["angularVelocity"][2], 2, places=12)
-        self.ctl("step", 5)
-        self.ctl("snapshot", "here")
-        self.ctl("set-joint", "r1", "shoulder", 1)
-        self.ctl("step", 3)
-        self.ctl("restore", "here")
-        self.ctl("step", 2)
-        self.assertRegex(self.ctl("set-joint", "r0", "knee", 0, code=FAULT), "'r0' has no joint 'knee'; write one of 'shoulder'")
-        self.assertRegex(self.ctl("set-joint", "r0", "shoulder", "far", code=FAULT), "position .*far")
-        self.assertRegex(self.ctl("set-joint", "r7", "shoulder", 0, code=FAULT), "no entity 'r7'")
-        self.ctl("shutdown", "--reason", "seen")
+        self.ctl(self.url, "step", 5)
+        self.ctl(self.url, "snapshot", "here")
+        self.ctl(self.url, "set-joint", "r1", "shoulder", 1)
+        self.ctl(self.url, "step", 3)
+        self.ctl(self.url, "restore", "here")
+        self.ctl(self.url, "step", 2)
+        self.assertRegex(self.ctl(self.url, "set-joint", "r0", "knee", 0, code=FAULT), "'r0' has no joint 'knee'; write one of 'shoulder'")
+        self.assertRegex(self.ctl(self.url, "set-joint", "r0", "shoulder", "far", code=FAULT), "position .*far")
+        self.assertRegex(self.ctl(self.url, "set-joint", "r7", "shoulder", 0, code=FAULT), "no entity 'r7'")
+        self.ctl(self.url, "shutdown", "--reason", "seen")
         self.assertEqual(self.finish(process).code, 0)
         outcome = self.ziggurat("verify", recording)
         self.assertEqual(outcome.code, 0, outcome.err)
@@ -95,13 +89,13 @@ class Spawn(SceneTest):
         process = self.begin_without_controllers()
         self.spawn('<box id="crate" size="0.1,0.1,0.1" movable="true" mass="1"><body position="3,3,0"/></box>')
         self.spawn('<box id="other" size="0.1,0.1,0.1" movable="true" mass="1"><body position="4,3,0"/></box>')
-        self.assertEqual(self.ctl("is-free", "crate", "4,3.05,0"), "not free: 'other' is there\n")
-        self.assertEqual(self.ctl("is-free", '<box size="0.1,0.1,0.1"/>', "4,3.1,0"), "free\n")
-        self.assertEqual(json.loads(self.ctl("is-free", "crate", "4,3.05,0", "--json")), {"free": False, "overlapped": "other"})
-        self.assertRegex(self.ctl("move", "crate", "4,3.05,0", code=FAULT), "'crate' overlaps 'other' where it is moved to")
-        self.ctl("move", "crate", "4,3.05,0", "--may-overlap")
+        self.assertEqual(self.ctl(self.url, "is-free", "crate", "4,3.05,0"), "not free: 'other' is there\n")
+        self.assertEqual(self.ctl(self.url, "is-free", '<box size="0.1,0.1,0.1"/>', "4,3.1,0"), "free\n")
+        self.assertEqual(json.loads(self.ctl(self.url, "is-free", "crate", "4,3.05,0", "--json")), {"free": False, "overlapped": "other"})
+        self.assertRegex(self.ctl(self.url, "move", "crate", "4,3.05,0", code=FAULT), "'crate' overlaps 'other' where it is moved to")
+        self.ctl(self.url, "move", "crate", "4,3.05,0", "--may-overlap")
         self.assertEqual(self.read("crate")["entities"][0]["position"], [4, 3.05, 0])
-        self.assertRegex(self.ctl("remove", "crate", "--may-overlap", code=FAULT), "--may-overlap is for move")
+        self.assertRegex(self.ctl(self.url, "remove", "crate", "--may-overlap", code=FAULT), "--may-overlap is for move")
         self.end(process)
 
     def test_spawned_robots_share_processes(self):
@@ -112,8 +106,8 @@ class Spawn(SceneTest):
         self.read_until(process.stdout, r"^\[\d+ late19\] step 3")
         processes = self.lua_processes(2)
         self.assertEqual(len(processes), 2, "one for the scene's robots, one for the others")
-        self.ctl("remove", "late3")
-        self.ctl("reset")
+        self.ctl(self.url, "remove", "late3")
+        self.ctl(self.url, "reset")
         self.spawn(self.arm("later", "0,2,0"))
         self.read_until(process.stdout, r"^\[\d+ later\] step 3")
         self.assertEqual(self.lua_processes(2), processes)
@@ -161,9 +155,9 @@ class Spawn(SceneTest):
                                          cwd=self.folder, env=self.environment))
         self.started.append(scripted[-1])
         self.read_until(process.stdout, r"^\[\d+ late\] step 5")
-        self.ctl("remove", "r1")
+        self.ctl(self.url, "remove", "r1")
         self.read_until(process.stdout, r"^\[\d+ late\] step 30")
-        self.ctl("reset")
+        self.ctl(self.url, "reset")
         self.assertEqual(scripted[1].wait(60), 0, "a reset removes spawned robots and ends their sessions")
         self.read_until(process.stdout, r"^\[20 r0\]")
         self.assertEqual([e["id"] for e in self.read("r*")["entities"]],
@@ -235,7 +229,7 @@ class Spawn(SceneTest):
         process = self.start("serve", self.scene, "--duration", 0, "--endpoint", self.url,
                              "--allow-spawned-scripts", shapes, cwd=elsewhere)
         self.wait_for(lambda: (self.folder / "endpoint").exists(), bool, "endpoint")
-        self.wait_for(lambda: self.ctl("status"), lambda text: "paused" in text, "pause")
+        self.wait_for(lambda: self.ctl(self.url, "status"), lambda text: "paused" in text, "pause")
         hull = ('<prototype id="{}" movable="true"><body position="0,{},0.3"/><links ref="a">'
                 '<link id="a" geometry="hull" mass="1"><hull file="{}"/></link></links></prototype>')
         self.spawn(hull.format("a", 3, "shapes/cube.obj"))  # relative to the scene's folder
@@ -258,8 +252,8 @@ class Spawn(SceneTest):
         self.assertIn("'heavy' has a mass of 1e+07 kg; an entity that is spawned may have at most 1e+06",
                       self.spawn(BOX.format("heavy", "0,3,0").replace('mass="1"', 'mass="1e7"'), code=1))
         for position in ("1e308,0,0", "0,-1.1e6,0", "nan,0,0"):
-            self.ctl("move", "box1", position, code=1)
-        self.ctl("move", "box1", "1e6,0,0")
+            self.ctl(self.url, "move", "box1", position, code=1)
+        self.ctl(self.url, "move", "box1", "1e6,0,0")
         self.end(process)
 
     def test_models_of_spawned_entities_count_after_a_restore_too(self):
@@ -270,11 +264,11 @@ class Spawn(SceneTest):
         self.spawn(large.format("a", 0))
         self.spawn(large.format("b", 1))
         self.assertIn("larger than", self.spawn(large.format("c", 2), code=1))
-        self.ctl("snapshot", "full")
-        self.ctl("step", 1)
-        self.ctl("restore", "full")
+        self.ctl(self.url, "snapshot", "full")
+        self.ctl(self.url, "step", 1)
+        self.ctl(self.url, "restore", "full")
         self.assertIn("larger than", self.spawn(large.format("c", 2), code=1))
-        self.ctl("reset")
+        self.ctl(self.url, "reset")
         self.spawn(large.format("c", 2))
         self.end(process)
 
@@ -285,17 +279,17 @@ class Spawn(SceneTest):
 
     def test_traces_and_readings_list_present_entities_only(self):
         process = self.begin_without_controllers("--trace", "trace.csv", "--readings", "readings.jsonl")
-        self.ctl("step", 3)
+        self.ctl(self.url, "step", 3)
         self.spawn(self.arm("late", "0,2,0"))
-        self.ctl("step", 4)
-        self.ctl("remove", "late")
-        self.ctl("remove", "r1")
-        self.ctl("step", 2)
+        self.ctl(self.url, "step", 4)
+        self.ctl(self.url, "remove", "late")
+        self.ctl(self.url, "remove", "r1")
+        self.ctl(self.url, "step", 2)
         self.spawn(BOX.format("late", "0,2,0"))
-        self.ctl("step", 1)
-        self.ctl("reset")
+        self.ctl(self.url, "step", 1)
+        self.ctl(self.url, "reset")
         self.spawn(BOX.format("other", "0,2,0"))
-        self.ctl("step", 2)
+        self.ctl(self.url, "step", 2)
         self.end(process)
         ticks = {}
         for row in csv.DictReader((self.folder / "trace.csv").read_text().splitlines()):

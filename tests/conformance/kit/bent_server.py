@@ -12,6 +12,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 
 from google.protobuf.message import DecodeError
 
@@ -140,7 +141,10 @@ async def main(endpoint, scene, bug="", *options):
 
     loop = asyncio.get_running_loop()
     loop.add_signal_handler(signal.SIGINT, lambda: server.send_signal(signal.SIGINT))
-    await asyncio.start_server(serve, host, int(port), limit=1 << 20)
+    if bug == "any-key":
+        threading.Thread(target=bends.relay_of_any_key, args=(endpoint, options[1], address), daemon=True).start()
+    else:
+        await asyncio.start_server(serve, host, int(port), limit=1 << 20)
     await asyncio.to_thread(server.wait)
     for connection in list(Connection.connections):  # what the server has said last is passed on
         await connection.telling

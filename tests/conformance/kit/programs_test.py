@@ -65,7 +65,7 @@ class WhatTheyStart(Programs):
 
     def test_ends_with_a_server(self):
         kit = self.start("server", "--only", "S9.stale", "--form", "binary", "--", *self.script(
-            shlex.join([sys.executable, "-B", str(HERE / "tiny_server.py"), "{endpoint}", "{scene}"])))
+            shlex.join([os.environ["ZIGGURAT"], "serve", "{scene}", "--endpoint", "{endpoint}"])))
         kit.communicate(timeout=HANG)
         self.assert_ends(self.left())
 

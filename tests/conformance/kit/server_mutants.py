@@ -1,4 +1,4 @@
-"""The table of the bugs of bent_server.py and of tiny_server.py: what each breaks, and which case catches it."""
+"""The table of the bugs of bent_server.py: what each breaks, and which case catches it."""
 
 from dataclasses import dataclass
 
@@ -9,12 +9,7 @@ class Mutant:
     rule: str  # that it breaks
     case: str  # that catches it
     form: str = "binary"
-    program: str = "bent_server.py"
     is_must: bool = True
-
-
-def _tiny(bug, case):
-    return Mutant(bug, case.split(".")[0], case, program="tiny_server.py")
 
 
 def _bent(bug, case, rule="", **more):
@@ -22,30 +17,16 @@ def _bent(bug, case, rule="", **more):
 
 
 MUTANTS = [
-    _tiny("any-version", "H2.major-above"),
-    _tiny("any-token", "L4.unknown-token"),
-    _tiny("token-waits", "L8.token-alone"),
-    _tiny("asked-order", "H4.some"),
-    _tiny("shares-robots", "H6.taken-twice"),
-    _tiny("late-waits", "H11.late"),
-    _tiny("silent-on-garbage", "T2.garbage-text"),
-    _tiny("stale-counts", "S9.stale"),
-    _tiny("future-counts", "S9.future"),
-    _tiny("duplicate-silent", "S9.duplicate"),
-    _tiny("tells-twice", "S3.waits"),
-    _tiny("heartbeat-releases", "S3.heartbeat-does-not"),
-    _tiny("skips-ticks", "S1.consecutive"),
-    _tiny("time-drifts", "S1.time"),
-    _tiny("short-readings", "S2.joint-readings"),
-    _tiny("two-steps", "S4.applied-next"),
-    _tiny("any-length", "S6.long-joint-targets"),
-    _tiny("nan-counts", "S8.nan-joint"),
-    _tiny("half-a-command", "S10.no-effect"),
-    _tiny("radio-reversed", "D3.order"),
-    _tiny("plain-text", "K1.plain"),
-    _tiny("any-key", "K2.unlisted"),
-    _tiny("any-role", "K3.controller-as-supervisor"),
-    _tiny("grants-stop", "K11.stop"),
+    _bent("any-version", "H2.major-above"),
+    _bent("token-waits", "L8.token-alone"),
+    _bent("silent-on-garbage", "T2.garbage-text"),
+    _bent("future-counts", "S9.future"),
+    _bent("tells-twice", "S3.waits"),
+    _bent("any-length", "S6.long-joint-targets"),
+    _bent("plain-text", "K1.plain"),
+    _bent("any-key", "K2.unlisted"),
+    _bent("any-role", "K3.controller-as-supervisor"),
+    _bent("grants-stop", "K11.stop"),
     _bent("two-frames", "H1.at-once", "T2"),
     _bent("nul-behind", "H1.at-once", "T2"),
     _bent("garbage-is-silent", "T2.session-garbage-ones"),
@@ -302,7 +283,7 @@ MUTANTS = [
 # They say nothing where something is expected: to wait for long shows no more.
 SILENT = {
     "json-strips-texts",
-    "late-waits", "silent-on-garbage", "duplicate-silent", "plain-text", "garbage-is-silent", "too-large-is-silent",
+    "silent-on-garbage", "plain-text", "garbage-is-silent", "too-large-is-silent",
     "deaf-to-hello", "state-is-silent", "refused-for-ever", "late-gets-nothing", "displaced-not-told",
     "stale-is-silent", "duplicate-is-silent", "packets-cut", "waits-always", "paused-not-told", "too-many-is-silent",
     "any-reason", "leave-beyond-dropped", "leave-ignored", "end-not-told", "hello-after-end-is-silent",

@@ -68,6 +68,7 @@ TOLD["too-large-is-silent"] = drop("error", E.TOO_LARGE)
 TOLD["garbage-is-silent"] = drop("error", E.MALFORMED)
 SAID["deaf-to-hello"] = drop("hello")
 TOLD["client-version-lost"] = clear_fields("refusal", "client_version")
+SAID["any-version"] = in_kind("hello", lambda _, hello: setattr(hello.version, "major", 1))
 TOLD["minor-above"] = in_kind("welcome", lambda _, welcome: setattr(welcome.version, "minor", 9))
 
 

@@ -76,7 +76,9 @@ SAID["short-patterns"] = in_kind("hello", lambda connection, hello: _refused(con
 SAID["patterns-cut"] = in_kind("hello", lambda _, hello: refill(hello, "robots", hello.robots[:64]))
 
 SAID["wish-ignored-first"] = SAID["wish-ignored"]
-
+SAID["future-counts"] = SAID["any-tick"]
+SAID["any-length"] = SAID["pads-joint-targets"]
+TOLD["silent-on-garbage"] = TOLD["garbage-is-silent"]
 SAID["all-left-release"] = SAID["leaves-release"]
 TOLD["names-as-they-are"] = in_kind("refusal", lambda _, refusal: setattr(refusal, "holder", "\x1b]" + "x" * 100))
 TOLD["always-retryable"] = in_kind("refusal", lambda _, refusal: setattr(refusal.error, "retryable", True))

@@ -61,6 +61,17 @@ def _(connection, message):
         message.hello.robots.append("*")
 
 
+@said("token-waits")
+def _(connection, message):
+    """A session is resumed only when its connection is gone."""
+    if message.HasField("hello") and any(other.welcome and other.welcome.session_token == message.hello.session_token
+                                         for other in connection.connections):
+        error = E(code=E.ROBOT_TAKEN, severity=E.FATAL, retryable=True, message="no")
+        connection.tell(refusal=protocol.Refusal(error=error, holder="itself"))
+        return []
+    return None
+
+
 TOLD["resumed-without-observation"] = in_kind("observation", lambda connection, told: []
                                           if connection.hello and connection.hello.session_token else None)
 OPTIONS["no-lease"] = lambda options: []

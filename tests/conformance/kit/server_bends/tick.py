@@ -1,5 +1,8 @@
 """Bends of sections 3 and 3.1: the tick, devices."""
 
+import os
+import sys
+
 import protocol_pb2 as protocol
 
 from .kinds import (E, SAID, TOLD, clear_fields, drop, each_value, finite, in_kind, per_device, recode, refill,
@@ -18,6 +21,19 @@ def _(connection, message):
 def _(connection, message):
     if message.HasField("command"):
         message.command.tick //= 2
+
+
+@told("tells-twice")
+def _(connection, message):
+    return [message, message] if message.HasField("observation") else None
+
+
+@said("dies")
+def _(connection, message):
+    """Of a Command for an earlier tick."""
+    if message.HasField("command") and message.command.tick < connection.tick:
+        print("goodbye", file=sys.stderr, flush=True)
+        os._exit(1)
 
 
 @told("no-tick-zero")

@@ -153,21 +153,6 @@ class Supervising(unittest.TestCase):
                     world.shutdown()
                     driver.join(HANG)
 
-    def test_refused_requests_have_a_reason(self):
-        with serve() as server, ziggurat.supervise(server.endpoint) as world:
-            for call, code in ((lambda: world.step(1), "OUT_OF_STATE"),
-                               (lambda: world.read("unknown"), "UNKNOWN_ENTITY"),
-                               (lambda: world.move("unknown", (0, 0, 0)), "UNKNOWN_ENTITY"),
-                               (lambda: world.move("arm0", (0, 0, float("nan"))), "BAD_VALUE")):
-                with self.assertRaises(ziggurat.ProtocolError) as caught:
-                    call()
-                self.assertEqual(caught.exception.code, code)
-            with ziggurat.supervise(server.endpoint, observer=True) as watcher:
-                self.assertEqual(len(watcher.read().entities), 4)
-                with self.assertRaises(ziggurat.ProtocolError) as caught:
-                    watcher.pause()
-                self.assertEqual(caught.exception.code, "FORBIDDEN")
-
 
 class Waiting(unittest.TestCase):
     """A server that lives sends heartbeats: they do not extend a wait."""
@@ -281,12 +266,6 @@ class Deadlines(unittest.TestCase):
                 self.assertEqual(numbers_of(late, 6), [])
                 self.assertEqual((late.missed, late.ending.reason), (1, "interrupted"))
                 late.close()
-
-    def test_a_deadline_other_than_the_servers_is_refused(self):
-        with serve("--deadline", "hold:5000") as server:
-            with self.assertRaises(ziggurat.Refused) as caught:
-                ziggurat.connect(server.endpoint, deadline=ziggurat.Deadline("stop", wall_ms=10))
-            self.assertEqual(caught.exception.code, "FORBIDDEN")
 
 
 class Keys(unittest.TestCase):

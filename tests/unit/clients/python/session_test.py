@@ -8,7 +8,7 @@ import ziggurat
 from ziggurat import protocol_pb2 as v1
 from ziggurat.connection import Connection
 
-from fake_server import FakeServer, welcome
+from fake_server import welcome
 from waiting import wait_until
 from session_case import SessionCase, open_with
 
@@ -106,26 +106,6 @@ class Beginning(SessionCase):
             for other in ("tcp://", "tcp://:80", "tcp://host", "inproc://x", "ws://localhost:80"):
                 with self.assertRaisesRegex(ValueError, "write ipc:///path or tcp://host:port"):
                     ziggurat.connect(other, connect_timeout=0.05, curve=curve)
-
-
-class Security(SessionCase):
-    def setUp(self):
-        self.public_key, secret_key = zmq.curve_keypair()
-        self.server = FakeServer(secret_key)
-        self.addCleanup(self.server.close)
-
-    def keys(self, server_key):
-        public_key, secret_key = (key.decode() for key in zmq.curve_keypair())
-        return ziggurat.Curve(server_key.decode(), public_key, secret_key)
-
-    def test_keys(self):
-        self.play(open_with, lambda: self.connect(curve=self.keys(self.public_key)).abandon())
-
-    def test_another_servers_key_or_none(self):
-        other, _ = zmq.curve_keypair()
-        for curve in (None, self.keys(other)):
-            with self.assertRaises(ziggurat.ConnectionLost):
-                self.connect(curve=curve, connect_timeout=0.3)
 
 
 class Ticks(SessionCase):
