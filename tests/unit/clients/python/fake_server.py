@@ -13,8 +13,11 @@ from waiting import HANG  # noqa: E402
 
 
 class FakeServer:
-    def __init__(self):
+    def __init__(self, secret_key=None):
         self.socket = zmq.Context.instance().socket(zmq.ROUTER)
+        if secret_key is not None:
+            self.socket.curve_server = True
+            self.socket.curve_secretkey = secret_key
         self.socket.setsockopt(zmq.LINGER, 0)
         self.socket.setsockopt(zmq.ROUTER_MANDATORY, 1)
         self.endpoint = f"tcp://127.0.0.1:{self.socket.bind_to_random_port('tcp://127.0.0.1')}"
