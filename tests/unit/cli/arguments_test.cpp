@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "text/numbers.h"
+#include "words_of.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -17,12 +18,7 @@ po::options_description known() {
 }
 
 std::string complaint(const Arguments& arguments) {
-  try {
-    parse(arguments, known());
-  } catch (const text::UsageError& error) {
-    return error.what();
-  }
-  return "";
+  return words_of<text::UsageError>([&] { parse(arguments, known()); });
 }
 
 TEST(Arguments, OptionsMayStandAnywhere) {

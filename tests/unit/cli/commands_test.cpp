@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "text/numbers.h"
+#include "words_of.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -16,12 +17,8 @@ TEST(Commands, EachExplainsItselfWithItsName) {
 }
 
 TEST(Commands, MisspeltNamesGetASuggestion) {
-  try {
-    command_named("chekc");
-    FAIL();
-  } catch (const text::UsageError& error) {
-    EXPECT_STREQ(error.what(), "there is no command 'chekc'; did you mean 'check'?");
-  }
+  const std::string words = words_of<text::UsageError>([&] { command_named("chekc"); });
+  EXPECT_EQ(words, "there is no command 'chekc'; did you mean 'check'?");
 }
 
 TEST(Commands, MisspeltOptionsWithoutCommandGetASuggestion) {
@@ -29,13 +26,7 @@ TEST(Commands, MisspeltOptionsWithoutCommandGetASuggestion) {
        {std::pair("--versio", "did you mean '--version'?"),
         std::pair("--hepl", "did you mean '--help'?"),
         std::pair("--seed", "write: ziggurat COMMAND [OPTION]...")}) {
-    try {
-      command_named(written);
-      ADD_FAILURE() << written;
-    } catch (const text::UsageError& error) {
-      EXPECT_NE(std::string_view(error.what()).find(advice), std::string_view::npos)
-          << error.what();
-    }
+    EXPECT_TRUE(fails_with<text::UsageError>(advice, [&] { command_named(written); }));
   }
 }
 

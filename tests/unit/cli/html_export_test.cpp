@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "temporary_folder.h"
+#include "words_of.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -27,12 +28,7 @@ class HtmlExport : public testing::Test {
   }
   static std::string complaint(const std::string& player, const std::string& recording,
                                const std::string& out) {
-    try {
-      export_html(player, recording, out);
-    } catch (const std::exception& error) {
-      return error.what();
-    }
-    return "";
+    return words_of<std::exception>([&] { export_html(player, recording, out); });
   }
 
   const std::string magic_{"\x89MCAP0\r\n", 8};

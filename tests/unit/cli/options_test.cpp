@@ -5,6 +5,7 @@
 #include <array>
 
 #include "text/numbers.h"
+#include "words_of.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -106,14 +107,9 @@ TEST(Options, WhatIsGivenTwiceForTheSameIsRefused) {
         std::array{"--param", "gain=1", "gain=2"}, std::array{"--controller", "a=x", "a=y"},
         std::array{"--restart", "1", "2"},
         std::array{"--inject", "latency=1ms", "commands:loss=1%"}}) {
-    try {
+    EXPECT_TRUE(fails_with<text::UsageError>(std::string(option) + " is given twice for ", [&] {
       run({"s", option, first, option, second});
-      ADD_FAILURE() << option;
-    } catch (const text::UsageError& error) {
-      EXPECT_NE(std::string(error.what()).find(std::string(option) + " is given twice for "),
-                std::string::npos)
-          << error.what();
-    }
+    }));
   }
   EXPECT_EQ(run({"s", "--deadline", "hold:50", "--deadline", "a=wait", "--inject",
                  "a=commands:loss=1%", "--inject", "a=observations:loss=2%", "--restart", "1",

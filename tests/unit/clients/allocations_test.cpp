@@ -37,8 +37,7 @@ TEST(TickPath, SensingAndDrivingAllocateNothing) {
       self.send(sight(tick));
       EXPECT_EQ(self.receive().command().wheel_velocities_size(), 4);
     }
-    self.end();
-    self.receive();
+    self.finish();
   });
   Session session(options_for(server));
   std::size_t before = 0;

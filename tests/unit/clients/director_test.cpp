@@ -130,10 +130,7 @@ TEST(Director, AnswersATickAgainWhoseAnswerWasWrong) {
     self.send(arm_and_box());
     self.send(state(0, 2));
     EXPECT_EQ(self.receive().direction().acts_size(), 1);
-    v1::ServerMessage message;
-    message.mutable_error()->set_code(v1::Error::UNKNOWN_ENTITY);
-    message.mutable_error()->set_severity(v1::Error::DISCARD);
-    self.send(message);
+    self.discard(v1::Error::UNKNOWN_ENTITY);
     const auto again = self.receive().direction();
     EXPECT_EQ(again.tick(), 0U);
     EXPECT_EQ(again.acts(0).remove().entity(), "box");
@@ -180,9 +177,7 @@ TEST(Director, EntitiesComeAndGo) {
     self.send(change);
     self.send(state(1, 3));
     self.receive();
-    v1::ServerMessage reset;
-    reset.mutable_reset()->set_seed(8);
-    self.send(reset);
+    self.reset();
     self.send(arm_and_box());
     self.send(state(0, 2));
     self.receive();
@@ -220,9 +215,7 @@ TEST(Director, AfterAResetSameEntitiesKeepTheirHandlesAndOthersWithTheirIdsAreNe
     all.mutable_world_state()->add_led_colors(0x00ff00);
     for (const auto& [layout, state] :
          {std::pair(arm_and_box(), full_state(0, -2)), std::pair(lit, all)}) {
-      v1::ServerMessage reset;
-      reset.mutable_reset()->set_seed(8);
-      self.send(reset);
+      self.reset();
       self.send(layout);
       self.send(state);
       self.receive();
@@ -294,8 +287,7 @@ TEST(Director, ResumesAndSendsTheAnswerAgain) {
     EXPECT_EQ(again.acts(0).remove().entity(), "box");
     self.send(state(4, 2));
     EXPECT_EQ(self.receive().direction().acts_size(), 0);
-    self.end();
-    self.receive();
+    self.finish();
   });
   Director director(options_of(server));
   ASSERT_TRUE(director.next());

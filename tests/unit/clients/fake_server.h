@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "waiting.h"
+#include "words_of.h"
 #include "ziggurat/error.h"
 #include "ziggurat/session.h"
 #include "ziggurat/v1/protocol.pb.h"
@@ -113,6 +114,24 @@ class FakeServer {
     message.mutable_end()->set_reason(v1::End::FINISHED);
     send(message);
   }
+  /// The end, and the client's Leave.
+  void finish() {
+    end();
+    receive();
+  }
+  /// A reset to seed 8.
+  void reset() {
+    v1::ServerMessage message;
+    message.mutable_reset()->set_seed(8);
+    send(message);
+  }
+  /// The client's last message was wrong.
+  void discard(v1::Error::Code code) {
+    v1::ServerMessage message;
+    message.mutable_error()->set_code(code);
+    message.mutable_error()->set_severity(v1::Error::DISCARD);
+    send(message);
+  }
 
   std::string endpoint;
 
@@ -151,12 +170,7 @@ inline void expect_refused(const v1::ServerMessage& welcome, const v1::ServerMes
     self.receive();
   });
   Session session(options_for(server));
-  try {
-    session.next();
-    ADD_FAILURE() << "was read: " << words;
-  } catch (const ConnectionError& error) {
-    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-  }
+  EXPECT_TRUE(fails_with<ConnectionError>(words, [&] { session.next(); }));
   if (look) look(session);
 }
 

@@ -22,8 +22,7 @@ TEST(Exchange, ARobotThatSendsTooMuchForTheSessionFails) {
     EXPECT_EQ(leave.reason(), v1::Leave::FAILED);
     EXPECT_NE(leave.message().find("bytes by radio at this tick"), std::string::npos);
     EXPECT_GE(self.receive().command().radio_messages_size(), 3);
-    self.end();
-    self.receive();
+    self.finish();
   });
   const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "exchange.lua";
   ProgramOptions options;

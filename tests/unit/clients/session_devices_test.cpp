@@ -7,6 +7,7 @@
 
 #include "equipped_robots.h"
 #include "fake_server.h"
+#include "words_of.h"
 #include "ziggurat/v1/protocol.pb.h"
 #include "ziggurat/ziggurat.h"
 
@@ -51,13 +52,9 @@ TEST(Devices, AreDescribed) {
   EXPECT_EQ(c.contact_sensors()[0].id(), "skin");
   EXPECT_EQ(c.range_and_bearing()->data_size(), 2U);
   EXPECT_EQ(text_of(c.range_and_bearing()->data()), std::string(2, '\0'));
-  try {
-    c.led("side");
-    FAIL();
-  } catch (const std::out_of_range& error) {
-    EXPECT_NE(std::string(error.what()).find("no LED 'side'"), std::string::npos);
-    EXPECT_NE(std::string(error.what()).find("'front', 'rear'"), std::string::npos);
-  }
+  const std::string words = words_of<std::out_of_range>([&] { c.led("side"); });
+  EXPECT_NE(words.find("no LED 'side'"), std::string::npos);
+  EXPECT_NE(words.find("'front', 'rear'"), std::string::npos);
   EXPECT_THROW(a.radio("ears"), std::out_of_range);
 }
 
@@ -141,8 +138,7 @@ TEST(Devices, ValuesAreSentOnce) {
     EXPECT_EQ(third.radio_messages_size(), 1);
     EXPECT_EQ(third.led_colors_size(), 4);
     EXPECT_EQ(third.led_colors(2), 0xFF8001U) << "stays until changed";
-    self.end();
-    self.receive();
+    self.finish();
   });
   Session session(options_for(server));
   ASSERT_TRUE(session.next());
@@ -201,15 +197,12 @@ TEST(Devices, AResetRestoresTheScenesValues) {
     self.welcome(welcome());
     self.send(observation(0));
     self.receive();
-    v1::ServerMessage reset;
-    reset.mutable_reset();
-    self.send(reset);
+    self.reset();
     self.send(observation(0));
     const auto command = self.receive().command();
     EXPECT_EQ(command.led_colors_size(), 0);
     EXPECT_EQ(command.radio_messages_size(), 0);
-    self.end();
-    self.receive();
+    self.finish();
   });
   Session session(options_for(server));
   Robot& b = session.robot("b");
@@ -251,13 +244,9 @@ TEST(Devices, AnnouncedSizesAreLimited) {
   auto message = welcome();
   message.mutable_welcome()->mutable_robots(1)->mutable_range_and_bearing()->set_data_size(~0U);
   FakeServer server([message](FakeServer& self) { self.welcome(message); });
-  try {
-    const Session session(options_for(server));
-    ADD_FAILURE() << "was believed";
-  } catch (const ConnectionError& error) {
-    const std::string words = "range-and-bearing packets of 4294967295 bytes for robot 'b'";
-    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-  }
+  EXPECT_TRUE(
+      fails_with<ConnectionError>("range-and-bearing packets of 4294967295 bytes for robot 'b'",
+                                  [&] { const Session session(options_for(server)); }));
 }
 
 }  // namespace

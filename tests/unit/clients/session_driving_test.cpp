@@ -60,8 +60,7 @@ TEST(Driving, ValuesAreSentOnce) {
     EXPECT_EQ(list(third.wheel_velocities()), (std::vector<double>{1, 1, 0.25, -0.5}));
     EXPECT_EQ(third.turret_modes(1), v1::TURRET_POSITION);
     EXPECT_EQ(list(third.turret_rotations()), (std::vector<double>{0, 1.5}));
-    self.end();
-    self.receive();
+    self.finish();
   });
   Session session(options_for(server));
   Robot& b = session.robot("b");
@@ -83,15 +82,12 @@ TEST(Driving, AResetStopsIt) {
     self.welcome(welcome());
     self.send(observation(0));
     self.receive();
-    v1::ServerMessage reset;
-    reset.mutable_reset();
-    self.send(reset);
+    self.reset();
     self.send(observation(0));
     const auto command = self.receive().command();
     EXPECT_EQ(list(command.wheel_velocities()), (std::vector<double>{1, 2, 0, 0}));
     EXPECT_EQ(command.turret_modes_size() + command.turret_speeds_size(), 0);
-    self.end();
-    self.receive();
+    self.finish();
   });
   Session session(options_for(server));
   ASSERT_TRUE(session.next());

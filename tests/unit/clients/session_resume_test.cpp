@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "fake_server.h"
+#include "words_of.h"
 #include "ziggurat/v1/protocol.pb.h"
 #include "ziggurat/ziggurat.h"
 
@@ -84,8 +85,7 @@ TEST(Resuming, WhatIsHeardStaysThoughTheMessageComesAgain) {
     expect_resumed(self, welcome);
     self.send(heard);
     self.receive();
-    self.end();
-    self.receive();
+    self.finish();
   });
   Session session(options_for(server));
   ASSERT_TRUE(session.next());
@@ -107,8 +107,7 @@ TEST(Resuming, TheWorldMayHaveGoneOn) {
     expect_resumed(self, welcome);
     self.observe(70, {0, 0, 0, 0});
     EXPECT_EQ(self.receive().command().tick(), 70U);
-    self.end();
-    self.receive();
+    self.finish();
   });
   Session session(options_for(server));
   ASSERT_TRUE(session.next());
@@ -130,8 +129,7 @@ TEST(Resuming, AResetMeanwhileIsToldAsOne) {
       expect_resumed(self, welcome);
       self.observe(seed == 7 ? 2 : 3, {0, 0, 0, 0});
       EXPECT_NE(self.receive().command().tick(), 0U);
-      self.end();
-      self.receive();
+      self.finish();
     });
     Session session(options_for(server));
     ASSERT_TRUE(session.next());
@@ -151,8 +149,7 @@ TEST(Resuming, BeforeTheFirstTick) {
     expect_resumed(self);
     self.observe(0, {0, 0, 0, 0});
     self.receive();
-    self.end();
-    self.receive();
+    self.finish();
   });
   Session session(options_for(server));
   ASSERT_TRUE(session.next());
@@ -172,8 +169,7 @@ TEST(Resuming, FailuresAreToldAgainUnlessTheRobotHasLeft) {
     self.observe(3, {0, 0, 0, 0});
     EXPECT_EQ(self.receive().leave().robots(0), 1U);
     EXPECT_EQ(self.receive().command().tick(), 3U);
-    self.end();
-    self.receive();
+    self.finish();
   });
   Session session(options_for(server));
   ASSERT_TRUE(session.next());
@@ -191,8 +187,7 @@ TEST(Resuming, WhenTheServerDoesNotKnowTheConnection) {
     expect_resumed(self);
     self.observe(1, {0, 0, 0, 0});
     EXPECT_EQ(self.receive().command().tick(), 1U);
-    self.end();
-    self.receive();
+    self.finish();
   });
   Session session(options_for(server));
   ASSERT_TRUE(session.next());
@@ -210,8 +205,7 @@ TEST(Resuming, WhenTheServerIsSilent) {
     expect_resumed(self, welcome);  // after 3 s
     self.observe(0, {0, 0, 0, 0});
     EXPECT_TRUE(self.receive().has_command());
-    self.end();
-    self.receive();
+    self.finish();
   });
   Session session(options_for(server));
   ASSERT_TRUE(session.next());
@@ -257,13 +251,7 @@ TEST(Resuming, IsNotTriedForever) {
   Options options = options_for(server);
   options.resume_timeout = milliseconds{300};
   Session session(options);
-  try {
-    session.next();
-    FAIL();
-  } catch (const ConnectionError& error) {
-    EXPECT_NE(std::string(error.what()).find("not resumed within 300 ms"), std::string::npos)
-        << error.what();
-  }
+  EXPECT_TRUE(fails_with<ConnectionError>("not resumed within 300 ms", [&] { session.next(); }));
   EXPECT_FALSE(session.next());
 }
 
@@ -323,13 +311,9 @@ TEST(Options, TheTokenInTheEnvironmentIsTakenOnce) {
   EXPECT_EQ(Options::from_environment().session_token, "");
   for (const char* wrong : {"abc", "0x", "zz", "00 1"}) {
     ::setenv("ZIGGURAT_SESSION_TOKEN", wrong, 1);
-    try {
-      take_session_token();
-      ADD_FAILURE() << wrong;
-    } catch (const std::invalid_argument& error) {
-      EXPECT_EQ(std::string(error.what()).find(wrong), std::string::npos)
-          << "a secret is not printed";
-    }
+    const std::string words = words_of<std::invalid_argument>([&] { take_session_token(); });
+    EXPECT_NE(words, "") << wrong;
+    EXPECT_EQ(words.find(wrong), std::string::npos) << "a secret is not printed";
   }
   ::unsetenv("ZIGGURAT_SESSION_TOKEN");
 }

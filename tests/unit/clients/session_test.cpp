@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "fake_server.h"
+#include "words_of.h"
 #include "ziggurat/v1/protocol.pb.h"
 #include "ziggurat/ziggurat.h"
 
@@ -62,18 +63,10 @@ TEST(Session, UnknownIdsListTheKnownOnes) {
     self.receive();
   });
   Session session(options_for(server));
-  try {
-    session.robot("c");
-    FAIL();
-  } catch (const std::out_of_range& error) {
-    EXPECT_STREQ(error.what(), "this session has no robot 'c'; it has 'a', 'b'");
-  }
-  try {
-    session.robot("a").joint("wheel");
-    FAIL();
-  } catch (const std::out_of_range& error) {
-    EXPECT_NE(std::string(error.what()).find("'slide', 'hinge'"), std::string::npos);
-  }
+  const std::string words = words_of<std::out_of_range>([&] { session.robot("c"); });
+  EXPECT_EQ(words, "this session has no robot 'c'; it has 'a', 'b'");
+  EXPECT_TRUE(fails_with<std::out_of_range>("'slide', 'hinge'",
+                                            [&] { session.robot("a").joint("wheel"); }));
 }
 
 TEST(Session, AResumedOneBeginsWithWhatWasCommanded) {
@@ -99,8 +92,7 @@ TEST(Session, AResumedOneBeginsWithWhatWasCommanded) {
     ASSERT_EQ(command.joint_targets_size(), 2);
     EXPECT_EQ(command.joint_targets(0), 7);
     EXPECT_EQ(command.joint_targets(1), 4) << "not overwritten";
-    self.end();
-    self.receive();
+    self.finish();
   });
   Options options = options_for(server);
   options.session_token = "token";
@@ -129,8 +121,7 @@ TEST(Session, IsToldOfRobotsThatWereRemovedOrTakenOver) {
       self.send(message);
     }
     self.observe(4, {0, 0, 0, 0});
-    self.end();
-    self.receive();
+    self.finish();
     self.receive();
   });
   Session session(options_for(server));
@@ -151,8 +142,7 @@ TEST(Session, IsToldOfDroppedAndSpawnedRobots) {
     message.mutable_robot_spawned()->set_tick(3);
     self.send(message);
     self.observe(4, {0, 0, 0, 0});
-    self.end();
-    self.receive();
+    self.finish();
     self.receive();
   });
   Session session(options_for(server));
@@ -173,13 +163,10 @@ TEST(Session, ResetIsDeliveredWithTheNextObservation) {
     self.welcome();
     self.observe(0, {0, 0, 0, 0});
     EXPECT_EQ(self.receive().command().joint_targets_size(), 2);
-    v1::ServerMessage reset;
-    reset.mutable_reset()->set_seed(8);
-    self.send(reset);
+    self.reset();
     self.observe(0, {0, 0, 0, 0});
     EXPECT_EQ(self.receive().command().joint_targets_size(), 0);  // the server's targets are 0, too
-    self.end();
-    self.receive();
+    self.finish();
   });
   Session session(options_for(server));
   ASSERT_TRUE(session.next());
@@ -211,8 +198,7 @@ TEST(Session, AnAnswerThatCrossedAResetIsIgnored) {
       EXPECT_EQ(command.tick(), 1U);
       ASSERT_EQ(command.joint_targets_size(), 2);  // in case that the answer to 0 was the lost one
       EXPECT_EQ(command.joint_targets(1), 4);
-      self.end();
-      self.receive();
+      self.finish();
     });
     Session session(options_for(server));
     ASSERT_TRUE(session.next());
@@ -230,10 +216,7 @@ TEST(Session, AnAnswerForAFutureTickIsOtherwiseAnError) {
     self.welcome();
     self.observe(5, {0, 0, 0, 0});
     self.receive();
-    v1::ServerMessage error;
-    error.mutable_error()->set_code(v1::Error::FUTURE_TICK);
-    error.mutable_error()->set_severity(v1::Error::DISCARD);
-    self.send(error);
+    self.discard(v1::Error::FUTURE_TICK);
     self.receive();
   });
   Session session(options_for(server));
@@ -312,10 +295,7 @@ TEST(Session, AnErrorEndsTheLoopAndIsSentToTheServer) {
     self.welcome();
     self.observe(0, {0, 0, 0, 0});
     self.receive();
-    v1::ServerMessage message;
-    message.mutable_error()->set_code(v1::Error::BAD_VALUE);
-    message.mutable_error()->set_severity(v1::Error::DISCARD);
-    self.send(message);
+    self.discard(v1::Error::BAD_VALUE);
     EXPECT_EQ(self.receive().leave().reason(), v1::Leave::FAILED);
   });
   EXPECT_THROW(
@@ -338,8 +318,7 @@ TEST(Session, UnknownMessagesAndHeartbeatsAreIgnored) {
     self.send_bytes("\xfa\x01\x01x");  // field 31, of a later version
     self.observe(0, {0, 0, 0, 0});
     EXPECT_TRUE(self.receive().has_command());  // and no answer to the heartbeat
-    self.end();
-    self.receive();
+    self.finish();
   });
   Session session(options_for(server));
   EXPECT_TRUE(session.next());
@@ -372,13 +351,9 @@ TEST(Session, SilenceIsATimeOut) {
   Options options = options_for(server);
   options.wait_timeout = milliseconds{50};
   Session session(options);
-  try {
-    session.next();
-    FAIL();
-  } catch (const ConnectionError& error) {
-    EXPECT_NE(std::string(error.what()).find(server.endpoint), std::string::npos);
-    EXPECT_NE(std::string(error.what()).find("50 ms"), std::string::npos);
-  }
+  const std::string words = words_of<ConnectionError>([&] { session.next(); });
+  EXPECT_NE(words.find(server.endpoint), std::string::npos);
+  EXPECT_NE(words.find("50 ms"), std::string::npos);
   EXPECT_THROW(session.next(), ConnectionError);  // still waiting
 }
 

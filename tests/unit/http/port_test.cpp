@@ -19,6 +19,7 @@
 
 #include "http/listening.h"
 #include "waiting.h"
+#include "words_of.h"
 
 namespace ziggurat::http {
 namespace {
@@ -164,12 +165,10 @@ TEST(Port, TakesSoManyConnectionsInAPeriod) {
 
 TEST(Port, ATakenAddressIsAnErrorThatNamesTheOption) {
   const Port first("--metrics", {"127.0.0.1", 0}, read);
-  try {
+  const std::string words = words_of<std::runtime_error>([&] {
     const Port second("--metrics", {"127.0.0.1", first.number()}, read);
-    FAIL() << "it is taken";
-  } catch (const std::runtime_error& error) {
-    EXPECT_EQ(std::string(error.what()).find("--metrics: 127.0.0.1:"), 0u) << error.what();
-  }
+  });
+  EXPECT_EQ(words.find("--metrics: 127.0.0.1:"), 0u) << words;
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "network/local_server.h"
 #include "network/small_run.h"
 #include "temporary_folder.h"
+#include "words_of.h"
 #include "ziggurat/ziggurat.h"
 
 namespace ziggurat::network {
@@ -27,14 +28,7 @@ struct Keys : ::testing::Test {
     ::chmod(path(name).c_str(), mode);
     return path(name);
   }
-  static std::string complaint(auto action) {
-    try {
-      action();
-    } catch (const KeyError& error) {
-      return error.what();
-    }
-    return "";
-  }
+  static std::string complaint(auto action) { return words_of<KeyError>(action); }
 
   TemporaryFolder folder;
 };
@@ -237,12 +231,7 @@ TEST_F(Protected, OthersGetNoAnswerToAnything) {
 }
 
 std::string complaint_of(const Options& options) {
-  try {
-    ziggurat::Session session(options);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
+  return words_of<std::exception>([&] { ziggurat::Session session(options); });
 }
 
 TEST_F(Protected, ARefusedKeyIsToldOnBothSides) {

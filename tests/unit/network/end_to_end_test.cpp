@@ -7,6 +7,7 @@
 
 #include "network/local_server.h"
 #include "network/small_run.h"
+#include "words_of.h"
 #include "ziggurat/ziggurat.h"
 
 namespace ziggurat::network {
@@ -102,12 +103,8 @@ TEST(EndToEnd, APortThatIsTakenIsOneClearError) {
   Server server(local_config(), small.run());
   Config config;
   config.endpoints = {server.endpoints().front()};
-  try {
-    const Server second(config, small.run());
-    FAIL() << "bound twice";
-  } catch (const EndpointError& error) {
-    EXPECT_NE(std::string(error.what()).find("taken"), std::string::npos) << error.what();
-  }
+  EXPECT_TRUE(
+      fails_with<EndpointError>("taken", [&] { const Server second(config, small.run()); }));
 }
 
 }  // namespace

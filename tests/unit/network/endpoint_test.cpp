@@ -16,17 +16,13 @@
 #include "network/server.h"
 #include "network/small_run.h"
 #include "temporary_folder.h"
+#include "words_of.h"
 
 namespace ziggurat::network {
 namespace {
 
 std::string complaint(const std::string& endpoint, bool insecure = false) {
-  try {
-    check_endpoint(endpoint, insecure);
-    return "";
-  } catch (const EndpointError& error) {
-    return error.what();
-  }
+  return words_of<EndpointError>([&] { check_endpoint(endpoint, insecure); });
 }
 
 bool says(const std::string& text, const std::string& part) {

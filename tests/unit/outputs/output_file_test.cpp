@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "file_text.h"
+#include "words_of.h"
 
 namespace ziggurat::outputs {
 namespace {
@@ -45,13 +46,8 @@ TEST(OutputFile, HasOneWriter) {
   OutputFile file(path);
   file.buffer().append(std::string_view("a line\n"));
   file.flush();
-  try {
-    OutputFile other(path);
-    ADD_FAILURE() << "both write";
-  } catch (const WriteError& error) {
-    EXPECT_EQ(std::string(error.what()),
-              path + ": cannot be written: another program writes to it; name another file");
-  }
+  const std::string words = words_of<WriteError>([&] { OutputFile other(path); });
+  EXPECT_EQ(words, path + ": cannot be written: another program writes to it; name another file");
   EXPECT_EQ(text_of(path), "a line\n") << "was not emptied";
   file.close();
   EXPECT_NO_THROW(OutputFile{path});
@@ -72,25 +68,16 @@ TEST(OutputFile, ReportsThatItWasShortened) {
   file.flush();
   ASSERT_EQ(::truncate(path.c_str(), 2), 0);
   file.buffer().append(std::string_view("another line\n"));
-  try {
-    file.close();
-    ADD_FAILURE() << "was not told";
-  } catch (const WriteError& error) {
-    EXPECT_EQ(
-        std::string(error.what()),
-        path + ": was shortened by another program while it was written: 5 bytes of 20 are lost");
-  }
+  const std::string words = words_of<WriteError>([&] { file.close(); });
+  EXPECT_EQ(
+      words,
+      path + ": was shortened by another program while it was written: 5 bytes of 20 are lost");
   EXPECT_EQ(text_of(path), "a another line\n") << "without a hole";
 }
 
 TEST(OutputFile, ReportsWhyItCannotBeCreated) {
-  try {
-    OutputFile file("/no/such/folder/file.csv");
-    FAIL() << "created";
-  } catch (const WriteError& error) {
-    EXPECT_STREQ(error.what(),
-                 "/no/such/folder/file.csv: cannot be written: No such file or directory");
-  }
+  EXPECT_EQ(words_of<WriteError>([&] { OutputFile file("/no/such/folder/file.csv"); }),
+            "/no/such/folder/file.csv: cannot be written: No such file or directory");
 }
 
 TEST(OutputFile, ReportsAFullDisk) {

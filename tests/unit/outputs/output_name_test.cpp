@@ -7,6 +7,7 @@
 
 #include "temporary_folder.h"
 #include "text/numbers.h"
+#include "words_of.h"
 
 namespace ziggurat::outputs {
 namespace {
@@ -21,12 +22,7 @@ class OutputNameTest : public testing::Test {
     return path(name);
   }
   static std::string complaint(const OutputName& output, const std::vector<TakenFile>& taken = {}) {
-    try {
-      check_output(output, taken);
-    } catch (const text::UsageError& error) {
-      return error.what();
-    }
-    return "";
+    return words_of<text::UsageError>([&] { check_output(output, taken); });
   }
   static bool is_refused(const OutputName& output, std::string_view words) {
     return complaint(output).find(words) != std::string::npos;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "words_of.h"
+
 namespace ziggurat::processes {
 namespace {
 
@@ -85,13 +87,8 @@ TEST(Controllers, OneThatCannotStartIsNamed) {
   Launch launch;
   launch.name = "the test";
   launch.program.arguments = {"/no/such/program"};
-  try {
-    start_all({launch}, {});
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(),
-                 "the test cannot be started (/no/such/program): No such file or directory");
-  }
+  EXPECT_EQ(words_of<std::runtime_error>([&] { start_all({launch}, {}); }),
+            "the test cannot be started (/no/such/program): No such file or directory");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "run/loading.h"
 #include "text/numbers.h"
+#include "words_of.h"
 
 namespace ziggurat::run {
 namespace {
@@ -47,12 +48,7 @@ TEST(PicturePath, IsTheNameItselfForOnePicture) {
 
 TEST(PicturePath, HasOnePlaceForANumberAndNoOtherDirection) {
   const auto complaint = [](const std::string& out) -> std::string {
-    try {
-      check_picture_path(out);
-    } catch (const text::UsageError& error) {
-      return error.what();
-    }
-    return "";
+    return words_of<text::UsageError>([&] { check_picture_path(out); });
   };
   for (const char* good : {"", "a.png", "%d.png", "f%03d.png", "100%/f%02d.png", "50%.png",
                            "50% off.png", "%%.png", "%"}) {

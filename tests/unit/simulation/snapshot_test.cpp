@@ -8,6 +8,7 @@
 
 #include "math/archive.h"
 #include "small_scene.h"
+#include "words_of.h"
 
 namespace ziggurat::simulation {
 namespace {
@@ -229,14 +230,9 @@ TEST(Snapshot, WithMorePairsThanTheWorldCanHaveIsRefused) {
   std::memcpy(&wrong.state[at], &pairs, sizeof pairs);
   wrong.state.insert(wrong.state.begin() + static_cast<std::ptrdiff_t>(at + sizeof pairs), more,
                      {});
-  try {
+  EXPECT_TRUE(fails_with<SnapshotError>("contacts/pairs' has more elements", [&] {
     world.simulation.restore(world.read.scene, wrong);
-    FAIL() << "it was restored";
-  } catch (const SnapshotError& error) {
-    EXPECT_NE(std::string(error.what()).find("contacts/pairs' has more elements"),
-              std::string::npos)
-        << error.what();
-  }
+  }));
 }
 
 /// A list is as long as its bytes, whatever its length says.

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "text/numbers.h"
+#include "words_of.h"
 
 namespace ziggurat::sweep {
 namespace {
@@ -18,12 +19,7 @@ Definition example() {
 std::string refusal(const std::function<void(Definition&)>& change) {
   Definition now = example();
   change(now);
-  try {
-    check_same(example(), now, "out");
-  } catch (const text::UsageError& error) {
-    return error.what();
-  }
-  return "";
+  return words_of<text::UsageError>([&] { check_same(example(), now, "out"); });
 }
 
 TEST(Definition, IsReadAsItWasWritten) {
@@ -55,22 +51,13 @@ TEST(Definition, AnotherSweepIsRefusedAndItsDifferenceNamed) {
 TEST(Definition, TheFirstDifferenceIsNamed) {
   Definition kept = example(), now = example();
   for (const char* name : {"/a", "/b", "/x"}) kept.files[name] = "1", now.files[name] = "2";
-  try {
-    check_same(kept, now, "my out");
-    FAIL();
-  } catch (const text::UsageError& error) {
-    EXPECT_EQ(std::string(error.what()).find("/a has changed"), 0u) << error.what();
-  }
+  const std::string words = words_of<text::UsageError>([&] { check_same(kept, now, "my out"); });
+  EXPECT_EQ(words.find("/a has changed"), 0u) << words;
   kept.experiment.axes.push_back({Axis::Kind::parameter, "gain", {"1"}});
   now.experiment.axes.insert(now.experiment.axes.begin(), kept.experiment.axes.back());
-  try {
-    check_same(kept, now, "my out");
-    FAIL();
-  } catch (const text::UsageError& error) {
-    const std::string text = error.what();
-    EXPECT_NE(text.find("another order: 'a/@b' comes before 'gain'"), text.npos) << text;
-    EXPECT_NE(text.find("ziggurat sweep resume 'my out'"), text.npos) << text;
-  }
+  const std::string text = words_of<text::UsageError>([&] { check_same(kept, now, "my out"); });
+  EXPECT_NE(text.find("another order: 'a/@b' comes before 'gain'"), text.npos) << text;
+  EXPECT_NE(text.find("ziggurat sweep resume 'my out'"), text.npos) << text;
 }
 
 TEST(Definition, FilesThatAreNoneAreRefused) {

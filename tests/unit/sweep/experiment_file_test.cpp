@@ -7,6 +7,7 @@
 
 #include "temporary_folder.h"
 #include "text/numbers.h"
+#include "words_of.h"
 
 namespace ziggurat::sweep {
 namespace {
@@ -21,12 +22,7 @@ class ExperimentFileTest : public testing::Test {
     return read_experiment(path);
   }
   std::string refusal(const std::string& text) const {
-    try {
-      read(text);
-    } catch (const text::UsageError& error) {
-      return error.what();
-    }
-    return "";
+    return words_of<text::UsageError>([&] { read(text); });
   }
 
   TemporaryFolder folder_;

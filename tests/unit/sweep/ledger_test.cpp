@@ -10,6 +10,7 @@
 
 #include "sweep/folder.h"
 #include "temporary_folder.h"
+#include "words_of.h"
 
 namespace ziggurat::sweep {
 namespace {
@@ -139,12 +140,7 @@ static_assert(!std::is_move_constructible_v<Ledger> && !std::is_copy_constructib
 
 TEST_F(LedgerTest, AFileOrFolderThatIsGoneIsNamed) {
   const auto complaint = [](const auto& action) -> std::string {
-    try {
-      action();
-    } catch (const LedgerError& error) {
-      return error.what();
-    }
-    return "";
+    return words_of<LedgerError>(action);
   };
   const auto folder = folder_ / "results";
   std::filesystem::create_directories(folder / "tasks");
@@ -169,12 +165,7 @@ TEST_F(LedgerTest, AFileOrFolderThatIsGoneIsNamed) {
 
 TEST_F(LedgerTest, AFileThatIsNoneIsNamed) {
   std::filesystem::create_directory(path_);
-  try {
-    Ledger ledger(path_);
-    FAIL();
-  } catch (const LedgerError& error) {
-    EXPECT_NE(std::string(error.what()).find("sweep.sqlite"), std::string::npos);
-  }
+  EXPECT_TRUE(fails_with<LedgerError>("sweep.sqlite", [&] { Ledger ledger(path_); }));
 }
 
 }  // namespace

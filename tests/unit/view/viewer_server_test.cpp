@@ -12,6 +12,7 @@
 #include <string>
 
 #include "text/numbers.h"
+#include "words_of.h"
 
 namespace ziggurat::view {
 namespace {
@@ -76,12 +77,9 @@ TEST(ViewerServer, AnOpenAddressNeedsATokenOfTheUserOrConsent) {
   for (const char* host : {"0.0.0.0", "::", "*"}) {
     Settings settings;
     settings.address = http::Address{host, 0};
-    try {
+    EXPECT_TRUE(fails_with<text::UsageError>("--view-token", [&] {
       const ViewerServer server(settings);
-      FAIL() << host << " is open";
-    } catch (const text::UsageError& error) {
-      EXPECT_NE(std::string(error.what()).find("--view-token"), std::string::npos) << error.what();
-    }
+    })) << host;
   }
   Settings settings;
   settings.address = http::Address{"0.0.0.0", 0};

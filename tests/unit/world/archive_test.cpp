@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "words_of.h"
 #include "world/layout.h"
 
 namespace ziggurat::world {
@@ -24,12 +25,7 @@ struct Camera {
     auto writer = math::Archive::writer(bytes);
     archive(writer, layout, state, observations);
     auto reader = math::Archive::reader(bytes);
-    try {
-      archive(reader, layout, state, observations);
-      return {};
-    } catch (const math::ArchiveError& error) {
-      return error.what();
-    }
+    return words_of<math::ArchiveError>([&] { archive(reader, layout, state, observations); });
   }
 
   Layout layout;

@@ -5,6 +5,7 @@
 #include "program/find_script.h"
 #include "program/options.h"
 #include "script_fixture.h"
+#include "words_of.h"
 
 namespace ziggurat::lua {
 namespace {
@@ -15,12 +16,7 @@ Request read(std::vector<const char*> arguments, bool is_terminal = false) {
 }
 
 std::string fault_of(std::vector<const char*> arguments) {
-  try {
-    read(std::move(arguments));
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
+  return words_of<std::exception>([&] { read(std::move(arguments)); });
 }
 
 Folders below(const std::filesystem::path& folder) {

@@ -17,6 +17,7 @@
 #include "recording/replay/export.h"
 #include "recording/replay/names.h"
 #include "temporary_folder.h"
+#include "words_of.h"
 #include "ziggurat/v1/channels.pb.h"
 
 namespace ziggurat::replay {
@@ -114,13 +115,8 @@ TEST_F(Disk, OneThatIsCutBeforeItsFirstMessageSaysSo) {
   const RecordingFile whole(path);
   const auto first = static_cast<long>(whole.reader().contents().chunks.front().offset);
   write(eventful_run(), first + 5);
-  try {
-    const RecordingFile cut(path);
-    FAIL();
-  } catch (const RecordingError& error) {
-    EXPECT_NE(std::string_view(error.what()).find("its end is missing"), std::string_view::npos)
-        << error.what();
-  }
+  EXPECT_TRUE(
+      fails_with<RecordingError>("its end is missing", [&] { const RecordingFile cut(path); }));
 }
 
 TEST_F(Disk, ADamagedPlaceIsNamed) {
@@ -133,12 +129,9 @@ TEST_F(Disk, ADamagedPlaceIsNamed) {
   const RecordingFile damaged(path);
   States states(damaged);
   int count = 0;
-  try {
+  EXPECT_TRUE(fails_with<RecordingError>("damaged at byte", [&] {
     while (states.next()) ++count;
-    ADD_FAILURE() << "not found";
-  } catch (const RecordingError& error) {
-    EXPECT_NE(std::string(error.what()).find("damaged at byte"), std::string::npos) << error.what();
-  }
+  }));
   EXPECT_EQ(count, 8);
 }
 
@@ -181,14 +174,7 @@ std::string repeated(std::string_view piece, std::size_t count) {
 }
 
 /// Sentence of the fault; empty: there was none.
-std::string fault_of(const std::function<void()>& read) {
-  try {
-    read();
-  } catch (const RecordingError& error) {
-    return error.what();
-  }
-  return {};
-}
+std::string fault_of(const std::function<void()>& read) { return words_of<RecordingError>(read); }
 
 TEST_F(Disk, NamesLinksOfEntitiesThatAreNotThere) {
   v1::World message;

@@ -8,6 +8,7 @@
 #include "recorded_run.h"
 #include "recording/replay/difference.h"
 #include "recording/replay/recording_file.h"
+#include "words_of.h"
 
 namespace ziggurat::replay {
 namespace {
@@ -26,12 +27,7 @@ std::size_t same_states(const Recording& recording) {
 }
 
 std::string error_of(const Recording& recording) {
-  try {
-    same_states(recording);
-  } catch (const RecordingError& error) {
-    return error.what();
-  }
-  return "";
+  return words_of<RecordingError>([&] { same_states(recording); });
 }
 
 TEST(Replay, RepeatsCommandsMovesSpawnsRemovalsAndResets) {
@@ -120,12 +116,7 @@ TEST(Replay, PosesThatDoNotFitAreRefused) {
     OwnWorld world;
     Replay replay = world.replay(recording);
     replay.show([&] { return links; });
-    try {
-      replay.advance();
-      return "";
-    } catch (const RecordingError& error) {
-      return error.what();
-    }
+    return words_of<RecordingError>([&] { replay.advance(); });
   };
   EXPECT_NE(error_with(nullptr).find("no poses in /state"), std::string::npos);
   std::vector<world::LinkState> links = eventful_run().links.front();

@@ -6,6 +6,7 @@
 #include "recorded_run.h"
 #include "recording/replay/recording_file.h"
 #include "scene/reader.h"
+#include "words_of.h"
 
 namespace ziggurat::replay {
 namespace {
@@ -27,13 +28,8 @@ TEST(EmbeddedScene, ReadsNothingFromTheDisk) {
   EXPECT_THROW(read_scene(run, embedded), scene::SceneError);
   embedded.add("scene.argos", R"(<argos><include file="/etc/hostname"/></argos>)");
   run.set_scene("scene.argos");
-  try {
-    read_scene(run, embedded);
-    ADD_FAILURE();
-  } catch (const scene::SceneError& error) {
-    EXPECT_NE(std::string(error.what()).find("is not in the recording"), std::string::npos)
-        << error.what();
-  }
+  EXPECT_TRUE(
+      fails_with<scene::SceneError>("is not in the recording", [&] { read_scene(run, embedded); }));
 }
 
 TEST(EmbeddedScene, IsFoundByEachWayToWriteItsPath) {
@@ -72,15 +68,8 @@ TEST(EmbeddedScene, TakesNoMoreMemoryThanOneOnTheDisk) {
           R"(<arena size="9,9,9"><distribute><position method="uniform" min="0,0,0" max="9,9,9"/>)"
           R"(<orientation method="constant" values="0,0,0"/><entity quantity="5000" max_trials="1"><e-puck id="e">)"
           R"(<controller config="c"/></e-puck></entity></distribute></arena></argos>)");
-  try {
-    read_scene(start(), embedded);
-    ADD_FAILURE();
-  } catch (const scene::SceneError& error) {
-    EXPECT_NE(
-        std::string(error.what()).find("is too many: each of these entities takes some 4.0 MB"),
-        std::string::npos)
-        << error.what();
-  }
+  EXPECT_TRUE(fails_with<scene::SceneError>("is too many: each of these entities takes some 4.0 MB",
+                                            [&] { read_scene(start(), embedded); }));
 }
 
 TEST(EmbeddedScene, HasTheRecordedHash) {
@@ -103,14 +92,9 @@ TEST(RecordedCore, OfARunThatCanNotBeRepeatedIsToldWithItsVersion) {
   EXPECT_NO_THROW(check_core(run, scene));
   scene.physics.had_second_core = true;
   run.mutable_build()->set_version("0.0.9");
-  try {
-    check_core(run, scene);
-    ADD_FAILURE();
-  } catch (const RecordingError& error) {
-    EXPECT_NE(std::string(error.what()).find("solver=\"sweeps\""), std::string::npos)
-        << error.what();
-    EXPECT_NE(std::string(error.what()).find("0.0.9"), std::string::npos) << error.what();
-  }
+  const std::string words = words_of<RecordingError>([&] { check_core(run, scene); });
+  EXPECT_NE(words.find("solver=\"sweeps\""), std::string::npos) << words;
+  EXPECT_NE(words.find("0.0.9"), std::string::npos) << words;
   run.set_core(1);
   EXPECT_NO_THROW(check_core(run, scene));
 }

@@ -5,6 +5,7 @@
 #include "run/options.h"
 #include "run/setup.h"
 #include "text/numbers.h"
+#include "words_of.h"
 
 namespace ziggurat::run {
 namespace {
@@ -70,15 +71,9 @@ TEST(DeadlineOption, DirectorsAreNamedAsControllersAre) {
   const auto all = deadlines_of({to_deadline("hold:50")}, scene);
   for (const auto& each : all.all) EXPECT_EQ(each.policy.wall_deadline_ms, 50U);
   EXPECT_EQ(all.of_others.policy.wall_deadline_ms, 50U);
-  try {
-    deadlines_of({to_deadline("juge=hold:5")}, scene);
-    ADD_FAILURE();
-  } catch (const text::UsageError& error) {
-    EXPECT_NE(
-        std::string(error.what()).find("no controller or director 'juge'; did you mean 'judge'"),
-        std::string::npos)
-        << error.what();
-  }
+  EXPECT_TRUE(
+      fails_with<text::UsageError>("no controller or director 'juge'; did you mean 'judge'",
+                                   [&] { deadlines_of({to_deadline("juge=hold:5")}, scene); }));
 }
 
 TEST(DeadlineOption, NoOneIsWaitedForInHardwareInTheLoop) {

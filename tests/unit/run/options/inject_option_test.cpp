@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "text/numbers.h"
+#include "words_of.h"
 
 namespace ziggurat::run {
 namespace {
@@ -53,13 +54,7 @@ TEST(InjectOption, WrongTextsAreRefusedWithAnExample) {
                            "drive:latency=5ms",
                            "drive=command:latency=5ms",
                            "drive=commands:"}) {
-    try {
-      to_injection(text);
-      ADD_FAILURE() << text;
-    } catch (const text::UsageError& error) {
-      EXPECT_NE(std::string(error.what()).find("write for example"), std::string::npos)
-          << error.what();
-    }
+    EXPECT_TRUE(fails_with<text::UsageError>("write for example", [&] { to_injection(text); }));
   }
 }
 
@@ -99,13 +94,9 @@ TEST(InjectOption, DirectorsAreNamedAsControllersAre) {
   EXPECT_FALSE(injections[0].any());
   EXPECT_EQ(injections[2].commands, (Disturbance{5ms, {}, 0.01}));
   EXPECT_TRUE(injections_of({to_injection("latency=5ms")}, scene)[2].any());
-  try {
+  EXPECT_TRUE(fails_with<text::UsageError>("director 'judge'", [&] {
     check_losses(injections, scene, std::vector<network::Config::Deadline>(3));
-    ADD_FAILURE();
-  } catch (const text::UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find("director 'judge'"), std::string::npos)
-        << error.what();
-  }
+  }));
 }
 
 }  // namespace
