@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "devices/described.h"
-#include "world/limits.h"
 
 namespace ziggurat::devices {
 namespace {
@@ -18,13 +17,13 @@ constexpr std::size_t most_blobs = 10'000;
 
 constexpr world::DeviceKind omnidirectional{
     .name = "colored_blob_omnidirectional_camera",
-    .readings = {{"distance", "m"}, {"angle", "rad"}, {"color", "0xRRGGBB"}},
+    .readings = {{"distance", "m"}, {"angle", "rad"}, {"color", world::color_unit}},
     .commands = {{"enabled", "", 0, 1}},
     .properties = {{"aperture", "rad"}},
     .most_rows = most_blobs};
 constexpr world::DeviceKind perspective{
     .name = "colored_blob_perspective_camera",
-    .readings = {{"x", "px"}, {"y", "px"}, {"color", "0xRRGGBB"}},
+    .readings = {{"x", "px"}, {"y", "px"}, {"color", world::color_unit}},
     .commands = {{"enabled", "", 0, 1}},
     .properties = {{"aperture", "rad"}, {"focal_length", "m"}, {"range", "m"}},
     .most_rows = most_blobs};
@@ -95,15 +94,10 @@ class BlobCameras : public Described {
             const math::Vector3& eye, const math::Vector3& point) const {
     constexpr double at_target = 1e-4;  // LEDs may be mounted flush [m]
     const std::array own{device.mount.entity};
-    const math::Vector3 way = point - eye;
-    const auto hit = tick.rays.cast({eye, point, own, false});
-    const bool is_hidden = hit && hit->distance < way.norm() - at_target;
-    if (tick.wants_rays(robot.use.show_rays)) {
-      const math::Vector3 end =
-          is_hidden ? math::Vector3(eye + way.normalized() * hit->distance) : point;
-      tick.add({world::Ray::Kind::device, robot.index, eye, end, is_hidden}, robot.use.show_rays);
-    }
-    return !is_hidden;
+    auto hit = tick.rays.cast({eye, point, own, false});
+    if (hit && hit->distance >= (point - eye).norm() - at_target) hit.reset();
+    tick.show({world::Ray::Kind::device, robot.index, eye, point}, hit, robot.use.show_rays);
+    return !hit;
   }
 
   std::vector<std::size_t> found_;

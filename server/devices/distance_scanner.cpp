@@ -114,11 +114,7 @@ class DistanceScanner final : public Described {
     const math::Vector3 start = pose.position + radius * way, end = start + beam.most * way;
     const std::array own{mount.entity};
     const auto hit = tick.rays.cast({start, end, own, false});
-    if (tick.wants_rays(robot.use.show_rays)) {
-      const math::Vector3 seen = hit ? math::Vector3(start + hit->distance * way) : end;
-      tick.add({world::Ray::Kind::device, robot.index, start, seen, hit.has_value()},
-               robot.use.show_rays);
-    }
+    tick.show({world::Ray::Kind::device, robot.index, start, end}, hit, robot.use.show_rays);
     if (!hit) return nothing;
     return hit->distance <= beam.least ? too_near : hit->distance;
   }

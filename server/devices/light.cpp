@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <vector>
 
 #include "devices/described.h"
@@ -67,12 +66,7 @@ class LightSensors : public Described {
   bool sees(Tick& tick, const Robot& robot, const math::Vector3& from, const math::Vector3& to,
             std::span<const std::size_t> ignored) const {
     const auto hit = tick.rays.cast({from, to, ignored, false});
-    if (tick.wants_rays(robot.use.show_rays)) {
-      const math::Vector3 end =
-          hit ? math::Vector3(from + (to - from).normalized() * hit->distance) : to;
-      tick.add({world::Ray::Kind::device, robot.index, from, end, hit.has_value()},
-               robot.use.show_rays);
-    }
+    tick.show({world::Ray::Kind::device, robot.index, from, to}, hit, robot.use.show_rays);
     return !hit;
   }
 

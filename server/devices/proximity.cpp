@@ -111,7 +111,7 @@ class Proximity final : public Kind {
       const math::Pose start = world::pose_of(tick.state, ray.mount);
       const math::Vector3 way = start.orientation * ray.direction;
       const math::Vector3 end = start.position + ray.range * way;
-      segments_.push_back({start.position, way, end});
+      segments_.push_back({start.position, end});
       low = low.cwiseMin(start.position).cwiseMin(end);
       high = high.cwiseMax(start.position).cwiseMax(end);
     }
@@ -125,7 +125,7 @@ class Proximity final : public Kind {
     aim(tick, layout.proximity, own);
     for (std::size_t i = layout.proximity.begin; i < layout.proximity.end(); ++i) {
       const Sensor& sensor = sensors_[i];
-      const auto& [start, way, end] = segments_[i - layout.proximity.begin];
+      const auto& [start, end] = segments_[i - layout.proximity.begin];
       const auto hit = tick.rays.cast({start, end, own, sensor.sees_floor}, candidates_);
       double reading = 0;
       if (hit) {
@@ -138,15 +138,12 @@ class Proximity final : public Kind {
         reading = std::clamp(reading, sensor.least, sensor.most);
       }
       tick.observations.proximity[i] = reading;
-      if (!tick.wants_rays(robot.shows_rays)) continue;
-      const math::Vector3 seen = hit ? math::Vector3(start + hit->distance * way) : end;
-      tick.add({world::Ray::Kind::proximity, robot.index, start, seen, hit.has_value()},
-               robot.shows_rays);
+      tick.show({world::Ray::Kind::proximity, robot.index, start, end}, hit, robot.shows_rays);
     }
   }
 
   struct Segment {
-    math::Vector3 start, way, end;  // the way is of unit length
+    math::Vector3 start, end;
   };
 
   std::vector<Sensor> sensors_;     // parallel to Layout::proximity

@@ -53,11 +53,10 @@ class Radios final : public Kind {
     for (const media::RadioLink& link : medium_.links()) {
       const bool is_asked_for = tick.layout.radios[link.sender].shows_links ||
                                 tick.layout.radios[link.receiver].shows_links;
-      if (!tick.wants_rays(is_asked_for)) continue;
-      tick.add({world::Ray::Kind::radio, robots_[link.receiver],
-                tick.index.position(tick.index.radios, link.sender),
-                tick.index.position(tick.index.radios, link.receiver), false},
-               is_asked_for);
+      tick.show({world::Ray::Kind::radio, robots_[link.receiver],
+                 tick.index.position(tick.index.radios, link.sender),
+                 tick.index.position(tick.index.radios, link.receiver)},
+                {}, is_asked_for);
     }
   }
 

@@ -84,22 +84,15 @@ class RangeAndBearing final : public Kind {
     const auto &from = devices[pair.sender], &to = devices[pair.receiver];
     const math::Pose own = world::pose_of(tick.state, to.mount);
     const math::Vector3 other = world::position_of(tick.state, from.mount);
+    std::optional<physics::RayHit> between;
     if (receiver.checks_occlusions) {
       // The two carriers are not in their own way.
       const std::array carriers{to.mount.entity, from.mount.entity};
-      const auto hit = tick.rays.cast({other, own.position, carriers, false});
-      if (tick.wants_rays(receiver.shows_rays)) {
-        const math::Vector3 way = own.position - other;
-        const math::Vector3 end =
-            hit ? math::Vector3(other + way.normalized() * hit->distance) : own.position;
-        tick.add({world::Ray::Kind::range_and_bearing, receiver.robot, other, end, hit.has_value()},
-                 receiver.shows_rays);
-      }
-      if (hit) return;
-    } else if (tick.wants_rays(receiver.shows_rays)) {
-      tick.add({world::Ray::Kind::range_and_bearing, receiver.robot, other, own.position, false},
-               receiver.shows_rays);
+      between = tick.rays.cast({other, own.position, carriers, false});
     }
+    tick.show({world::Ray::Kind::range_and_bearing, receiver.robot, other, own.position}, between,
+              receiver.shows_rays);
+    if (between) return;
     if (receiver.loss > 0 && receiver.random.uniform(0, 1) < receiver.loss) return;
     math::Vector3 seen = math::inverse(own) * other;
     if (receiver.noise > 0) {

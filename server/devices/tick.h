@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -49,9 +50,13 @@ struct Tick {
   const media::DevicesIndex& index;
   std::vector<world::Ray>* all_rays = nullptr;  ///< gets those of all devices; may be null
 
+  /// Shows a ray up to what it met, if it met something.
+  /// @param ray           to the end of its way
   /// @param is_asked_for  by the device: `show_rays`
-  bool wants_rays(bool is_asked_for) const { return is_asked_for || all_rays; }
-  void add(const world::Ray& ray, bool is_asked_for) {
+  void show(world::Ray ray, const std::optional<physics::RayHit>& met, bool is_asked_for) {
+    if (!is_asked_for && !all_rays) return;
+    ray.hit = met.has_value();
+    if (met) ray.end = ray.start + met->distance * (ray.end - ray.start).normalized();
     if (is_asked_for) state.rays.push_back(ray);
     if (all_rays) all_rays->push_back(ray);
   }

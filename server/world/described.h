@@ -15,7 +15,7 @@
 namespace ziggurat::world {
 
 /// Unit of a field that is a colour, 0xRRGGBB.
-inline constexpr std::string_view color_unit = "0xRRGGBB";
+inline constexpr const char* color_unit = "0xRRGGBB";
 
 /// A number that devices of a kind read, or that is told of each once.
 struct DeviceField {
