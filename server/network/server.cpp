@@ -183,8 +183,7 @@ void Server::open(const wire::Run& run, const Config& config) {
         });
   }
   state.barrier.now = Clock::now();
-  state.barrier.reactions.are_kept = config.keeps_reactions;
-  network::open(state.barrier, run, config.deadlines, config.deadline_of_others);
+  network::open(state.barrier, run, config);
   state.is_opened = true;
 }
 

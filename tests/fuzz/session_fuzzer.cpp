@@ -17,7 +17,7 @@ namespace ziggurat::fuzz {
 /// The world is loaded.
 void Play::open() {
   phase_ = Phase::gathering;
-  network::open(barrier_, small_.run(), config_.deadlines);
+  network::open(barrier_, small_.run(), config_);
   admit_waiting(barrier_);
 }
 

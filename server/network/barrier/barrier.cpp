@@ -12,7 +12,6 @@ Barrier::Barrier(const Config& from, Send to, Time at, OnStanding told)
       connections(from.rate, 2 * (from.max_sessions + from.max_supervisors + from.max_observers +
                                   from.max_directors)),
       timers{never, at + from.heartbeat} {
-  reactions.are_kept = from.keeps_reactions;
   directors.are_allowed = from.allows_directors;
 }
 

@@ -85,15 +85,15 @@ void forget_robots(Barrier& barrier, std::size_t count) {
 
 }  // namespace
 
-void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Deadline>& deadlines,
-          const Config::Deadline& of_others) {
+void open(Barrier& barrier, const wire::Run& run, const Config& config) {
   barrier.run.emplace(run);
   barrier.progress = {1, "The world is loaded."};
-  barrier.deadlines = Deadlines(deadlines, run.controllers.size());
+  barrier.deadlines = Deadlines(config.deadlines, run.controllers.size());
+  barrier.reactions.are_kept = config.keeps_reactions;
   barrier.answer_times.resize(run.controllers.size());
   add_robots(barrier, run.scripts, {});
-  barrier.directors.deadline_of_others = of_others;
-  add_directors(barrier, deadlines);
+  barrier.directors.deadline_of_others = config.deadline_of_others;
+  add_directors(barrier, config.deadlines);
 }
 
 void add_robots(Barrier& barrier, std::span<const std::string> scripts,

@@ -12,11 +12,9 @@
 namespace ziggurat::network {
 
 /// The world is loaded, with the robots of the run's layout. Clients that wait for it are answered.
-/// @param run        what it refers to must outlive the barrier
-/// @param deadlines  as Config::deadlines
-/// @param of_others  as Config::deadline_of_others
-void open(Barrier& barrier, const wire::Run& run, const std::vector<Config::Deadline>& deadlines,
-          const Config::Deadline& of_others = {});
+/// @param run     what it refers to must outlive the barrier
+/// @param config  its deadlines, and whether reactions are kept: a scene may say both
+void open(Barrier& barrier, const wire::Run& run, const Config& config);
 /// Robots have come: those of the layout that were not known. The current tick does not wait for
 /// them.
 /// @param scripts  of them, as Run::scripts

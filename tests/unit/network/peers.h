@@ -57,7 +57,7 @@ class Peers {
 
   /// The world is loaded.
   void open() {
-    network::open(barrier, small_.run(), config_.deadlines, config_.deadline_of_others);
+    network::open(barrier, small_.run(), config_);
     admit_waiting(barrier);
   }
 
