@@ -15,15 +15,14 @@ namespace ziggurat::dynamics {
 namespace {
 
 void add(const SolverResult& outcome, Report& report) {
-  ++report.islands;
-  report.not_converged += !outcome.converged;
-  report.most_iterations = std::max(report.most_iterations, outcome.iterations);
-  report.most_augmented_lagrangian_steps =
-      std::max(report.most_augmented_lagrangian_steps, outcome.augmented_lagrangian_steps);
-  report.most_interior_point_steps =
-      std::max(report.most_interior_point_steps, outcome.interior_point_steps);
-  report.most_passes = std::max(report.most_passes, outcome.passes);
-  report.residual = std::max(report.residual, outcome.residual);
+  add({.islands = 1,
+       .not_converged = outcome.converged ? 0 : 1,
+       .most_iterations = outcome.iterations,
+       .most_augmented_lagrangian_steps = outcome.augmented_lagrangian_steps,
+       .most_interior_point_steps = outcome.interior_point_steps,
+       .most_passes = outcome.passes,
+       .residual = outcome.residual},
+      report);
 }
 
 /// Saves positions and velocities of an island's trees.
