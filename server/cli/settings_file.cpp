@@ -23,8 +23,7 @@ class SettingsReader {
 
   std::vector<FileSetting> read() {
     if (const auto wrong = scene::fault_of_file(path_)) {
-      throw text::UsageError(
-          fmt::format("--settings: '{}' {}; write the path of a settings file", path_, *wrong));
+      throw text::UsageError(fmt::format("--settings: '{}' {}", path_, *wrong));
     }
     try {
       add(toml::parse_file(path_), nullptr);
