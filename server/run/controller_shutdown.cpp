@@ -87,7 +87,7 @@ void Watch::end_run(const wire::End& end) {
       break;
     }
   }
-  peers_.print_log(tick_);
+  peers_.print_log(now_.tick);
   const auto is_interrupted = [&] {
     server_.drain(
         {milliseconds{0}, {}});  // what does not fit into a socket keeps its process from ending
@@ -100,13 +100,13 @@ void Watch::end_run(const wire::End& end) {
     const bool has_session = std::ranges::any_of(slow.robots, [&](std::size_t robot) {
       return status[robot].membership == Membership::held;
     });
-    peers_.take(
-        report_on_slow(slow, has_session, clock::now() - begin, world_.simulation.layout(), tick_),
-        tick_);
+    peers_.take(report_on_slow(slow, has_session, clock::now() - begin, world_.simulation.layout(),
+                               now_.tick),
+                now_.tick);
   });
   server_.drain({between_looks, {}});  // what those that ended meanwhile have said, their failures
   take_report();
-  peers_.print_log(tick_);
+  peers_.print_log(now_.tick);
 }
 
 }  // namespace ziggurat::run

@@ -1,5 +1,5 @@
 #pragma once
-// Waits for controllers and watches meanwhile: signals, supervisors, processes that end.
+// A wait for controllers, with what is watched meanwhile: signals, supervisors, viewers.
 
 #include <chrono>
 #include <cstdint>
@@ -15,7 +15,9 @@
 #include "reports/metrics.h"
 #include "reports/progress.h"
 #include "reports/summary.h"
+#include "run/awaited_notice.h"
 #include "run/live_view.h"
+#include "run/lost_controllers.h"
 #include "run/peer_reports.h"
 #include "supervision/supervision.h"
 #include "supervision/world.h"
@@ -86,53 +88,31 @@ class Watch {
   std::optional<reports::Ending> until(const Step& step);
   std::optional<reports::Ending> interruption();
   std::optional<reports::Ending> supervisor_request();
-  bool is_missed(const processes::ControllerProcess& process,
-                 const std::vector<network::RobotStatus>& status,
-                 const std::vector<std::string>& free_directors) const;
   std::optional<reports::Ending> lost_controller();
-  std::optional<reports::Ending> settle(processes::ControllerProcess& ended,
-                                        const std::vector<network::RobotStatus>& status);
-  bool restart(const processes::ControllerProcess& ended);
-  /// Detail of a notice on awaited robots: more is printed once it is known.
-  enum class Detail { robots, scripts, lines };
-
   void serve();
   void take_report();
-  std::vector<std::size_t> unheld_robots() const;
-  std::vector<std::size_t> awaited_robots() const;
-  std::string busy_scripts(std::vector<std::size_t>& robots, Detail& detail) const;
-  void report_awaited();
 
   const supervision::World& world_;
   network::Server& server_;
-  network::ServerDirectors directors_;
+  const network::ServerDirectors directors_;
   processes::Controllers& controllers_;
   supervision::Supervision& supervision_;
   processes::Signals& signals_;
   reports::Console& console_;
   LiveView* const live_view_;
   const std::vector<int> descriptors_;  ///< that end a wait: of signals, and of viewers
-  const bool fails_fast_, waits_for_clients_;
+  const bool fails_fast_;
   const std::optional<std::uint64_t> last_tick_;
-  const std::vector<unsigned> restarts_;
   std::optional<reports::MetricsPort> metrics_;
   PeerReports peers_;
   reports::Progress progress_;
-  bool gathered_ = false;
-  std::uint64_t tick_ = 0;
-  std::vector<std::size_t>
-      restarted_;  ///< robots whose process was started again and is still to connect
+  AwaitedNotice notice_;
+  std::optional<LostControllers> lost_;  ///< none: a client that disconnected may connect again
+  Moment now_;
   std::vector<world::Metric> measured_;
   std::string vanished_;
-  bool child_ended_ = false;                ///< one or more, since the last look
   std::optional<reports::Ending> stopped_;  ///< by a deadline or a failure
   std::vector<std::string> dropped_;
-  std::optional<clock::time_point>
-      missed_since_;       ///< since when a controller of others seems to be lost
-  bool is_early_ = false;  ///< a process has ended whose last messages may still come
-  clock::time_point waiting_since_{};
-  std::string printed_;  ///< the robots that were last printed as awaited
-  Detail printed_detail_ = Detail::robots;
 };
 
 }  // namespace ziggurat::run
