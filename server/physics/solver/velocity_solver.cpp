@@ -8,12 +8,15 @@ SolverResult VelocitySolver::solve(Problem& problem) {
   SolverResult outcome;
   if (is_warm_start_solved(problem, outcome)) return outcome;
   const double work = analyse(problem);
-  if (work > options.most_factorisation_work) {
+  const bool suits_newton = options.suits_newton(problem.trees.size(), work);
+  const bool is_struck_heap =
+      !suits_newton && initial_.has_impact() && work > options.most_impact_work;
+  if (is_struck_heap || work > options.most_factorisation_work) {
     problem.make_rigid();
     gauss_seidel(problem, outcome, options.most_passes);
     return outcome;
   }
-  if (options.suits_newton(problem.trees.size(), work)) {
+  if (suits_newton) {
     if (newton(problem, outcome, options.most_stalled_iterations)) return outcome;
     start_.restore(problem);
     continuation(problem, outcome);
@@ -98,12 +101,14 @@ void VelocitySolver::solve_displacement(Problem& problem) {
   SolverResult outcome;
   compute_constraint_velocities(problem);
   const double work = analyse(problem);
-  if (options.suits_newton(problem.trees.size(), work)) {
+  const bool suits_newton = options.suits_newton(problem.trees.size(), work);
+  if (suits_newton) {
     if (newton(problem, outcome, options.most_iterations)) return;
     start_.restore(problem);
   }
   gauss_seidel(problem, outcome, options.displacement_passes);
-  if (outcome.residual > options.displacement_residual && work <= options.most_factorisation_work)
+  const bool may_factor = suits_newton || work <= options.most_impact_work;
+  if (may_factor && outcome.residual > options.displacement_residual)
     damped_augmented_lagrangian(problem, outcome);
 }
 
