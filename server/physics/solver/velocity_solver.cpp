@@ -102,9 +102,9 @@ bool VelocitySolver::augmented_lagrangian_after_gauss_seidel(Problem& problem,
 
 namespace {
 
-/// Bounds a displacement of joints to angles for which its linear constraints hold. In a light, long
-/// chain impulses below rounding turn links far, and their ends through what they touch. Single
-/// bodies turn as far as their overlaps ask.
+/// Bounds a displacement of joints to angles for which its linear constraints hold. In a light,
+/// long chain impulses below rounding turn links far, and their ends through what they touch.
+/// Single bodies turn as far as their overlaps ask.
 void bound_rotation(Problem& problem) {
   constexpr double most = 0.02;  // [rad]
   double angle = most;
