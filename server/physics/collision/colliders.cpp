@@ -98,14 +98,9 @@ double speculative_margin(const Colliders& colliders, double time_step) {
 }
 
 /// Removes all pairs first, at once: a box without pairs is gone in logarithmic time.
+/// Frees the proxies alone: destroyProxy() would take 40 000 leaves from trees that go as a whole.
 Colliders::~Colliders() {
-  struct All final : btOverlapCallback {
-    bool processOverlap(btBroadphasePair&) override { return true; }
-  } all_pairs;
-  broadphase_.getOverlappingPairCache()->processAllOverlappingPairs(&all_pairs, nullptr);
-  for (ColliderGroup& group : groups) {
-    if (group.proxy) broadphase_.destroyProxy(group.proxy, nullptr);
-  }
+  for (ColliderGroup& group : groups) btAlignedFree(group.proxy);
 }
 
 void Colliders::add_floor(const scene::Surface& surface) {

@@ -208,17 +208,87 @@ void solve_prescribed(const Tree& tree, Workspace& work, const PrescribedJoints&
   solve_mass_matrix(tree, work, x.data());
 }
 
+namespace {
+
+Vector6 vector_of(const Motion& motion) {
+  return (Vector6() << motion.angular, motion.linear).finished();
+}
+
+/// Bias acceleration of a link relative to its parent. The root's coordinates are of its centre of
+/// mass, which moves away from O.
+Motion relative_bias(const Tree& tree, int i) {
+  const Motion& motion = tree.spatial_velocity[i];
+  if (i == 0) return {Vector3::Zero(), -motion.angular.cross(motion.linear)};
+  Motion relative;
+  const int first = tree.first_dof[i];
+  for (int k = first; k < first + tree.dof_count[i]; ++k) {
+    relative = relative + tree.motion_subspace[k] * tree.v[k];
+  }
+  return cross(tree.spatial_velocity[tree.links[i].parent], relative);
+}
+
+/// Sets a body to a link alone, under gravity.
+void set_body(const Tree& tree, int i, ArticulatedBody& body) {
+  const Inertia inertia = link_inertia(tree, i);
+  const Vector3& h = inertia.first_moment;
+  Matrix3 coupling;
+  coupling << 0, -h.z(), h.y(), h.z(), 0, -h.x(), -h.y(), h.x(), 0;
+  body.inertia << inertia.second_moment, coupling, coupling.transpose(),
+      inertia.mass * Matrix3::Identity();
+  const Motion& motion = tree.spatial_velocity[i];
+  const Wrench weight{h.cross(tree.gravity), inertia.mass * tree.gravity};
+  const Wrench wrench = cross(motion, inertia * motion) - weight;
+  body.wrench << wrench.moment, wrench.force;
+  body.bias = vector_of(relative_bias(tree, i));
+}
+
+/// Frees a dof of a body's joint: what is left is felt by the parent.
+void free_dof(const Motion& axis, double force, ArticulatedBody& body, ArticulatedDof& dof) {
+  const Vector6 along = vector_of(axis);
+  dof.inertia.noalias() = body.inertia * along;
+  dof.mobility = 1 / along.dot(dof.inertia);
+  dof.force = force - along.dot(body.wrench);
+  body.inertia.noalias() -= dof.inertia * (dof.mobility * dof.inertia).transpose();
+  body.wrench += dof.inertia * (dof.mobility * dof.force);
+}
+
+}  // namespace
+
 void forward_dynamics(Tree& tree, Workspace& work, const PrescribedJoints& drive,
                       std::span<double> out) {
   forward_kinematics(tree);
   velocity_kinematics(tree);
-  compute_mass_matrix(tree, work);
-  external_forces(tree, work, out, false, true);
-  bias_forces(tree, work, work.scratch);
-  for (int k = 0; k < tree.dofs; ++k) out[k] -= work.scratch[k] + tree.damping[k] * tree.v[k];
-  for (std::size_t k = 0; k < drive.prescribed.size(); ++k)
-    out[k] = drive.prescribed[k] ? 0 : out[k] + drive.force[k];
-  solve_prescribed(tree, work, drive, out);
+  const int size = static_cast<int>(tree.links.size());
+  const int first_moving = tree.links[0].joint == JointType::fixed ? 1 : 0;
+  work.bodies.resize(size);
+  work.dofs.resize(tree.dofs);
+  for (int i = first_moving; i < size; ++i) set_body(tree, i, work.bodies[i]);
+  for (int i = size - 1; i >= first_moving; --i) {
+    ArticulatedBody& body = work.bodies[i];
+    for (int k = tree.first_dof[i] + tree.dof_count[i] - 1; k >= tree.first_dof[i]; --k) {
+      work.dofs[k].mobility = 0;
+      if (drive.prescribes(k)) continue;
+      const double servo = drive.force.empty() ? 0 : drive.force[k];
+      free_dof(tree.motion_subspace[k], servo - tree.damping[k] * tree.v[k], body, work.dofs[k]);
+    }
+    const int parent = tree.links[i].parent;
+    if (i == 0 || parent < first_moving) continue;
+    work.bodies[parent].inertia += body.inertia;
+    work.bodies[parent].wrench += body.wrench + body.inertia * body.bias;
+  }
+  for (int i = first_moving; i < size; ++i) {
+    ArticulatedBody& body = work.bodies[i];
+    const int parent = tree.links[i].parent;
+    body.acceleration = body.bias;
+    if (i > 0 && parent >= first_moving) body.acceleration += work.bodies[parent].acceleration;
+    for (int k = tree.first_dof[i]; k < tree.first_dof[i] + tree.dof_count[i]; ++k) {
+      const ArticulatedDof& dof = work.dofs[k];
+      out[k] = 0;
+      if (dof.mobility == 0) continue;
+      out[k] = dof.mobility * (dof.force - dof.inertia.dot(body.acceleration));
+      body.acceleration += out[k] * vector_of(tree.motion_subspace[k]);
+    }
+  }
 }
 
 }  // namespace ziggurat::dynamics

@@ -3,7 +3,9 @@
 // Mass matrix: composite rigid bodies (section 6.2).
 // Bias forces: recursive Newton-Euler (section 5.3), about one point in world axes.
 // Factors: M = L^T D L without fill-in along the tree (section 6.5).
+// Forward dynamics: articulated bodies (section 7.3), in a time proportional to the links.
 
+#include <Eigen/Core>
 #include <array>
 #include <span>
 #include <vector>
@@ -12,6 +14,25 @@
 
 namespace ziggurat::dynamics {
 
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// A link with the subtree that it carries, all of whose joints are free. Angular parts come before
+/// linear ones.
+struct ArticulatedBody {
+  Matrix6 inertia;  ///< wrench over acceleration, about O
+  Vector6 wrench;   ///< that keeps the link's acceleration at zero
+  Vector6 bias;     ///< acceleration by velocities, relative to the parent
+  Vector6 acceleration;
+};
+
+/// A dof of a joint, which divides an articulated body from its parent.
+struct ArticulatedDof {
+  Vector6 inertia;      ///< wrench on the body by the dof's unit acceleration
+  double mobility = 0;  ///< acceleration of the dof by a unit force; 0: prescribed
+  double force = 0;     ///< that accelerates it while the parent stands
+};
+
 /// Intermediate results of one tree, in memory that the next tree uses again: it stays in the
 /// nearest cache, however many trees there are.
 struct Workspace {
@@ -19,6 +40,8 @@ struct Workspace {
   std::vector<Inertia> composite_inertia;     ///< of each link with its subtree, about O
   std::vector<Wrench> wrench;                 ///< on each link
   std::vector<Motion> acceleration;           ///< of each link
+  std::vector<ArticulatedBody> bodies;        ///< of each link, by forward_dynamics()
+  std::vector<ArticulatedDof> dofs;           ///< likewise
   std::vector<double> mass;                   ///< mass matrix, dofs x dofs, row by row
   std::vector<double> factor;                 ///< its factors
   std::vector<double> scratch;                ///< of each dof
@@ -80,8 +103,7 @@ struct PrescribedJoints {
 void solve_prescribed(const Tree& tree, Workspace& work, const PrescribedJoints& drive,
                       std::span<double> x);
 
-/// Forward dynamics: dv/dt at (q, v) under gravity and the servos' forces; updates kinematics and
-/// factors.
+/// Forward dynamics: dv/dt at (q, v) under gravity and the servos' forces; updates kinematics.
 /// @param out  of each dof [rad/s^2] or [m/s^2]
 void forward_dynamics(Tree& tree, Workspace& work, const PrescribedJoints& drive,
                       std::span<double> out);

@@ -6,7 +6,8 @@
 //   for larger islands at rest; for small ones with a line search, after a continuation or after
 //   passes;
 // - the interior point method, for larger islands with impacts;
-// - Gauss-Seidel passes alone, where a factorisation costs too much.
+// - Gauss-Seidel passes alone, where a factorisation costs too much: heaps of hundreds, and those
+//   of some dozen bodies while something strikes.
 // All but the last factor one matrix along the contact graph.
 
 #include <algorithm>
@@ -49,8 +50,10 @@ struct SolverOptions {
   double regularisation = 1e-3;             ///< compliance of its impulses, over the mobility
   int most_interior_point_steps = 40;       ///< steps of the interior point method
   double most_factorisation_work = 1.2e7;   ///< multiplications of a factorisation; more: passes
-  std::size_t most_factored_trees = 300;    ///< of an island whose matrix is analysed
-  int most_passes = 60;                     ///< of islands that are not factored
+  double most_impact_work = 2e5;  ///< the same for a heap that is struck, and for displacements of
+                                  ///< heaps: their solution is gone in the next substep
+  std::size_t most_factored_trees = 300;        ///< of an island whose matrix is analysed
+  int most_passes = 60;                         ///< of islands that are not factored
   int passes_before_augmented_lagrangian = 20;  ///< before patient steps
   int most_damped_steps = 60;           ///< steps of the augmented Lagrangian with a line search
   int displacement_passes = 20;         ///< of a displacement on which Newton's method fails

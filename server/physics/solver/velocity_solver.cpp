@@ -1,5 +1,8 @@
 // Choice of the methods: which one an island gets, and what follows where it fails.
 
+#include <algorithm>
+#include <cmath>
+
 #include "physics/solver/newton.h"
 
 namespace ziggurat::dynamics {
@@ -8,12 +11,15 @@ SolverResult VelocitySolver::solve(Problem& problem) {
   SolverResult outcome;
   if (is_warm_start_solved(problem, outcome)) return outcome;
   const double work = analyse(problem);
-  if (work > options.most_factorisation_work) {
+  const bool suits_newton = options.suits_newton(problem.trees.size(), work);
+  const bool is_struck_heap =
+      !suits_newton && initial_.has_impact() && work > options.most_impact_work;
+  if (is_struck_heap || work > options.most_factorisation_work) {
     problem.make_rigid();
     gauss_seidel(problem, outcome, options.most_passes);
     return outcome;
   }
-  if (options.suits_newton(problem.trees.size(), work)) {
+  if (suits_newton) {
     if (newton(problem, outcome, options.most_stalled_iterations)) return outcome;
     start_.restore(problem);
     continuation(problem, outcome);
@@ -94,17 +100,40 @@ bool VelocitySolver::augmented_lagrangian_after_gauss_seidel(Problem& problem,
   return outcome.converged = damped_augmented_lagrangian(problem, outcome);
 }
 
+namespace {
+
+/// Bounds a displacement of joints to angles for which its linear constraints hold. In a light,
+/// long chain impulses below rounding turn links far, and their ends through what they touch.
+/// Single bodies turn as far as their overlaps ask.
+void bound_rotation(Problem& problem) {
+  constexpr double most = 0.02;  // [rad]
+  double angle = most;
+  for (std::size_t i = 0; i < problem.trees.size(); ++i) {
+    const Tree& tree = *problem.trees[i];
+    for (int k = 0; k < tree.dofs && !tree.is_single_body; ++k) {
+      if (tree.motion_subspace[k].angular.isZero(0)) continue;
+      angle = std::max(angle, std::abs(problem.velocity[problem.offset[i] + k]));
+    }
+  }
+  if (angle == most) return;
+  for (double& way : problem.velocity) way *= most / angle;
+}
+
+}  // namespace
+
 void VelocitySolver::solve_displacement(Problem& problem) {
   SolverResult outcome;
   compute_constraint_velocities(problem);
   const double work = analyse(problem);
-  if (options.suits_newton(problem.trees.size(), work)) {
-    if (newton(problem, outcome, options.most_iterations)) return;
-    start_.restore(problem);
+  const bool suits_newton = options.suits_newton(problem.trees.size(), work);
+  if (!suits_newton || !newton(problem, outcome, options.most_iterations)) {
+    if (suits_newton) start_.restore(problem);
+    gauss_seidel(problem, outcome, options.displacement_passes);
+    const bool may_factor = suits_newton || work <= options.most_impact_work;
+    if (may_factor && outcome.residual > options.displacement_residual)
+      damped_augmented_lagrangian(problem, outcome);
   }
-  gauss_seidel(problem, outcome, options.displacement_passes);
-  if (outcome.residual > options.displacement_residual && work <= options.most_factorisation_work)
-    damped_augmented_lagrangian(problem, outcome);
+  bound_rotation(problem);
 }
 
 SolverResult solve_velocities(Problem& problem, VelocitySolver& solver) {

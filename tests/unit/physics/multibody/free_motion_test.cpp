@@ -22,6 +22,42 @@ Vector3 angular_momentum(const Tree& tree) {
   return r * omega.cwiseProduct(tree.links[0].inertia);
 }
 
+// Articulated bodies give what the mass matrix gives: M dv/dt = f - c, or no change where a servo
+// prescribes a speed.
+TEST(ForwardDynamics, IsThatOfTheMassMatrix) {
+  Workspace work;
+  const Link rod = testing::box_link({0.2, 0.1, 0.05}, 0.7);
+  const Vector3 end(0.1, 0.02, 0), middle(0.1, 0, 0.01);
+  Tree tree({testing::box_link({0.3, 0.2, 0.1}, 2),
+             testing::hung(rod, 0, JointType::spherical, Vector3::UnitZ(), end, middle),
+             testing::hung(rod, 1, JointType::revolute, Vector3(0, 0.6, 0.8), end, middle),
+             testing::hung(rod, 0, JointType::prismatic, Vector3::UnitZ(), -end, middle)},
+            {{0.1, 0.2, 0.3}, Quaternion(0.5, 0.1, 0.7, 0.2).normalized()});
+  tree.gravity = Vector3(0, 1, -testing::g);
+  for (int k = 0; k < tree.dofs; ++k) tree.v[k] = 0.3 + 0.1 * k;
+  const int n = tree.dofs;
+  std::vector<unsigned char> prescribed(n, 0);
+  std::vector<double> velocity(n, 0.0), force(n, 0.0), forces(n), acceleration(n);
+  for (const bool is_driven : {false, true}) {
+    prescribed[n - 1] = is_driven;
+    force[n - 2] = is_driven ? 0.3 : 0;
+    const PrescribedJoints drive{prescribed, velocity, force};
+    forward_dynamics(tree, work, drive, acceleration);
+    compute_mass_matrix(tree, work);
+    external_forces(tree, work, forces, false, true);
+    bias_forces(tree, work, work.scratch);
+    for (int i = 0; i < n; ++i) {
+      if (prescribed[i]) {
+        EXPECT_EQ(acceleration[i], 0) << i;
+        continue;
+      }
+      double sum = forces[i] - work.scratch[i] + force[i] - tree.damping[i] * tree.v[i];
+      for (int j = 0; j < n; ++j) sum -= work.mass[i * n + j] * acceleration[j];
+      EXPECT_NEAR(sum, 0, 1e-9) << i;
+    }
+  }
+}
+
 // Euler's equation: the inertia's axes rotate with the body, so at the mass matrix of the beginning
 // its momentum becomes L - h w x L. The torque holds a body that rolls in a circle, at any substep.
 TEST(FreeMotion, GyroscopicTorquesActInSubstepsOfAnyLength) {
