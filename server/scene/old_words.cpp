@@ -61,6 +61,7 @@ constexpr auto words = std::to_array<OldWord>({
     {element, "", "virtual_magnetism", "", "",
      "write <magnetism/> into <dynamics3d>, and <magnets>"},
     {value, "link", "geometry", "convex_hull", "hull", new_name},
+    {value, "link", "geometry", "convexhull", "hull", new_name},
     {value, "range_and_bearing", "index", "dummy", "grid",
      "devices are found by their place anyway"},
 });
