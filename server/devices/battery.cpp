@@ -6,6 +6,7 @@
 
 #include "devices/kind.h"
 #include "math/archive.h"
+#include "math/random.h"
 
 namespace ziggurat::devices {
 namespace {
@@ -22,11 +23,14 @@ class Batteries final : public Kind {
 
   void add(const Setting& setting) override {
     tick_length_ = setting.tick_length;
-    for (std::size_t i = cells_.size(); i < setting.layout.batteries.size(); ++i) {
-      Cell cell;
-      cell.battery = *setting.entity(setting.layout.batteries[i].entity).devices.battery;
-      cell.charge = cell.battery.start_charge;
-      cells_.push_back(cell);
+    for (const world::RobotLayout& robot : setting.new_robots()) {
+      if (robot.batteries.count == 0) continue;
+      const scene::Battery& battery = *setting.entity(robot.entity).devices.battery;
+      cells_.push_back({battery,
+                        *setting.enabled(robot).battery,
+                        battery.start_charge,
+                        {},
+                        math::RandomStream(setting.seed, "battery/" + robot.id)});
     }
   }
 
@@ -35,7 +39,7 @@ class Batteries final : public Kind {
     for (std::size_t i = readings.size(); i < cells_.size(); ++i) {
       Cell& cell = cells_[i];
       cell.pose = tick.state.origins[tick.layout.batteries[i].entity];
-      readings.push_back(read(cell, cell.battery.per_second * tick_length_));
+      readings.push_back(read(cell, cell.battery.per_tick));
     }
   }
 
@@ -45,8 +49,8 @@ class Batteries final : public Kind {
       const math::Pose& pose = tick.state.origins[tick.layout.batteries[i].entity];
       const double moved = (pose.position - cell.pose.position).norm();
       const double turned = pose.orientation.angularDistance(cell.pose.orientation);
-      const double used = cell.battery.per_second * tick_length_ + cell.battery.per_metre * moved +
-                          cell.battery.per_radian * turned;
+      const double used =
+          cell.battery.per_tick + cell.battery.per_metre * moved + cell.battery.per_radian * turned;
       cell.charge = std::max(0.0, cell.charge - used);
       cell.pose = pose;
       tick.observations.batteries[i] = read(cell, used);
@@ -57,19 +61,24 @@ class Batteries final : public Kind {
     for (Cell& cell : cells_) {
       archive("charge", cell.charge);
       archive("pose", cell.pose);
+      archive("random", cell.random);
     }
   }
 
  private:
   struct Cell {
     scene::Battery battery;
+    scene::BatteryUse noise;
     double charge = 0;  // in the battery's own unit
     math::Pose pose;    // X_WE at the last tick
+    math::RandomStream random;
   };
 
-  world::BatteryReading read(const Cell& cell, double used) const {
+  world::BatteryReading read(Cell& cell, double used) const {
     world::BatteryReading reading;
-    reading.available_charge = cell.charge / cell.battery.full_charge;
+    const auto& [least, most] = cell.noise.charge;
+    reading.available_charge = std::clamp(
+        cell.charge / cell.battery.full_charge + cell.random.uniform(least, most), 0.0, 1.0);
     reading.time_left =
         used > 0 ? cell.charge / used * tick_length_ : std::numeric_limits<double>::infinity();
     return reading;

@@ -3,6 +3,8 @@
 #include "media/range_and_bearing.h"
 
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -12,6 +14,17 @@
 
 namespace ziggurat::devices {
 namespace {
+
+/// Offset in the world of a normal length, whose inclination and azimuth are uniform: not the
+/// uniform direction of a sphere, but that of the dialect.
+math::Vector3 noise(math::RandomStream& random, double deviation) {
+  if (deviation <= 0) return math::Vector3::Zero();
+  const double length = random.gaussian(0, deviation);
+  const double inclination = random.uniform(0, std::numbers::pi);
+  const double azimuth = random.uniform(0, 2 * std::numbers::pi);
+  const double level = length * std::sin(inclination);
+  return {level * std::cos(azimuth), level * std::sin(azimuth), length * std::cos(inclination)};
+}
 
 class RangeAndBearing final : public Kind {
  public:
@@ -72,7 +85,7 @@ class RangeAndBearing final : public Kind {
  private:
   struct Receiver {
     std::size_t robot = 0;  // into Layout::robots
-    double noise = 0;       // standard deviation of each coordinate of a sender [m]
+    double noise = 0;       // standard deviation of the length of a sender's offset [m]
     double loss = 0;        // probability
     bool shows_rays = false;
     bool checks_occlusions = true;
@@ -94,11 +107,8 @@ class RangeAndBearing final : public Kind {
               receiver.shows_rays);
     if (between) return;
     if (receiver.loss > 0 && receiver.random.uniform(0, 1) < receiver.loss) return;
-    math::Vector3 seen = math::inverse(own) * other;
-    if (receiver.noise > 0) {
-      for (double& coordinate : seen) coordinate += receiver.random.gaussian(0, receiver.noise);
-    }
-    const media::Bearing bearing = media::bearing_of(seen);
+    const math::Vector3 error = noise(receiver.random, receiver.noise);
+    const media::Bearing bearing = media::bearing_of(math::inverse(own) * (other + error));
     tick.observations.range_and_bearing.push_back({pair.receiver, bearing.range, bearing.horizontal,
                                                    bearing.vertical, from.data, pair.sender});
   }

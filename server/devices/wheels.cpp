@@ -61,7 +61,8 @@ class Wheels final : public Kind {
       Axle& axle = axles_[i];
       const world::WheelsCommand& command = tick.commands.wheels[i];
       axle.velocity = {command.left, command.right};
-      for (std::size_t side = 0; side < 2; ++side) {
+      const bool stands = command.left == 0 && command.right == 0;  // a motor without voltage
+      for (std::size_t side = 0; side < 2 && !stands; ++side) {
         const scene::WheelNoise& noise = axle.use.noise[side];
         axle.velocity[side] = (axle.velocity[side] + axle.bias[side]) *
                               draw(axle.driving, noise.factor_mean, noise.factor_deviation);

@@ -162,17 +162,24 @@ network::Config Run::complete_config() {
   return config_;
 }
 
-/// Robots whose Lua controller names no script, or all robots if controllers are not wanted. The
-/// run does not wait for them.
+/// Whether nothing is in place of its library, and no client can be.
+bool Run::is_left_alone(const scene::Controller& controller) const {
+  return options_.scene_file.lenient && service_ == Service::run && options_.endpoints.empty() &&
+         scene::is_library(controller) && controller.command.empty();
+}
+
+/// Robots whose Lua controller names no script, or that are left alone, or all robots if
+/// controllers are not wanted. The run does not wait for them.
 std::vector<std::size_t> Run::robots_without_controller() const {
   const auto& all = world_.simulation.layout().robots;
   std::vector<std::size_t> robots;
   for (std::size_t r = 0; r < all.size(); ++r) {
-    const bool has_no_script =
-        processes::runs_script(world_.scene.controllers[all[r].controller]) &&
-        r < programs_.scripts.size() && programs_.scripts[r].empty();
+    const scene::Controller& controller = world_.scene.controllers[all[r].controller];
+    const bool has_no_script = processes::runs_script(controller) && r < programs_.scripts.size() &&
+                               programs_.scripts[r].empty();
+    const bool has_no_library = is_left_alone(controller);
     const bool is_idle = std::ranges::find(programs_.idle, r) != programs_.idle.end();
-    if (!with_controllers_ || has_no_script || is_idle) robots.push_back(r);
+    if (!with_controllers_ || has_no_script || has_no_library || is_idle) robots.push_back(r);
   }
   return robots;
 }

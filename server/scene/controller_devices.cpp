@@ -169,7 +169,9 @@ void enable_positioning(const Enabling& e) {
   use.axis = read_noise(e.element, "axis_noise_range");
 }
 
-void enable_battery(const Enabling& e) { e.devices.battery = true; }
+void enable_battery(const Enabling& e) {
+  e.devices.battery.emplace().charge = read_noise(e.element, "noise_range");
+}
 
 void enable_range_and_bearing_actuator(const Enabling& e) {
   use_of(e.devices.range_and_bearing).actuator = true;
@@ -256,8 +258,8 @@ void enable_wheels(const Enabling& e) {
 void enable_wheel_encoders(const Enabling& e) {
   WheelsUse& use = use_of(e.devices.wheels);
   use.sensor = true;
-  use.velocity_noise = read_noise(e.element, "vel_noise_range");
-  use.distance_noise = read_noise(e.element, "dist_noise_range");
+  use.velocity_noise = read_noise(e.element, "vel_noise_range", 0.01);
+  use.distance_noise = read_noise(e.element, "dist_noise_range", 0.01);
 }
 
 void enable_turret(const Enabling& e) { use_of(e.devices.turret).actuator = true; }

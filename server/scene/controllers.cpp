@@ -6,6 +6,7 @@
 #include "scene/draft.h"
 #include "scene/memory.h"
 #include "text/names.h"
+#include "text/quoting.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -28,8 +29,9 @@ void read_params(Element params, Controller& controller) {
   params.done();
 }
 
-void note_type(Draft& draft, const Element& element) {
-  if (element.name() == "lua_controller" || element.name() == "external_controller") return;
+/// Controllers of other types are libraries in C++, which a server does not load.
+void note_type(Draft& draft, const Element& element, const Controller& controller) {
+  if (!is_library(controller)) return;
   constexpr std::array<std::string_view, 2> own{"lua_controller", "external_controller"};
   constexpr std::size_t most_typos = 2;  // <epuck_controller> is none of ours
   for (const std::string_view ours : own) {
@@ -38,11 +40,17 @@ void note_type(Draft& draft, const Element& element) {
         element.where(), fmt::format("unknown element <{}> in <controllers>; did you mean <{}>?",
                                      element.name(), ours));
   }
+  const std::string id = text::shell_word(controller.id.empty() ? "ID" : controller.id);
   draft.report.notice(
       element.where(),
-      fmt::format(
-          "<{}> is read as an external controller: a client connects and controls its robots",
-          element.name()));
+      fmt::format("<{}> is a library in C++, which is not loaded into the server; {}: write its "
+                  "rule in Lua as <lua_controller>, or as a program in C++ or Python and add "
+                  "--controller {}=COMMAND",
+                  element.name(),
+                  draft.options.lenient ? "its robots stand still"
+                                        : "the run waits for a client in its place, or with "
+                                          "--lenient its robots stand still",
+                  id));
 }
 
 void take_id(Draft& draft, const Element& element, const Controller& controller) {
@@ -65,7 +73,11 @@ void read_controller(Draft& draft, Element& element, Origin origin,
   controller.lua = element.name() == "lua_controller";
   controller.id = element.required("id", identifier);
   draft.report.subject = fmt::format("controller {}", in_quotes(controller.id));
-  element.without_effect("library", text, "no libraries are loaded into the server");
+  if (is_library(controller)) {
+    element.optional("library", text);
+  } else {
+    element.without_effect("library", text, "no libraries are loaded into the server");
+  }
   if (controller.type == "external_controller") {
     controller.command = element.optional("command", text, "");
   }
@@ -87,7 +99,7 @@ void read_controller(Draft& draft, Element& element, Origin origin,
   element.done();
   draft.missing_parts = nullptr;
   draft.report.subject.clear();
-  note_type(draft, element);
+  note_type(draft, element, controller);
   take_id(draft, element, controller);
   draft.scene.controllers.push_back(std::move(controller));
   draft.uses.push_back(std::move(use));
@@ -361,6 +373,10 @@ void give_controller(Draft& draft, const ControllerChoice& choice, Entity& entit
     return;
   }
   entity.controller = found->second;
+}
+
+bool is_library(const Controller& controller) {
+  return !controller.lua && controller.type != "external_controller";
 }
 
 const Controller* controller_of(const Draft& draft, const Entity& entity) {

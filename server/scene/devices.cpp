@@ -334,14 +334,14 @@ Battery read_battery(Element& element) {
   battery.where = element.where();
   battery.full_charge = element.optional("full_charge", positive, 1.0);
   battery.start_charge = element.optional("start_charge", non_negative, battery.full_charge);
-  const double factor = element.optional("factor", non_negative, 0.0);
+  const double factor = element.optional("factor", non_negative, 1e-5);
   const double time = element.optional("time_factor", non_negative, factor);
-  const double metre = element.optional("pos_factor", non_negative, 0.0);
-  const double radian = element.optional("orient_factor", non_negative, 0.0);
+  const double metre = element.optional("pos_factor", non_negative, 1e-3);
+  const double radian = element.optional("orient_factor", non_negative, 1e-3);
   if (battery.start_charge > battery.full_charge) {
     element.fault_at("start_charge", "is more than full_charge; write at most that");
   }
-  if (discharge != Discharge::motion) battery.per_second = time;
+  if (discharge != Discharge::motion) battery.per_tick = time;
   if (discharge != Discharge::time) {
     battery.per_metre = metre;
     battery.per_radian = radian;

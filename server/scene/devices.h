@@ -117,7 +117,7 @@ struct RangeAndBearing {
 struct Battery {
   double full_charge = 1;   ///< > 0
   double start_charge = 1;  ///< 0 ... full_charge
-  double per_second = 0;    ///< lost per second of simulated time
+  double per_tick = 0;      ///< lost at every tick
   double per_metre = 0;     ///< lost per metre of displacement in a tick
   double per_radian = 0;    ///< lost per radian of rotation in a tick
   Location where;
@@ -245,7 +245,7 @@ struct RangeAndBearingUse {
   bool actuator = false, sensor = false;
   std::optional<std::size_t> medium;  ///< the sensor assigns the device to it
   bool show_rays = false;
-  double noise = 0;  ///< standard deviation of each coordinate of the other device [m]
+  double noise = 0;  ///< standard deviation of the length by which the other is elsewhere [m]
   double loss = 0;   ///< probability that a packet is lost, 0 ... 1
 };
 
@@ -253,6 +253,10 @@ struct PositioningUse {
   NoiseRange position;  ///< of each coordinate [m]
   NoiseRange angle;     ///< of the angle of rotation [rad]
   NoiseRange axis;      ///< of each coordinate of the unit axis of rotation
+};
+
+struct BatteryUse {
+  NoiseRange charge;  ///< of the share that is left
 };
 
 struct WheelsUse {
@@ -293,7 +297,7 @@ struct ControllerDevices {
   std::optional<ProximityUse> proximity;
   std::optional<RangeAndBearingUse> range_and_bearing;
   std::optional<PositioningUse> positioning;
-  bool battery = false;
+  std::optional<BatteryUse> battery;
   std::optional<WheelsUse> wheels;
   std::optional<TurretUse> turret;
   std::optional<CamerasUse> cameras;

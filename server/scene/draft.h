@@ -243,6 +243,10 @@ void doubt_angles(Element& element, const char* attribute);
 
 // --- shared values ------------------------------------------------------------------------------
 
+/// Makes an entity immovable whose first link is heavier than anything that moves, with a notice.
+/// @param where  of the mass
+void stay(Report& report, Location where, Entity& entity, Link& link);
+
 /// Reads `geometry` of a link with its extents.
 Geometry read_geometry(Draft& draft, Element& link);
 

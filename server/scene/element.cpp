@@ -255,16 +255,25 @@ void Element::unknown_in(std::string_view parent, std::span<const std::string_vi
   if (const OldWord* old = old_element(parent, name())) {
     return report().notice(where(), notice_of(*old, parent));
   }
-  if (const auto why = unsupported_element(name())) {
-    report().fault(where(), fmt::format("<{}> is not supported; {}", name(), *why));
+  const auto why = unsupported_element(name());
+  const auto robot = robot_of_device(name());
+  const bool is_plugin = why || robot || parent == "actuators" || parent == "sensors";
+  if (document_->lenient() && is_plugin) {
+    return report().notice(
+        where(), fmt::format("<{}> in <{}> is not known here, and is left out", name(), parent));
+  }
+  if (why) {
+    report().fault(
+        where(), fmt::format("<{}> is not supported; {} (--lenient leaves it out)", name(), *why));
     return;
   }
-  if (const auto robot = robot_of_device(name())) {
+  if (robot) {
     const std::string_view general = name().substr(name().find('_') + 1);
     const bool is_known = std::ranges::find(known, general) != known.end();
     report().fault(
         where(),
-        fmt::format("<{}> is a device of the {}, which is not modelled here; {}", name(), *robot,
+        fmt::format("<{}> is a device of the {}, which is not modelled here; {} (--lenient does)",
+                    name(), *robot,
                     is_known ? fmt::format("remove it, or write <{}>", general) : "remove it"));
     return;
   }

@@ -24,6 +24,18 @@ constexpr std::array<std::pair<std::string_view, EntityKind>, 7> kinds{{
     {"light", EntityKind::light},
 }};
 
+}  // namespace
+
+void stay(Report& report, Location where, Entity& entity, Link& link) {
+  report.notice(where, fmt::format("a mass of {:g} kg is one that nothing moves, and is read as "
+                                   "movable=\"false\"; write that instead of it",
+                                   link.mass));
+  entity.movable = false;
+  link.mass = 0;
+}
+
+namespace {
+
 Link read_single_link(Draft& draft, Element& element, Entity& entity) {
   Link link;
   link.where = element.where();
@@ -32,6 +44,7 @@ Link read_single_link(Draft& draft, Element& element, Entity& entity) {
   if (entity.movable) {
     link.mass = element.required("mass", mass, 1.0);
     if (!(link.mass > 0)) element.fault_at("mass", "is not positive; write more than 0 kg");
+    if (link.mass > heaviest_mass) stay(draft.report, element.where("mass"), entity, link);
   } else {
     element.without_effect("mass", number, "the body does not move");
   }

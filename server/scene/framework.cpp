@@ -33,22 +33,37 @@ void read_experiment(Element experiment, Experiment& out) {
   experiment.done();
 }
 
+/// A reader of the value of an option of the run.
+auto value_of_option(const RunAttributes& known, const std::string& name) {
+  return [&known, &name](std::string_view text) -> Value<std::string> {
+    std::string value(text);
+    auto wrong = known.wrong ? known.wrong(name, value) : std::nullopt;
+    if (wrong) return Wrong{std::move(*wrong)};
+    return value;
+  };
+}
+
 void read_run(Element run, const RunAttributes& known, Scene& scene) {
   if (!known.wrong) scene.run = run.all_attributes();
   for (const std::string& name : known.names) {
-    const auto read = [&](std::string_view text) -> Value<std::string> {
-      const std::string value(text);
-      if (auto wrong = known.wrong(name, value)) return Wrong{std::move(*wrong)};
-      return value;
-    };
-    if (auto value = run.optional(name.c_str(), read)) scene.run.emplace_back(name, *value);
+    auto value = run.optional(name.c_str(), value_of_option(known, name));
+    if (value) scene.run.emplace_back(name, std::move(*value));
   }
   run.done();
 }
 
-void read_system(Element system) {
+/// The dialect's place for an option of the run: threads, of which 0 are none beside the main one.
+void read_threads(Element& system, const RunAttributes& known, Scene& scene) {
+  const std::string name = "threads";
+  if (written(system, "threads") == "0") return void(system.optional("threads", count));
+  auto value = system.optional("threads", value_of_option(known, name));
+  const bool is_given = std::ranges::any_of(scene.run, [&](auto& o) { return o.first == name; });
+  if (value && !is_given) scene.run.emplace_back(name, std::move(*value));
+}
+
+void read_system(Element system, const RunAttributes& known, Scene& scene) {
+  read_threads(system, known, scene);
   constexpr std::string_view why = "results never depend on threads";
-  system.without_effect("threads", count, why);
   system.without_effect("method", Words{"balance_quantity", "balance_length"}, why);
   system.without_effect("pin_threads_to_cores", boolean, why);
   system.done();
@@ -72,7 +87,8 @@ void read_framework(Draft& draft, Element& root) {
     read_experiment(*experiment, draft.scene.experiment);
   }
   if (auto run = framework->child("run")) read_run(*run, draft.options.run, draft.scene);
-  if (auto system = framework->child("system")) read_system(*system);
+  if (auto system = framework->child("system"))
+    read_system(*system, draft.options.run, draft.scene);
   if (auto profiling = framework->child("profiling")) read_profiling(*profiling);
   framework->done();
 }

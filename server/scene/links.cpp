@@ -230,11 +230,17 @@ bool read_links(Draft& draft, Element& element, Entity& entity) {
   links->done();
   if (reference) entity.reference_link = *reference;
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
-    const bool welded = !entity.movable && i == entity.reference_link;
-    if (entity.links[i].mass > 0 || welded) continue;
+    Link& link = entity.links[i];
+    const bool is_reference = i == entity.reference_link;
+    if (is_reference && link.mass > heaviest_mass) stay(draft.report, link.where, entity, link);
+    const bool welded = !entity.movable && is_reference;
+    if (welded || (link.mass > 0 && link.mass <= heaviest_mass)) continue;
     draft.report.fault(
-        entity.links[i].where,
-        fmt::format("mass of link {} is 0; write more than 0 kg", in_quotes(entity.links[i].id)));
+        link.where,
+        fmt::format("mass of link {} is {}", in_quotes(link.id),
+                    link.mass > 0 ? "above 1e9 kg, the largest of a body that moves; what shall "
+                                    "stay is the reference link of a movable=\"false\" prototype"
+                                  : "0; write more than 0 kg"));
   }
   return reference.has_value() && distinct;
 }

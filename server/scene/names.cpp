@@ -24,6 +24,11 @@ constexpr auto element_reasons = std::to_array<Reason>({
     {"quadrotor", "its flight model does not exist here; model it as a <prototype>"},
     {"mini-quadrotor", "its flight model does not exist here; model it as a <prototype>"},
     {"kheperaiv", "model it as a <prototype>"},
+    {"kilobot", "model it as a <prototype>"},
+    {"pipuck", "model it as a <prototype>"},
+    {"e-puck2", "write <e-puck>"},
+    {"crazyflie", "its flight model does not exist here; model it as a <prototype>"},
+    {"thymio", "model it as a <prototype>"},
     {"pi-puck", "model it as a <prototype>"},
     {"builderbot", "model it as a <prototype>"},
     {"drone", "model it as a <prototype>"},
@@ -33,7 +38,6 @@ constexpr auto element_reasons = std::to_array<Reason>({
     {"simple_radio", "use <radio>"},
     {"simple_radios", "use <radios>"},
     {"boundaries", "the world is one and unbounded; remove it"},
-    {"buzz_controller", "use <external_controller> or <lua_controller>"},
 });
 
 constexpr auto homes = std::to_array<Reason>({

@@ -241,6 +241,9 @@ struct Controller {
   Location params_where;                                    ///< of <params>
 };
 
+/// Whether other versions load a library for it. Here a program may be started in its place.
+bool is_library(const Controller& controller);
+
 /// A program that watches the whole world and acts on it between ticks.
 struct Director {
   static constexpr std::size_t most = 4;  ///< of a world

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <span>
 
 #include "scene/draft.h"
 #include "scene/files.h"
@@ -33,18 +34,24 @@ Capsule read_capsule(Draft&, Element& element) {
   return {radius, height};
 }
 
-std::vector<math::Vector3> listed_vertices(Element& hull) {
-  constexpr std::string_view known[] = {"vertex"};
+/// The positions of these elements.
+std::vector<math::Vector3> positions_of(std::span<Element> elements) {
   std::vector<math::Vector3> points;
-  for (Element& vertex : hull.children()) {
-    if (vertex.name() != "vertex") {
-      vertex.unknown_in("hull", known);
-      continue;
-    }
-    points.push_back(vertex.required("position", position));
-    vertex.done();
+  for (Element& element : elements) {
+    points.push_back(element.required("position", position));
+    element.done();
   }
   return points;
+}
+
+std::vector<math::Vector3> listed_vertices(Element& hull) {
+  constexpr std::string_view known[] = {"vertex"};
+  std::vector<Element> vertices = hull.children();
+  std::erase_if(vertices, [&](const Element& vertex) {
+    if (vertex.name() != "vertex") vertex.unknown_in("hull", known);
+    return vertex.name() != "vertex";
+  });
+  return positions_of(vertices);
 }
 
 /// The vertices in a file, times `scale`.
@@ -115,7 +122,19 @@ Hull hull_of(const Element& from, const std::vector<math::Vector3>& points) {
   return unit_hull();
 }
 
+/// The `<point>`s of a convex_hull of other versions, in the link or in `<points>` of it.
+std::vector<math::Vector3> listed_points(Element& link) {
+  std::vector<Element> points = link.children("point");
+  if (auto list = link.child("points")) {
+    const std::vector<Element> more = list->children("point");
+    points.insert(points.end(), more.begin(), more.end());
+    list->done();
+  }
+  return positions_of(points);
+}
+
 Hull read_hull(Draft& draft, Element& element) {
+  if (const auto points = listed_points(element); !points.empty()) return hull_of(element, points);
   if (const std::string_view text = trimmed(element.take_text());
       !text.empty() && !element.child("hull")) {
     const auto points = points_in_text(element, text);

@@ -38,7 +38,8 @@ Value<double> number(std::string_view text);            ///< finite decimal, opt
 Value<double> non_negative(std::string_view text);      ///< number >= 0
 Value<double> positive(std::string_view text);          ///< number > 0
 Value<double> length(std::string_view text);            ///< 1e-6 to 1e6 [m]
-Value<double> mass(std::string_view text);              ///< 0, or 1e-9 to 1e9 [kg]
+constexpr double heaviest_mass = 1e9;                   ///< of a body that moves [kg]
+Value<double> mass(std::string_view text);              ///< 0, or 1e-9 and more [kg]
 Value<double> probability(std::string_view text);       ///< 0 to 1
 Value<double> half_angle(std::string_view text);        ///< 0 to 180 degrees -> [rad]
 Value<double> angle(std::string_view text);             ///< degrees -> [rad]

@@ -1,5 +1,6 @@
 #include "devices/described_devices.h"
 
+#include <array>
 #include <cstring>
 
 #include "devices/shapes.h"
@@ -63,7 +64,7 @@ void set_shaped(lua_State* state, const FieldShape& shape, const DeviceField& fi
     lua_pushlstring(state, shape.name, length);
     if (lua_rawget(state, -2) == LUA_TNIL) {
       lua_pop(state, 1);
-      lua_createtable(state, 0, 2);
+      push_vector(state, std::array{0.0, 0.0});
       lua_pushlstring(state, shape.name, length);
       lua_pushvalue(state, -2);
       lua_rawset(state, -4);

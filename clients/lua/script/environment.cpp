@@ -5,9 +5,11 @@
 #include "script/guarded.h"
 #include "script/log_functions.h"
 #include "script/math_random.h"
+#include "script/older_functions.h"
 #include "script/ordered_pairs.h"
 #include "script/sandbox.h"
 #include "script/stuck_call.h"
+#include "script/vectors.h"
 #include "script/watched_functions.h"
 
 namespace ziggurat::lua {
@@ -39,6 +41,8 @@ void confine_libraries(lua_State* state, RandomStream& math_random) {
   set_function<keep_locale>(state, "setlocale", nullptr);
   lua_pop(state, 1);
   set_math_random(state, math_random);
+  set_older_format(state);
+  set_vectors(state);
   set_ordered_pairs(state);
   set_watched_functions(state);
   mark_leavable_functions(state);
@@ -60,6 +64,7 @@ void open_libraries(lua_State* state, const Environment& environment) {
   luaL_openlibs(state);
   confine_libraries(state, environment.random.math_random);
   if (environment.files != nullptr) confine(state, *environment.files, environment.most_files);
+  set_older_names(state);
   prepend_to_package_path(state, environment.folder);
   lua_pushglobaltable(state);
   set_log_functions(state, environment.log);

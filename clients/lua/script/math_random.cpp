@@ -8,6 +8,12 @@
 namespace ziggurat::lua {
 namespace {
 
+// A fraction is cut off, as scripts for Lua 5.2 expect.
+lua_Integer check_bound(lua_State* state, int index) {
+  return lua_type(state, index) == LUA_TNUMBER ? check_floored(state, index)
+                                               : luaL_checkinteger(state, index);
+}
+
 // As in the Lua manual: a float in [0, 1); an integer in [1, m]; an integer in [m, n].
 int random(lua_State* state) {
   check_count(state, 0, 2, "random(), random(m) or random(m, n)");
@@ -17,8 +23,8 @@ int random(lua_State* state) {
     lua_pushnumber(state, stream.unit());
     return 1;
   }
-  const lua_Integer low = count == 2 ? luaL_checkinteger(state, 1) : 1;
-  const lua_Integer high = luaL_checkinteger(state, count);
+  const lua_Integer low = count == 2 ? check_bound(state, 1) : 1;
+  const lua_Integer high = check_bound(state, count);
   luaL_argcheck(state, low <= high, count, "interval is empty");
   const auto last = static_cast<lua_Unsigned>(high) - static_cast<lua_Unsigned>(low);
   const auto bits = stream.bits();

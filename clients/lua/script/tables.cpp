@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "script/vectors.h"
 #include "ziggurat/sensors.h"
 
 namespace ziggurat::lua {
@@ -26,11 +27,13 @@ void push_vector(lua_State* state, const std::array<double, 2>& vector) {
   lua_createtable(state, 0, 2);
   set_number(state, "x", vector[0]);
   set_number(state, "y", vector[1]);
+  set_kind(state, VectorKind::vector2);
 }
 
 void push_vector(lua_State* state, const std::array<double, 3>& vector) {
   lua_createtable(state, 0, 3);
   set_vector(state, vector);
+  set_kind(state, VectorKind::vector3);
 }
 
 void set_element(lua_State* state, int table, std::string_view key) {
@@ -47,13 +50,24 @@ void push_params(lua_State* state, const std::vector<std::pair<std::string, std:
   }
 }
 
-void push_orientation(lua_State* state, const std::array<double, 4>& quaternion) {
-  const auto [angle, axis] = to_angle_axis(quaternion);
-  lua_createtable(state, 0, 3);
-  set_number(state, "angle", angle);
+void set_orientation(lua_State* state, const std::array<double, 4>& quaternion) {
+  constexpr std::array names{"w", "x", "y", "z"};
+  for (std::size_t i = 0; i < names.size(); ++i) set_number(state, names[i], quaternion[i]);
   set_number(state, "yaw", yaw_of(quaternion));
-  push_vector(state, axis);
+  const auto [angle, axis] = to_angle_axis(quaternion);
+  set_number(state, "angle", angle);
+  lua_pushliteral(state, "axis");
+  lua_rawget(state, -2);
+  set_vector(state, axis);
+  lua_pop(state, 1);
+}
+
+void push_orientation(lua_State* state, const std::array<double, 4>& quaternion) {
+  lua_createtable(state, 0, 7);
+  push_vector(state, std::array{0.0, 0.0, 1.0});
   lua_setfield(state, -2, "axis");
+  set_orientation(state, quaternion);
+  set_kind(state, VectorKind::quaternion);
 }
 
 AngleAxis to_angle_axis(const std::array<double, 4>& quaternion) {

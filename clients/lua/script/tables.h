@@ -52,7 +52,11 @@ struct AngleAxis {
   std::array<double, 3> axis{0, 0, 1};  ///< unit
 };
 
-/// Pushes {angle, axis = {x, y, z}, yaw}.
+/// Sets the numbers of a table from push_orientation(), which is on top, and of its axis.
+/// @param quaternion  unit, w, x, y, z
+void set_orientation(lua_State* state, const std::array<double, 4>& quaternion);
+
+/// Pushes {w, x, y, z, angle, axis = {x, y, z}, yaw}.
 /// @param quaternion  unit, w, x, y, z
 void push_orientation(lua_State* state, const std::array<double, 4>& quaternion);
 

@@ -70,6 +70,7 @@ void read_robot(Draft& draft, Element& element, Entity& entity) {
   devices.led_medium = first_medium(draft.scene, MediumKind::led);
   entity.kind == EntityKind::foot_bot ? read_blob_cameras(element, entity)
                                       : ignore_blob_cameras(element);
+  devices.battery = Battery{};  // which nothing discharges
   if (auto battery = element.child("battery")) devices.battery = read_battery(*battery);
   if (auto engine = element.child("dynamics2d")) read_steering_limits(*engine, *entity.traction);
 }

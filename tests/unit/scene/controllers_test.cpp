@@ -103,10 +103,17 @@ TEST(Controllers, KindsAndParams) {
   EXPECT_EQ(controllers[1].command, "./drive --fast");
   EXPECT_EQ(controllers[2].type, "footbot_diffusion_controller");
   EXPECT_EQ(count_containing(notices(result),
-                             "6:1: <footbot_diffusion_controller> is read as an "
-                             "external controller"),
-            1u);
-  EXPECT_EQ(count_containing(notices(result), "library of"), 1u);
+                             "6:1: <footbot_diffusion_controller> is a library in C++, which is "
+                             "not loaded into the server; the run waits for a client in its place, "
+                             "or with --lenient its robots stand still: write its rule in Lua as "
+                             "<lua_controller>, or as a program in C++ or Python and add "
+                             "--controller c=COMMAND"),
+            1u)
+      << all_problems(result);
+  EXPECT_EQ(count_containing(notices(result), "library of"), 0u);
+  EXPECT_EQ(
+      count_containing(notices(text.read({.lenient = true})), "server; its robots stand still"),
+      1u);
   EXPECT_EQ(count_containing(notices(result), "elements in <params> have no effect"), 1u);
 }
 

@@ -337,6 +337,22 @@ TEST(Lenient, UnknownAttributesAreNoticesAndElementsStayFaults) {
   EXPECT_EQ(count_containing(notices(result), "4:21: unknown attribute \"colour\" of <arena>"), 1u);
 }
 
+TEST(Lenient, LeavesOutDevicesAndRobotsOfPlugIns) {
+  SceneText text;
+  text.controllers =
+      R"(<controllers><my_controller id="c"><actuators><jump implementation="default"/></actuators>)"
+      R"(<sensors><drone_nose implementation="default"/></sensors></my_controller></controllers>)";
+  text.arena =
+      arena_with(R"(<thymio id="t"/><foot-bot id="f"><body/><controller config="c"/></foot-bot>)");
+  EXPECT_EQ(faults(text.read()).size(), 3u) << all_problems(text.read());
+  ReadOptions options;
+  options.lenient = true;
+  const ReadResult result = text.read(options);
+  EXPECT_TRUE(result.ok()) << all_problems(result);
+  EXPECT_EQ(count_containing(notices(result), "is not known here, and is left out"), 3u);
+  EXPECT_EQ(result.scene.entities.size(), 1u);
+}
+
 TEST(Problems, AreInDocumentOrder) {
   SceneText text;
   text.framework = "<framework><experiment ticks_per_second=\"0\"/></framework>";

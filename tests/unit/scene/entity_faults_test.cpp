@@ -76,9 +76,6 @@ constexpr Row entity_rows[] = {
      R"(<sphere id="a" radius="1" mass="1e-12" movable="true"><body/></sphere>)",
      R"(mass="1e-12" of <sphere> is below 1e-9 kg, the least mass of a body: contacts of bodies whose masses are )"
      "further apart are inexact; write 1e-9 to 1e9 kg"},
-    {"Too_heavy", Part::entity,
-     R"(<sphere id="a" radius="1" mass="1e12" movable="true"><body/></sphere>)",
-     R"(mass="1e12" of <sphere> is above 1e9 kg, the largest mass of a body)"},
 };
 INSTANTIATE_TEST_SUITE_P(Entities, Fault, testing::ValuesIn(entity_rows),
                          [](const auto& row) { return std::string(row.param.name); });
@@ -94,6 +91,9 @@ constexpr Row link_rows[] = {
      "<link> lacks the attribute mass"},
     {"Massless", Part::link, R"(<link id="a" mass="0" geometry="sphere" radius="1"/>)",
      R"(5:1: mass of link "a" is 0)"},
+    {"Too_heavy", Part::link, R"(<link id="a" mass="5e12" geometry="sphere" radius="1"/>)",
+     R"(5:1: mass of link "a" is above 1e9 kg, the largest of a body that moves; what shall stay is )"
+     R"(the reference link of a movable="false" prototype)"},
     {"E19_twice", Part::loose_link, R"(<link id="base" mass="1" geometry="sphere" radius="1"/>)",
      R"(5:11: id="base" of <link> is the id of an earlier link)"},
     {"E19_origin", Part::loose_link, R"(<link id="origin" mass="1" geometry="sphere" radius="1"/>)",

@@ -142,6 +142,57 @@ TEST(OldWords, ConvexHullIsHull) {
   }
 }
 
+TEST(OldWords, PointsOfAHullAreElements) {
+  SceneText text;
+  const std::string points =
+      R"(<point position="0,0,0"/><point position="1,0,0"/><point position="0,1,0"/>)"
+      R"(<point position="0,0,1"/>)";
+  for (const std::string& parts : {points, "<points>" + points + "</points>"}) {
+    for (const char* word : {"convexhull", "convex_hull"}) {
+      std::string link = hull_link(parts);
+      link.replace(link.find("convex_hull"), 11, word);
+      text.arena = arena_with(link);
+      const Scene scene = read_with_notice(text, R"(of <link> is read as "hull")");
+      const auto& hull = std::get<Hull>(scene.entities.at(0).links.at(0).geometry);
+      EXPECT_EQ(hull.polyhedron->vertices.size(), 4u);
+    }
+  }
+  text.arena = arena_with(hull_link(R"(<point position="0,0,0"/><point at="1,0,0"/>)"));
+  EXPECT_GE(count_containing(faults(text.read()), "<point> lacks the attribute position"), 1u);
+}
+
+TEST(OldWords, BatteriesOfLaterVersionsLoseTheSame) {
+  SceneText text = with_sensor(R"(<battery implementation="default"/>)");
+  text.arena = arena_with(
+      R"(<foot-bot id="f"><body/><battery model="time_motion" delta="1" pos_delta="2" orient_delta="3"/>)"
+      R"(<controller config="c"/></foot-bot>)");
+  const Scene scene = read_with_notice(text, ": delta of <battery> is read as factor");
+  const Battery& battery = *scene.entities.at(0).devices.battery;
+  EXPECT_EQ(battery.per_tick, 1);
+  EXPECT_EQ(battery.per_metre, 2);
+  EXPECT_EQ(battery.per_radian, 3);
+}
+
+TEST(OldWords, AMassThatNothingMovesIsOfABodyThatStays) {
+  SceneText text;
+  text.arena = arena_with(
+      R"(<cylinder id="c" radius="1" height="1" movable="true" mass="5e12"><body/></cylinder>)");
+  const Scene scene = read_with_notice(
+      text,
+      "4:96: a mass of 5e+12 kg is one that nothing moves, and is read as movable=\"false\"; "
+      "write that instead of it");
+  EXPECT_FALSE(scene.entities.at(0).movable);
+  text.arena = arena_with(
+      R"(<prototype id="p"><body/><links ref="l"><link id="l" geometry="sphere" radius="1" mass="5e12"/>)"
+      R"(</links></prototype>)");
+  EXPECT_FALSE(read_with_notice(text, "a mass of 5e+12 kg").entities.at(0).movable);
+  text.arena =
+      arena_with(R"(<sphere id="s" radius="1" movable="true" mass="1e9"><body/></sphere>)");
+  const ReadResult result = text.read();
+  EXPECT_TRUE(result.problems.empty()) << all_problems(result);
+  EXPECT_EQ(result.scene.entities.at(0).links.at(0).mass, 1e9);
+}
+
 TEST(OldWords, AnArenaOfHeight0IsFlat) {
   SceneText text;
   text.arena = R"(<arena size="2, 3, 0"/>)";

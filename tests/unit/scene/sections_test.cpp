@@ -32,9 +32,29 @@ TEST(Framework, PartsWithoutEffectGiveNotices) {
   text.rest = "<visualization><qt-opengl anything=\"at all\"/></visualization>\n";
   const ReadResult result = text.read();
   EXPECT_TRUE(result.ok()) << all_problems(result);
-  EXPECT_EQ(count_containing(notices(result), "threads of <system> has no effect"), 1u);
+  EXPECT_EQ(count_containing(notices(result), "method of <system> has no effect"), 1u);
   EXPECT_EQ(count_containing(notices(result), "<profiling> has no effect"), 1u);
   EXPECT_EQ(count_containing(notices(result), "7:1: <visualization> has no effect"), 1u);
+}
+
+TEST(Framework, ThreadsOfSystemAreTheRunsUnlessItHasItsOwn) {
+  using Options = std::vector<std::pair<std::string, std::string>>;
+  const auto run = [](const std::string& parts) {
+    SceneText text;
+    text.framework = "<framework>" + parts + R"(<experiment ticks_per_second="1"/></framework>)";
+    ReadOptions options;
+    options.run = {{"threads"}, [](const std::string&, const std::string& value) {
+                     return value == "many" ? std::optional<std::string>("is many") : std::nullopt;
+                   }};
+    const ReadResult result = text.read(options);
+    return result.ok() ? result.scene.run : Options{{"fault", faults(result).at(0)}};
+  };
+  EXPECT_EQ(run(R"(<system threads="4"/>)"), (Options{{"threads", "4"}}));
+  EXPECT_EQ(run(R"(<system threads="0"/>)"), Options());
+  EXPECT_EQ(run(R"(<system threads="4"/><run threads="2"/>)"), (Options{{"threads", "2"}}));
+  EXPECT_NE(
+      run(R"(<system threads="many"/>)").at(0).second.find("threads=\"many\" of <system> is many"),
+      std::string::npos);
 }
 
 TEST(Framework, ALengthBetweenTwoTicksIsTold) {

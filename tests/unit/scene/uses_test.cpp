@@ -172,6 +172,16 @@ TEST(Robots, FootBotHasTheDialectsGeometryAndDevices) {
   EXPECT_EQ(robot.devices.battery->start_charge, 0.5);
 }
 
+TEST(Robots, HaveABatteryThatNothingDischargesWhereTheSceneHasNone) {
+  SceneText text = with_controller("", R"(<battery implementation="default"/>)");
+  text.arena = arena_with(R"(<foot-bot id="f"><body/><controller config="c"/></foot-bot>)");
+  const ReadResult result = text.read();
+  ASSERT_TRUE(result.problems.empty()) << all_problems(result);
+  const Battery& battery = *result.scene.entities.at(0).devices.battery;
+  EXPECT_EQ(battery.start_charge, 1);
+  EXPECT_EQ(battery.per_tick + battery.per_metre + battery.per_radian, 0);
+}
+
 TEST(Robots, EPuckMatchesItsDataSheet) {
   SceneText text = with_controller("", "");
   text.arena = arena_with(R"(<e-puck id="e"><body/><controller config="c"/></e-puck>)");

@@ -268,6 +268,47 @@ TEST(WheelNoise, BiasIsDrawnOnceAndTheFactorEveryTick) {
               1e-12);
 }
 
+TEST(WheelNoise, DoesNotMoveARobotThatIsToldToStand) {
+  Simulation simulation =
+      SmallScene{R"(<differential_steering implementation="default" bias_avg="0.1"/>)", wheels,
+                 foot_bot(), ground}
+          .run();
+  testing::run(simulation, 5);
+  EXPECT_EQ(simulation.observations().wheels.at(0).velocity_left, 0);
+  EXPECT_EQ(simulation.state().origins.at(0).position.x(), 0);
+  simulation.commands().wheels.at(0) = {0, 0.1};
+  simulation.step();
+  EXPECT_NEAR(simulation.observations().wheels[0].velocity_left, 0.1, 1e-15);
+}
+
+TEST(WheelEncoders, HaveUniformNoiseInCentimetres) {
+  Simulation simulation =
+      SmallScene{wheels,
+                 R"(<differential_steering implementation="default" vel_noise_range="1:3")"
+                 R"( dist_noise_range="-0.2:0.6"/>)",
+                 foot_bot(), ground}
+          .run();
+  simulation.commands().wheels.at(0) = {0.1, 0.1};
+  math::Vector2 sum = math::Vector2::Zero();
+  math::Vector2 least = math::Vector2::Constant(1), most = math::Vector2::Constant(-1);
+  constexpr int ticks = 1000;
+  for (int i = 0; i < ticks; ++i) {
+    simulation.step();
+    const world::WheelsReading& reading = simulation.observations().wheels[0];
+    const math::Vector2 error(reading.velocity_left - 0.1, reading.distance_right - 0.01);
+    sum += error;
+    least = least.cwiseMin(error);
+    most = most.cwiseMax(error);
+  }
+  EXPECT_GE(least.x(), 0.01 - 1e-12);
+  EXPECT_LE(most.x(), 0.03 + 1e-12);
+  EXPECT_GE(least.y(), -0.002 - 1e-12);
+  EXPECT_LE(most.y(), 0.006 + 1e-12);
+  const double four = 4 / std::sqrt(12.0 * ticks);  // deviations of a mean, of a span of 1
+  EXPECT_NEAR(sum.x() / ticks, 0.02, 0.02 * four);
+  EXPECT_NEAR(sum.y() / ticks, 0.002, 0.008 * four);
+}
+
 TEST(FootBotProximity, ReadsItsOwnResponseWithTheAngle) {
   const std::string sensor = R"(<footbot_proximity implementation="default"/>)";
   // Sensor 1 looks along 7.5 degrees; the wall is 50 mm away in x.

@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 #include "small_scene.h"
 
@@ -163,6 +167,40 @@ TEST(RangeAndBearing, LosesTheShareThatItShould) {
   EXPECT_EQ(count(1), count(1));
 }
 
+TEST(RangeAndBearing, NoiseIsOneNormalLengthInADirectionOfTheWorld) {
+  // b's +x looks down, so that noise in its own axes would be another.
+  Simulation simulation =
+      SmallScene{telling, listening("rab", R"(noise_std_dev="0.1")"),
+                 robot("a", "1,0,0", bearer()) + robot("b", "0,0,2", bearer(), "0,90,0"), ""}
+          .run(3);
+  math::Vector3 squares = math::Vector3::Zero(), sum = math::Vector3::Zero();
+  constexpr int ticks = 4000;
+  for (int tick = 0; tick < ticks; ++tick) {
+    simulation.step();
+    const auto& packet = simulation.observations().range_and_bearing.at(1);  // of a, at b
+    const double level = packet.range * std::cos(packet.vertical_bearing);
+    const math::Vector3 seen(level * std::cos(packet.horizontal_bearing),
+                             level * std::sin(packet.horizontal_bearing),
+                             packet.range * std::sin(packet.vertical_bearing));
+    const auto place = [&](std::size_t i) {
+      const math::Pose& origin = simulation.state().origins[i];
+      return math::Vector3(origin.position + origin.orientation * math::Vector3(0, 0, 0.05));
+    };
+    const math::Vector3 error =
+        place(1) + simulation.state().origins[1].orientation * seen - place(0);
+    squares += error.cwiseAbs2();
+    sum += error;
+  }
+  // The mean of cos^2 of a uniform inclination is 1/2. A mean square of a normal number has a
+  // deviation of sqrt(2/4000) = 2.2 %, products with sines at most 3.4 %: four of these.
+  const math::Vector3 mean = squares / (ticks * 0.01);
+  EXPECT_NEAR(mean.sum(), 1, 0.09);
+  EXPECT_NEAR(mean.z(), 0.5, 0.07);
+  EXPECT_NEAR(mean.x(), 0.25, 0.05);
+  EXPECT_NEAR(mean.y(), 0.25, 0.05);
+  EXPECT_NEAR(sum.norm() / ticks, 0, 4 * 0.1 / std::sqrt(ticks));
+}
+
 TEST(Positioning, IsThePoseOfTheOriginWithNoiseInItsRange) {
   const std::string plain = R"(<positioning implementation="default"/>)";
   const std::string noisy = R"(<positioning implementation="default" pos_noise_range="0.1:0.2"/>)";
@@ -178,6 +216,28 @@ TEST(Positioning, IsThePoseOfTheOriginWithNoiseInItsRange) {
       other.observations().positioning.at(0).position - math::Vector3(1, 2, 3);
   EXPECT_GE(offset.minCoeff(), 0.1 - 1e-12);
   EXPECT_LE(offset.maxCoeff(), 0.2 + 1e-12);
+}
+
+TEST(Positioning, AngleNoiseIsInDegreesAboutTheAxis) {
+  Simulation simulation =
+      SmallScene{"", R"(<positioning implementation="default" angle_noise_range="-10:20"/>)",
+                 robot("r", "0,0,0", "", "90,0,0"), ""}
+          .run();
+  double sum = 0, least = 1e9, most = -1e9;
+  constexpr int ticks = 1000;
+  for (int tick = 0; tick < ticks; ++tick) {
+    simulation.step();
+    const math::Vector3 ahead =
+        simulation.observations().positioning.at(0).orientation * math::Vector3::UnitX();
+    const double error = std::atan2(ahead.y(), ahead.x()) * 180 / M_PI - 90;
+    EXPECT_NEAR(ahead.z(), 0, 1e-12);
+    sum += error;
+    least = std::min(least, error);
+    most = std::max(most, error);
+  }
+  EXPECT_GE(least, -10 - 1e-9);
+  EXPECT_LE(most, 20 + 1e-9);
+  EXPECT_NEAR(sum / ticks, 5, 4 * 30 / std::sqrt(12.0 * ticks));
 }
 
 TEST(Positioning, OfATurningRobotIsTheQuaternionThatTurnsByLessThanPi) {
@@ -197,9 +257,9 @@ TEST(Positioning, OfATurningRobotIsTheQuaternionThatTurnsByLessThanPi) {
   EXPECT_TRUE(is_over_half);
 }
 
-TEST(Battery, LosesChargeWithTime) {
+TEST(Battery, LosesItsFactorAtEveryTick) {
   const std::string devices =
-      R"(<battery discharge_model="time" full_charge="10" start_charge="5" factor="2"/>)";
+      R"(<battery discharge_model="time" full_charge="10" start_charge="5" factor="0.2"/>)";
   Simulation simulation =
       SmallScene{"", R"(<battery implementation="default"/>)", robot("r", "0,0,0", devices), ""}
           .run();
@@ -212,6 +272,43 @@ TEST(Battery, LosesChargeWithTime) {
   for (int tick = 0; tick < 20; ++tick) simulation.step();
   EXPECT_EQ(battery.available_charge, 0);
   EXPECT_EQ(battery.time_left, 0);
+}
+
+TEST(Battery, LosesTheDialectsFactorsWhereTheSceneHasNone) {
+  const auto charge = [](const std::string& battery, const std::string& engine = "") {
+    Simulation simulation = SmallScene{"", R"(<battery implementation="default"/>)",
+                                       robot("r", "0,0,0", battery), engine}
+                                .run();
+    testing::run(simulation, 10);
+    return std::pair(simulation.observations().batteries.at(0).available_charge,
+                     -simulation.state().origins[0].position.z());
+  };
+  EXPECT_NEAR(charge("<battery/>").first, 1 - 10e-5, 1e-15);
+  const auto [left, depth] =
+      charge(R"(<battery discharge_model="time_motion"/>)", R"(<gravity g="10"/>)");
+  EXPECT_NEAR(left, 1 - 10e-5 - depth * 1e-3, 1e-12);
+}
+
+TEST(Battery, ReadsWithUniformNoiseWithinNoneAndAll) {
+  const auto readings = [](const std::string& battery) {
+    Simulation simulation =
+        SmallScene{"", R"(<battery implementation="default" noise_range="-0.1:0.3"/>)",
+                   robot("r", "0,0,0", battery), ""}
+            .run();
+    std::vector<double> result;
+    for (int tick = 0; tick < 1000; ++tick) {
+      simulation.step();
+      result.push_back(simulation.observations().batteries.at(0).available_charge);
+    }
+    return result;
+  };
+  const auto half = readings(R"(<battery start_charge="0.5" factor="0"/>)");
+  EXPECT_GE(*std::ranges::min_element(half), 0.4);
+  EXPECT_LE(*std::ranges::max_element(half), 0.8);
+  const double mean = std::accumulate(half.begin(), half.end(), 0.0) / 1000;
+  EXPECT_NEAR(mean, 0.6, 4 * 0.4 / std::sqrt(12 * 1000));
+  const auto full = readings(R"(<battery factor="0"/>)");
+  EXPECT_EQ(*std::ranges::max_element(full), 1);
 }
 
 TEST(Battery, LosesChargeWithMotionOnlyWhenThereIsAny) {

@@ -118,7 +118,7 @@ TEST_F(Random, RefusesInvalidArguments) {
     refused(r.exponential) refused(r.exponential, 1, 2)
     refused(r.gaussian) refused(r.gaussian, 1, 2, 3) refused(r.gaussian, 1/0)
     refused(r.poisson) refused(r.poisson, -1) refused(r.poisson, 1e300)
-    refused(math.random, 0) refused(math.random, 3, 2) refused(math.random, 1.5)
+    refused(math.random, 0) refused(math.random, 3, 2) refused(math.random, 0.5)
     log('good'))"),
             (Lines{"good"}));
 }

@@ -1,0 +1,80 @@
+"""Scenes in the style of courses' labs and of libraries for ARGoS, unchanged: flocking by range and bearing, robots that
+flash together, stones as hulls, and a lab all of whose rules are in C++."""
+
+import math
+import pathlib
+import re
+import shutil
+
+from harness import FAULT, FINISHED, SceneTest, main
+
+SCENES = pathlib.Path(__file__).resolve().parent / "foreign"
+
+
+class Foreign(SceneTest):
+    def take(self, name):
+        for path in SCENES.glob(f"{name}.*"):
+            shutil.copy(path, self.folder)
+        self.scene = self.folder / f"{name}.argos"
+
+    def places(self, *arguments):
+        """Of each body in the trace, by tick: (x, y, z)."""
+        trace = self.folder / "trace.csv"
+        outcome = self.run_scene("--trace", trace, *arguments)
+        found = {}
+        header, *lines = trace.read_text().splitlines()
+        names = header.split(",")
+        for line in lines:
+            row = dict(zip(names, line.split(",")))
+            if row["link"]:
+                continue
+            found.setdefault(row["entity"], []).append(tuple(float(row[axis]) for axis in "xyz"))
+        return outcome, found
+
+    def test_robots_flock_at_the_distance_that_they_keep(self):
+        self.take("flocking")
+        outcome, _ = self.places("--ticks", "300")
+        nearest = [int(cm) for cm in re.findall(r"nearest (\d+) cm", outcome.out)]
+        self.assertEqual(len(nearest), 8 * 300)
+        self.assertLess(sum(nearest[:8]) / 8, 55, "they begin close to each other")
+        self.assertAlmostEqual(sum(nearest[-80:]) / 80, 72, delta=8)
+
+    def test_robots_that_see_each_other_flash_together(self):
+        self.take("synchronisation")
+        outcome = self.run_scene()
+        flashes = [int(tick) for tick in re.findall(r"^\[(\d+) f\d\] flash", outcome.out, re.M)]
+        last = [tick for tick in flashes if tick > 500]
+        self.assertGreater(len(last), 6)
+        self.assertLess(len(set(last)), len(last) / 2, f"several flash at a tick: {last}")
+
+    def test_stones_lie_on_a_slab_that_stays(self):
+        self.take("heap")
+        outcome, places = self.places()
+        self.assertRegex(outcome.err, r'heap\.argos:15:\d+: a mass of 5e\+12 kg is one that nothing moves, and is read '
+                                      r'as movable="false"')
+        self.assertEqual(places["slab"][-1], (0, 0, 0.5))
+        self.assertEqual(sorted(round(place[-1][2], 2) for name, place in places.items() if name != "slab"),
+                         [0.6] * 4 + [0.66] * 4)
+
+    def test_a_scene_of_libraries_is_told_what_to_write_and_its_robots_stand_still_if_lenient(self):
+        self.take("landmarks")
+        outcome = self.ziggurat("check", self.scene)
+        self.assertEqual(outcome.code, FAULT)
+        for sentence in (r":10:\d+: <footbot_landmarks_controller> is a library in C\+\+.*--controller fl=COMMAND",
+                         r":18:\d+: unknown element <landmark_memory> in <sensors>",
+                         r":26:\d+: <loop_functions> has no script.*<director",
+                         r":38:\d+: <thymio> is not supported; model it as a <prototype>"):
+            self.assertRegex(outcome.err, sentence)
+        outcome, places = self.places("--lenient", "--ticks", "60")
+        self.assertEqual(len(places["fb1"]), 61)
+        for name in ("fb1", "fb5", "tree"):
+            self.assertLess(math.dist(places[name][0], places[name][-1]), 1e-9, name)
+        script = self.write("drive.lua", "function init() end function step() robot.wheels.set_velocity(5, 5) end")
+        text = self.scene.read_text().replace("<params alpha", f'<params script="{script.name}" alpha')
+        self.scene.write_text(text.replace("footbot_landmarks_controller", "lua_controller"))
+        _, places = self.places("--lenient", "--ticks", "60")
+        self.assertGreater(math.dist(places["fb1"][0], places["fb1"][-1]), 0.2)
+
+
+if __name__ == "__main__":
+    main()
