@@ -210,9 +210,14 @@ TEST(Robots, HaveOnlyTheirOwnDevices) {
   EXPECT_EQ(lacks("differential_steering", "e-puck"), 0u);
   EXPECT_EQ(lacks("footbot_turret", "foot-bot"), 0u);
   EXPECT_EQ(lacks("footbot_turret", "e-puck"), 1u);
-  EXPECT_EQ(lacks("radios", "foot-bot"), 1u);
+  EXPECT_EQ(lacks("radios", "e-puck"), 1u);
+  EXPECT_EQ(lacks("wifi", "foot-bot"), 0u);
+  EXPECT_EQ(lacks("wifi", "e-puck"), 1u);
   EXPECT_EQ(lacks("quadrotor_speed", "foot-bot"), 1u);
   EXPECT_EQ(lacks("gripper", "foot-bot"), 0u);
+  EXPECT_EQ(lacks("gripper", "e-puck"), 1u);
+  EXPECT_EQ(lacks("epuck_wheels", "e-puck"), 0u);
+  EXPECT_EQ(lacks("epuck_wheels", "foot-bot"), 1u);
 }
 
 }  // namespace
