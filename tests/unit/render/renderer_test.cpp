@@ -194,7 +194,7 @@ TEST(Renderer, ColoursTheFloorAsItsPictureAndWhatWasPaintedOverIt) {
   const auto at = [&](const Picture& picture, double x, double y) {
     return pixel(picture, project(view, {x, y, 0}));
   };
-  const Pixel plain = at(world.picture(view), 0.5, 0);
+  const testing::Pixel plain = at(world.picture(view), 0.5, 0);
   world.state.floor = {{{0.5, 0}, {0.3, 0.3}, true, 0x0000FF}};
   const Picture painted = world.picture(view);
   EXPECT_GT(at(painted, 0.5, 0).blue, 2 * at(painted, 0.5, 0).red);
