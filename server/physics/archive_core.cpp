@@ -169,6 +169,7 @@ void archive_fields(math::Archive& archive, NewtonCore& core) {
     archive.require(std::ranges::binary_search(core.ground_servos_, grip.entity, {},
                                                &NewtonCore::GroundServo::entity),
                     "has no wheels");
+    archive.require(core.system_.trees[grip.held].dofs > 0, "holds what does not move");
   }
   archive("lags", core.leapfrog_sync_.of_tree);
   archive("islands", core.convergence_.islands);

@@ -81,7 +81,8 @@ Body NewtonCore::add(const scene::Entity& entity, std::size_t number) {
 }
 
 void NewtonCore::grip(std::span<const Body> bodies, std::size_t entity, const Gripper& gripper) {
-  if (grip_of(entity)) return;
+  const bool moves = std::ranges::binary_search(ground_servos_, entity, {}, &GroundServo::entity);
+  if (!moves || grip_of(entity)) return;
   const std::optional<Grip> found = find_grip(bodies[entity], gripper, bodies, colliders_, system_);
   if (!found) return;
   grips_.insert(std::ranges::lower_bound(grips_, entity, {}, &Grip::entity), *found);

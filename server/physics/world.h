@@ -70,7 +70,7 @@ class World {
 
   /// Lets a gripper of a robot on wheels hold what it touches, if that may be gripped: a point of
   /// it, about which it may turn. A turret that follows its robot then turns with what is held.
-  /// Without effect while it holds something, and after its grip tore.
+  /// Without effect while it holds something, after its grip tore, and of a robot that is fixed.
   /// @param entity  one with a traction, in order of adding
   void grip(std::size_t entity, const Gripper& gripper);
   void release(std::size_t entity);      ///< opens the gripper

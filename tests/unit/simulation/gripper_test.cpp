@@ -208,6 +208,13 @@ TEST(Gripper, HoldsOnlyWhatAllowsIt) {
   }
 }
 
+TEST(Gripper, OfAFixedRobotHoldsNothing) {
+  Simulation simulation = scene(robot(R"(movable="false")") + box()).run();
+  lock(simulation);
+  simulation.step();
+  EXPECT_FALSE(grips(simulation));
+}
+
 TEST(Gripper, HoldsFootBotsButNotEPucks) {
   for (const char* kind : {"foot-bot", "e-puck"}) {
     const std::string name(kind);
