@@ -263,6 +263,28 @@ TEST(Gripper, SleepsAndWakesWithWhatItHolds) {
   EXPECT_NEAR(seen(simulation).x(), at.x(), 1e-4);
 }
 
+// Bonded magnets take their substeps in parts, and with them the robot that holds one.
+TEST(Gripper, PullsMagnetsThatAreBonded) {
+  const auto block = [](const std::string& id, const std::string& x, const std::string& magnet) {
+    return "<prototype id=\"" + id + R"(" grippable="true"><body position=")" + x +
+           R"(,0,0"/><links ref="l"><link id="l" geometry="box" size="0.05,0.05,0.05" mass="0.1"/>)" +
+           R"(</links><devices><magnets><magnet anchor="l" offset=")" + magnet +
+           R"(,0,0.025" passive_field="650,0,0"/></magnets></devices></prototype>)";
+  };
+  SmallScene magnetic =
+      scene(robot() + block("near", "0.1105", "0.015") + block("far", "0.1606", "-0.015"));
+  magnetic.engine = testing::ground + std::string("<magnetism/>");
+  Simulation simulation = magnetic.run();
+  lock(simulation);
+  testing::run(simulation, 5);
+  ASSERT_TRUE(grips(simulation));
+  drive(simulation, -0.05, -0.05);
+  testing::run(simulation, 40);
+  EXPECT_LT(pose(simulation, 0).position.x(), -0.18);
+  EXPECT_NEAR(pose(simulation, 1).position.x() - pose(simulation, 0).position.x(), 0.1105, 2e-3);
+  EXPECT_NEAR(pose(simulation, 2).position.x() - pose(simulation, 1).position.x(), 0.05, 1e-3);
+}
+
 TEST(Gripper, IsPartOfTheState) {
   SmallScene resting = scene(robot() + box(), gripper(20));
   resting.engine = testing::ground;
