@@ -5,7 +5,7 @@ import type { Floats, Poses, World } from "../model/messages";
 const mostPixels = 1024; // a side
 const numbersPerRegion = 6; // see Poses.floor_paints
 
-function isSame(a: Floats, b: Floats): boolean {
+function isSame(a: ArrayLike<number>, b: ArrayLike<number>): boolean {
   if (a.length !== b.length) return false;
   for (let i = 0; i < a.length; ++i) if (a[i] !== b[i]) return false;
   return true;
@@ -40,14 +40,18 @@ export class Floor {
   constructor(private readonly changes: () => void) {}
 
   setWorld(world: World): void {
+    const file = world.floorPicture ?? new Uint8Array(0); // older recordings have none
+    const before = this.world;
+    this.world = world;
+    const isKnown = before && isSame(before.floorPicture ?? [], file)
+        && isSame(before.arenaSize, world.arenaSize) && isSame(before.arenaCenter, world.arenaCenter);
+    if (isKnown) return; // only its population changed
     this.picture = null;
     this.paints = [];
-    this.world = world;
     this.remove();
-    const file = world.floorPicture;
-    if (!file || file.length === 0) return;
+    if (file.length === 0) return;
     createImageBitmap(new Blob([file as BlobPart], { type: "image/png" })).then((picture) => {
-      if (this.world !== world) return;
+      if (!isSame(this.world?.floorPicture ?? [], file)) return;
       this.picture = picture;
       this.draw();
       this.changes();
