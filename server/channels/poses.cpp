@@ -81,6 +81,12 @@ void fill(const PoseSource& source, const Moment& from, v1::Poses& to) {
     const math::Vector3 field = magnet.turn * from.state.magnet_fields[i];
     add(math::Vector3(magnet.own + source.dialect * field), *to.mutable_magnet_moments());
   }
+  for (const world::FloorPaint& region : from.state.floor) {
+    for (const double value : region.center) to.add_floor_paints(value);
+    for (const double value : region.half_size) to.add_floor_paints(value);
+    to.add_floor_paints(region.is_disc ? 1 : 0);
+    to.add_floor_paints(region.color);
+  }
 }
 
 }  // namespace ziggurat::channels

@@ -1,9 +1,12 @@
 #include "channels/world_message.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <variant>
+#include <vector>
 
+#include "outputs/images.h"
 #include "render/model.h"
 #include "wire/devices.h"
 
@@ -163,6 +166,22 @@ void describe_robots(const Population& from, v1::World& to) {
   }
 }
 
+/// As PNG, with at most so many pixels a side: of larger ones some pixels are left out.
+std::string floor_png(const scene::FloorImage& image) {
+  constexpr unsigned most = 1024;
+  const unsigned step = (std::max(image.width, image.height) + most - 1) / most;
+  const unsigned width = (image.width + step - 1) / step, height = (image.height + step - 1) / step;
+  std::vector<std::uint8_t> rgb;
+  rgb.reserve(std::size_t{3} * width * height);
+  for (unsigned y = 0; y < image.height; y += step) {
+    for (unsigned x = 0; x < image.width; x += step) {
+      const std::uint8_t* const pixel = &image.rgb[3 * (std::size_t{y} * image.width + x)];
+      rgb.insert(rgb.end(), pixel, pixel + 3);
+    }
+  }
+  return outputs::to_png(width, height, rgb, outputs::PngEncoding::fast);
+}
+
 }  // namespace
 
 std::size_t reference_link(const Population& population, std::size_t entity) {
@@ -189,6 +208,7 @@ v1::World describe(const Population& from, std::uint64_t generation) {
   to.set_last_tick(from.last_tick);
   add(from.scene.arena.size, *to.mutable_arena_size());
   add(from.scene.arena.center, *to.mutable_arena_center());
+  if (from.scene.floor_image) to.set_floor_picture(floor_png(*from.scene.floor_image));
   for (std::size_t i = 0; i < from.layout.entities.size(); ++i) {
     describe_entity(from, i, to);
     describe_joints(from, i, to);

@@ -92,6 +92,7 @@ class BlobCameras : public Described {
 
   bool sees(Tick& tick, const Robot& robot, const world::DescribedDevice& device,
             const math::Vector3& eye, const math::Vector3& point) const {
+    tick.take_line();
     constexpr double at_target = 1e-4;  // LEDs may be mounted flush [m]
     const std::array own{device.mount.entity};
     auto hit = tick.rays.cast({eye, point, own, false});

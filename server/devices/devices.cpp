@@ -30,6 +30,11 @@ std::unique_ptr<Kind> make_footbot_motor_ground();
 std::unique_ptr<Kind> make_distance_scanner();
 std::unique_ptr<Kind> make_omnidirectional_camera();
 std::unique_ptr<Kind> make_perspective_camera();
+std::unique_ptr<Kind> make_gripper();
+std::unique_ptr<Kind> make_footbot_gripper();
+std::unique_ptr<Kind> make_epuck_proximity();
+std::unique_ptr<Kind> make_epuck_light();
+std::unique_ptr<Kind> make_epuck_ground();
 
 Devices::Devices() {
   constexpr std::array kinds{make_joints,
@@ -53,7 +58,12 @@ Devices::Devices() {
                              make_footbot_motor_ground,
                              make_distance_scanner,
                              make_omnidirectional_camera,
-                             make_perspective_camera};
+                             make_perspective_camera,
+                             make_gripper,
+                             make_footbot_gripper,
+                             make_epuck_proximity,
+                             make_epuck_light,
+                             make_epuck_ground};
   for (const auto make : kinds) kinds_.push_back(make());
 }
 

@@ -1,10 +1,10 @@
-// Ground sensors: how bright the floor of the arena is below a point, as its picture says.
+// Ground sensors: how bright the floor of the arena is below a point, as its picture says, and what
+// directors painted over it.
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "devices/described.h"
@@ -21,18 +21,14 @@ constexpr world::DeviceKind motor_ground{.name = "footbot_motor_ground",
                                          .readings = {{"value"}},
                                          .properties = {{"offset_x", "m"}, {"offset_y", "m"}}};
 
-constexpr double white = 1;
+constexpr world::DeviceKind epuck_ground{.name = "epuck_ground",
+                                         .readings = {{"value"}},
+                                         .properties = {{"offset_x", "m"}, {"offset_y", "m"}}};
 
-/// Brightness of a pixel as the eye weighs its colours, 0 ... 1 (ITU-R BT.601).
-double brightness(const std::uint8_t* rgb) {
-  return (299 * rgb[0] + 587 * rgb[1] + 114 * rgb[2]) / (1000 * 255.0);  // of white exactly 1
-}
-
-/// Pixel of a place on a side of the arena; none outside.
-std::optional<std::size_t> pixel(double place, double center, double size, unsigned pixels) {
-  const double at = std::floor(((place - center) / size + 0.5) * pixels);
-  if (!(at >= 0 && at < pixels)) return std::nullopt;
-  return static_cast<std::size_t>(at);
+/// Brightness of a colour as the eye weighs its parts, 0 ... 1 (ITU-R BT.601); of white exactly 1.
+double brightness(world::Color color) {
+  const double red = color >> 16, green = color >> 8 & 0xFF, blue = color & 0xFF;
+  return (299 * red + 587 * green + 114 * blue) / (1000 * 255.0);
 }
 
 class GroundSensors final : public Described {
@@ -51,21 +47,18 @@ class GroundSensors final : public Described {
     arena_ = setting.scene.arena;
   }
 
-  /// The picture covers the arena: right is +x, up is +y. All around is white.
-  double brightness_at(const math::Vector3& place) const {
-    if (!image_) return white;
-    const auto column = pixel(place.x(), arena_.center.x(), arena_.size.x(), image_->width);
-    const auto row = pixel(place.y(), arena_.center.y(), arena_.size.y(), image_->height);
-    if (!column || !row) return white;
-    const std::size_t from_top = image_->height - 1 - *row;
-    return brightness(&image_->rgb[3 * (from_top * image_->width + *column)]);
+  double brightness_at(const world::State& state, const math::Vector3& place) const {
+    if (const auto painted = painted_color(state.floor, place.x(), place.y()))
+      return brightness(*painted);
+    return brightness(image_ ? scene::floor_color(*image_, arena_, place.x(), place.y())
+                             : scene::floor_without_image);
   }
 
   void read(Tick& tick, Robot& robot) override {
     for (std::size_t i = 0; i < robot.devices.count; ++i) {
       const world::DescribedDevice& device = tick.layout.described[robot.devices.begin + i];
-      const double seen =
-          with_noise(robot, brightness_at(world::position_of(tick.state, device.mount)));
+      const double seen = with_noise(
+          robot, brightness_at(tick.state, world::position_of(tick.state, device.mount)));
       const bool is_binary = !robot.places[i].settings.empty();
       tick.observations.device_readings[device.readings.begin] =
           is_binary ? (seen < 0.5 ? 0.0 : 1.0) : std::clamp(seen, 0.0, 1.0);
@@ -79,6 +72,7 @@ class GroundSensors final : public Described {
 }  // namespace
 
 std::unique_ptr<Kind> make_ground() { return std::make_unique<GroundSensors>(ground); }
+std::unique_ptr<Kind> make_epuck_ground() { return std::make_unique<GroundSensors>(epuck_ground); }
 std::unique_ptr<Kind> make_footbot_base_ground() {
   return std::make_unique<GroundSensors>(base_ground);
 }

@@ -17,6 +17,9 @@ constexpr world::DeviceKind footbot_light{
 constexpr world::DeviceKind eyebot_light{
     .name = "eyebot_light", .readings = {{"value"}}, .properties = {{"angle", "rad"}}};
 
+constexpr world::DeviceKind epuck_light{
+    .name = "epuck_light", .readings = {{"value"}}, .properties = {{"angle", "rad"}}};
+
 /// Direction of a place about +z of its robot from +x, (-pi, pi] [rad].
 double bearing_of(const scene::DevicePlace& place) {
   return std::atan2(place.pose.position.y(), place.pose.position.x());
@@ -65,6 +68,7 @@ class LightSensors : public Described {
   /// Whether nothing stands between two places in W.
   bool sees(Tick& tick, const Robot& robot, const math::Vector3& from, const math::Vector3& to,
             std::span<const std::size_t> ignored) const {
+    tick.take_line();
     const auto hit = tick.rays.cast({from, to, ignored, false});
     tick.show({world::Ray::Kind::device, robot.index, from, to}, hit, robot.use.show_rays);
     return !hit;
@@ -136,5 +140,6 @@ class LightRing final : public LightSensors {
 std::unique_ptr<Kind> make_light() { return std::make_unique<Photodiodes>(); }
 std::unique_ptr<Kind> make_footbot_light() { return std::make_unique<LightRing>(footbot_light); }
 std::unique_ptr<Kind> make_eyebot_light() { return std::make_unique<LightRing>(eyebot_light); }
+std::unique_ptr<Kind> make_epuck_light() { return std::make_unique<LightRing>(epuck_light); }
 
 }  // namespace ziggurat::devices

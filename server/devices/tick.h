@@ -5,6 +5,8 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "media/devices_index.h"
@@ -13,6 +15,7 @@
 #include "scene/scene.h"
 #include "world/commands.h"
 #include "world/layout.h"
+#include "world/limits.h"
 #include "world/state.h"
 
 namespace ziggurat::devices {
@@ -48,7 +51,17 @@ struct Tick {
   physics::World& physics;
   const physics::Rays& rays;
   const media::DevicesIndex& index;
-  std::vector<world::Ray>* all_rays = nullptr;  ///< gets those of all devices; may be null
+  std::vector<world::Ray>* all_rays = nullptr;          ///< gets those of all devices; may be null
+  std::size_t lines_left = world::most_lines_of_sight;  ///< of blob cameras and light sensors
+
+  /// Counts a line of sight. @throws std::runtime_error if there are too many
+  void take_line() {
+    if (lines_left-- > 0) return;
+    throw std::runtime_error("blob cameras and light sensors look along more than " +
+                             std::to_string(world::most_lines_of_sight) +
+                             " lines of sight at a tick; write fewer of them, fewer lights, or "
+                             "smaller ranges and apertures");
+  }
 
   /// Shows a ray up to what it met, if it met something.
   /// @param ray           to the end of its way

@@ -134,6 +134,20 @@ void ContactCache::check_pairs(const math::Archive& archive) const {
   }
 }
 
+void Grip::archive(math::Archive& archive) {
+  archive("entity", entity);
+  archive("held", held);
+  archive("part", part);
+  archive("point", point);
+  archive("distance", distance);
+  archive("height", height);
+  archive("bearing", bearing);
+  archive("max_force", max_force);
+  archive("spin", spin);
+  archive("is_torn", is_torn);
+  archive("impulses", impulses);
+}
+
 void archive_fields(math::Archive& archive, NewtonCore& core) {
   archive("system", core.system_);
   archive("colliders", core.colliders_);
@@ -144,6 +158,19 @@ void archive_fields(math::Archive& archive, NewtonCore& core) {
     archive("motor_impulse", joint.motor_impulse);
   }
   for (NewtonCore::GroundServo& held : core.ground_servos_) archive("held", held.impulses);
+  const std::size_t entities = core.system_.trees.size();
+  archive.list("grips", core.grips_, entities);
+  for (std::size_t i = 0; i < core.grips_.size(); ++i) {
+    const Grip& grip = core.grips_[i];
+    archive.require(i == 0 || core.grips_[i - 1].entity < grip.entity, "grips out of order");
+    archive.require(grip.entity < entities && grip.held < entities && grip.entity != grip.held &&
+                        grip.part < core.system_.trees[grip.held].links.size(),
+                    "is beyond its list");
+    archive.require(std::ranges::binary_search(core.ground_servos_, grip.entity, {},
+                                               &NewtonCore::GroundServo::entity),
+                    "has no wheels");
+    archive.require(core.system_.trees[grip.held].dofs > 0, "holds what does not move");
+  }
   archive("lags", core.leapfrog_sync_.of_tree);
   archive("islands", core.convergence_.islands);
   archive("not_converged", core.convergence_.not_converged);

@@ -87,6 +87,7 @@ Body make_body(const scene::Entity& entity, const scene::Physics& physics, std::
   body.entity = number;
   body.reference_link = entity.reference_link;
   body.placed = entity.pose;
+  body.is_grippable = entity.is_grippable && entity.movable;
   for (const scene::Magnet& magnet : entity.devices.magnets)
     body.magnets.push_back({.scene = magnet});
   body.origin_from_reference = math::inverse(entity.links[entity.reference_link].offset);

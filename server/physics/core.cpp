@@ -80,7 +80,42 @@ Body NewtonCore::add(const scene::Entity& entity, std::size_t number) {
   return body;
 }
 
+void NewtonCore::grip(std::span<const Body> bodies, std::size_t entity, const Gripper& gripper) {
+  const bool moves = std::ranges::binary_search(ground_servos_, entity, {}, &GroundServo::entity);
+  if (!moves || grip_of(entity)) return;
+  const std::optional<Grip> found = find_grip(bodies[entity], gripper, bodies, colliders_, system_);
+  if (!found) return;
+  grips_.insert(std::ranges::lower_bound(grips_, entity, {}, &Grip::entity), *found);
+  for (const std::size_t tree : {entity, found->held}) system_.wake(static_cast<int>(tree));
+}
+
+void NewtonCore::release(std::size_t entity) {
+  const Grip* const grip = grip_of(entity);
+  if (!grip) return;
+  for (const std::size_t tree : {entity, grip->held}) system_.wake(static_cast<int>(tree));
+  grips_.erase(grips_.begin() + (grip - grips_.data()));
+}
+
+const Grip* NewtonCore::grip_of(std::size_t entity) const {
+  const auto found = std::ranges::lower_bound(grips_, entity, {}, &Grip::entity);
+  return found != grips_.end() && found->entity == entity ? &*found : nullptr;
+}
+
+void NewtonCore::end_grips(std::span<Body> bodies) {
+  for (Grip& grip : grips_) {
+    if (!grip.is_torn) end_substep(grip, bodies);
+  }
+}
+
+/// Ends grips of an entity and on it.
+void NewtonCore::end_grips_with(std::size_t entity) {
+  for (std::size_t i = grips_.size(); i-- > 0;) {
+    if (grips_[i].entity == entity || grips_[i].held == entity) release(grips_[i].entity);
+  }
+}
+
 void NewtonCore::detach(std::size_t entity) {
+  end_grips_with(entity);
   contacts_.forget(entity, system_);
   colliders_.remove(entity);
   ground_servos_.erase(std::ranges::lower_bound(ground_servos_, entity, {}, &GroundServo::entity),
@@ -115,6 +150,7 @@ void NewtonCore::move(Body& body) {
 }
 
 void begin_anew(NewtonCore& core, std::size_t entity) {
+  core.end_grips_with(entity);
   for (CoordinateJoint& joint : joints_of(entity, core.joints_)) {
     joint.limit_impulse = joint.motor_impulse = 0;
   }

@@ -10,6 +10,7 @@
 #include "physics/bodies/bodies.h"
 #include "physics/collision/contact_cache.h"
 #include "physics/collision/overlap.h"
+#include "physics/grips.h"
 #include "physics/motors.h"
 #include "physics/plugin.h"
 #include "physics/stepping/system.h"
@@ -54,6 +55,13 @@ class NewtonCore {
   double position(JointIndex joint) const;  ///< [m] or [rad]
   double velocity(JointIndex joint) const;  ///< [m/s] or [rad/s]
 
+  /// Lets a gripper hold what it touches. Without effect while the robot has a grip, torn or not.
+  void grip(std::span<const Body> bodies, std::size_t entity, const Gripper& gripper);
+  void release(std::size_t entity);               ///< ends the grip of a robot, if there is one
+  const Grip* grip_of(std::size_t entity) const;  ///< null: none
+  /// Tears grips, and turns turrets with them: to be called after a substep.
+  void end_grips(std::span<Body> bodies);
+
   /// Moves all bodies on, with the forces that were applied since the last substep.
   /// @param time_step  [s]
   /// @param splits     a motor may give its impulse in so many substeps
@@ -79,6 +87,7 @@ class NewtonCore {
   };
 
   void detach(std::size_t entity);
+  void end_grips_with(std::size_t entity);
   /// Trees that take a part of a substep, or all of it.
   struct SubstepPart {
     const TreeSet* active = nullptr;  // null: all
@@ -115,6 +124,7 @@ class NewtonCore {
   ContactCache contacts_{colliders_};
   std::vector<CoordinateJoint> joints_;
   std::vector<GroundServo> ground_servos_;
+  std::vector<Grip> grips_;  // ascending by the entity that grips
   std::vector<dynamics::Servo> servos_;
   std::vector<dynamics::Limit> limits_;
   SubstepPartition partition_;

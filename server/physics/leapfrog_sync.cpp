@@ -17,7 +17,7 @@ void synchronise_velocities(LeapfrogSync& lags, dynamics::System& system, dynami
     if (tree >= 0) lags.is_constrained[static_cast<std::size_t>(tree)] = 1;
   };
   for (const dynamics::ContactPoint& contact : contacts) mark(contact.a.tree), mark(contact.b.tree);
-  for (const dynamics::Servo& servo : servos) mark(servo.tree);
+  for (const dynamics::Servo& servo : servos) mark(servo.tree), mark(servo.other.tree);
   for (std::size_t i = 0; i < lags.of_tree.size(); ++i) {
     const int tree = static_cast<int>(i);
     const bool is_divided = division && division->is_divided(tree);

@@ -155,6 +155,15 @@ void NewtonCore::prepare(std::span<Body> bodies, const SubstepPart& part) {
       servos_.push_back(servo);
     }
   });
+  each_of(grips_, part.active, [&](const Grip& grip) {
+    if (grip.is_torn) return;
+    for (dynamics::Servo servo : servos_of(grip, bodies, part.time_step)) {
+      servo.lower *= part.force_share;
+      servo.upper *= part.force_share;
+      servo.impulse *= part.force_share;
+      servos_.push_back(servo);
+    }
+  });
 }
 
 /// Stores the impulses: the next substep starts from them. A part without forces stores none: the
@@ -171,6 +180,10 @@ void NewtonCore::store_impulses(const SubstepPart& part) {
   });
   each_of(ground_servos_, part.active, [&](GroundServo& held) {
     for (double& impulse : held.impulses) impulse = servos_[servo++].impulse / part.force_share;
+  });
+  each_of(grips_, part.active, [&](Grip& grip) {
+    if (grip.is_torn) return;
+    for (double& impulse : grip.impulses) impulse = servos_[servo++].impulse / part.force_share;
   });
 }
 
@@ -204,6 +217,9 @@ void NewtonCore::step(const SubstepPart& part) {
 }
 
 void NewtonCore::substep(std::span<Body> bodies, double time_step, int splits, Plugin* stiff) {
+  for (const Grip& grip : grips_) {
+    if (is_commanded_anew(grip, bodies)) system_.wake(static_cast<int>(grip.entity));
+  }
   SubstepPart whole;
   whole.time_step = whole.time_to_target = time_step;
   whole.splits = splits;
@@ -213,7 +229,7 @@ void NewtonCore::substep(std::span<Body> bodies, double time_step, int splits, P
   std::span<dynamics::ContactPoint> contacts = contacts_.find_contacts(time_step);
   bool woke = false;
   if (stiff) {  // trees with parts must be awake
-    partition_.partition(stiff->stiff_pairs(), contacts_.near_pairs(), {}, colliders_.all,
+    partition_.partition(stiff->stiff_pairs(), contacts_.near_pairs(), {}, servos_, colliders_.all,
                          system_.trees);
     woke = wake_all_except(system_, partition_.trees_with(0));
   }
@@ -225,8 +241,8 @@ void NewtonCore::substep(std::span<Body> bodies, double time_step, int splits, P
     return step_divided_islands(bodies, whole);
   }
   if (woke) {  // trees that woke or were accelerated may touch others
-    partition_.partition(stiff->stiff_pairs(), contacts_.near_pairs(), contacts, colliders_.all,
-                         system_.trees);
+    partition_.partition(stiff->stiff_pairs(), contacts_.near_pairs(), contacts, servos_,
+                         colliders_.all, system_.trees);
   }
   synchronise_velocities(leapfrog_sync_, system_, work_, time_step, &partition_, contacts, servos_);
   whole.active = &partition_.trees_with(0);

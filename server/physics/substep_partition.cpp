@@ -12,6 +12,7 @@ int SubstepPartition::partition(int tree) {
 void SubstepPartition::partition(std::span<const StiffPair> pairs,
                                  std::span<const ColliderPair> near,
                                  std::span<const dynamics::ContactPoint> contacts,
+                                 std::span<const dynamics::Servo> servos,
                                  const std::vector<Collider>& colliders,
                                  const std::vector<dynamics::Tree>& trees) {
   const int count = static_cast<int>(trees.size());
@@ -32,6 +33,10 @@ void SubstepPartition::partition(std::span<const StiffPair> pairs,
   for (const dynamics::ContactPoint& contact : contacts) {
     if (contact.a.tree < 0 || contact.b.tree < 0) continue;
     join(static_cast<std::size_t>(contact.a.tree), static_cast<std::size_t>(contact.b.tree));
+  }
+  for (const dynamics::Servo& servo : servos) {
+    if (servo.other.tree < 0) continue;
+    join(static_cast<std::size_t>(servo.tree), static_cast<std::size_t>(servo.other.tree));
   }
   for (const StiffPair& pair : pairs) {
     for (const std::size_t tree : {pair.a, pair.b}) {

@@ -18,9 +18,11 @@ class SubstepPartition {
   /// @param pairs  the stiff ones
   /// @param near   colliders that may touch within the substep
   /// @param contacts  likewise, of trees that have just woken
+  /// @param servos    those between two trees keep them together
   void partition(std::span<const StiffPair> pairs, std::span<const ColliderPair> near,
                  std::span<const dynamics::ContactPoint> contacts,
-                 const std::vector<Collider>& colliders, const std::vector<dynamics::Tree>& trees);
+                 std::span<const dynamics::Servo> servos, const std::vector<Collider>& colliders,
+                 const std::vector<dynamics::Tree>& trees);
 
   bool is_divided(int tree) const { return parts_[tree] > 0; }
   /// Numbers of parts that occur: ascending, each once.

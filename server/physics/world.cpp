@@ -132,6 +132,17 @@ double World::turret(std::size_t entity) const {
   return parts_->bodies[entity].turret.value().angle;
 }
 
+void World::grip(std::size_t entity, const Gripper& gripper) {
+  parts_->core.grip(parts_->bodies, entity, gripper);
+}
+
+void World::release(std::size_t entity) { parts_->core.release(entity); }
+
+bool World::holds(std::size_t entity) const {
+  const Grip* const grip = parts_->core.grip_of(entity);
+  return grip && !grip->is_torn;
+}
+
 void World::set_currents(std::span<const double> currents) {
   for (Body& body : parts_->bodies) {
     for (std::size_t i = 0; i < body.magnets.size(); ++i) {
@@ -206,6 +217,7 @@ void World::step() {
   for (int split = 0; split < p.splits; ++split) {
     p.plugins.before_substep(p.bodies, p.length);
     p.core.substep(p.bodies, p.length, p.splits, p.plugins.stiff());
+    p.core.end_grips(p.bodies);
     p.plugins.after_substep(p.bodies, p.length, p.core);
   }
 }

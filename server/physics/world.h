@@ -68,6 +68,14 @@ class World {
   void set_turret(std::size_t entity, std::optional<double> speed);
   double turret(std::size_t entity) const;  ///< of the turret in the robot, [-pi, pi] [rad]
 
+  /// Lets a gripper of a robot on wheels hold what it touches, if that may be gripped: a point of
+  /// it, about which it may turn. A turret that follows its robot then turns with what is held.
+  /// Without effect while it holds something, after its grip tore, and of a robot that is fixed.
+  /// @param entity  one with a traction, in order of adding
+  void grip(std::size_t entity, const Gripper& gripper);
+  void release(std::size_t entity);      ///< opens the gripper
+  bool holds(std::size_t entity) const;  ///< false once a grip tore, or what it held was removed
+
   /// Sets the currents of all magnets: current times its active field is added to a magnet's
   /// passive one. 0 at the start; without effect where the scene has no magnetism.
   /// @param currents  of the magnets of all entities, in order of adding

@@ -217,6 +217,23 @@ std::optional<std::string> read_pushes(const Commands& from, const world::Layout
   return std::nullopt;
 }
 
+std::optional<std::string> read_floor_paints(const Commands& from,
+                                             std::vector<world::FloorPaint>& to) {
+  to.clear();
+  for (const auto& paint : from.floor_paints()) {
+    const auto& v = paint.values();
+    world::FloorPaint region{.is_disc = paint.is_disc(), .color = paint.color()};
+    if (v.size() == 4) {
+      region.center = {v[0], v[1]};
+      region.half_size = {v[2], v[3]};
+    }
+    if (!is_valid(region))
+      return "a painted region of the floor has no valid place, size or colour";
+    to.push_back(region);
+  }
+  return std::nullopt;
+}
+
 // --- states -------------------------------------------------------------------------------------
 
 constexpr std::size_t link_width = 13;
@@ -266,6 +283,13 @@ void CommandPacker::pack(const world::Commands& commands, v1::Commands& to) {
     for (const double value : push.force) written.add_values(value);
     for (const double value : push.torque) written.add_values(value);
   }
+  for (const world::FloorPaint& region : commands.floor_paints) {
+    auto& written = *to.add_floor_paints();
+    written.set_is_disc(region.is_disc);
+    written.set_color(region.color);
+    for (const double value : region.center) written.add_values(value);
+    for (const double value : region.half_size) written.add_values(value);
+  }
   is_first_ = false;
 }
 
@@ -286,6 +310,7 @@ std::optional<std::string> unpack(const v1::Commands& from, const world::Layout&
   });
   if (!fault) fault = read_radio_messages(from, layout, state, to.radio_messages);
   if (!fault) fault = read_pushes(from, layout, state, to.pushes);
+  if (!fault) fault = read_floor_paints(from, to.floor_paints);
   for (std::size_t i = 0; !fault && i < to.device_commands.size(); ++i) {
     const world::DeviceCommand& field = *layout.device_commands[i];
     if (to.device_commands[i] >= field.least && to.device_commands[i] <= field.most) continue;

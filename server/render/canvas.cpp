@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <span>
 
+#include "render/floor_picture.h"
+
 namespace ziggurat::render {
 namespace {
 
@@ -18,7 +20,7 @@ constexpr float line_width = 1.5f;       // [px] of the picture
 struct Frame {
   Matrix4 clip_from_camera;
   Matrix4 light_from_camera;
-  std::array<float, 4> sun, right, ahead, up, ground, arena;
+  std::array<float, 4> sun, right, ahead, up, ground, arena, painting;
 };
 
 std::array<float, 4> with(const Float3& xyz, double w) {
@@ -95,6 +97,28 @@ void Canvas::make_shadow_map() {
   gl.named_framebuffer_draw_buffer(shadow_target_, GL_NONE);
 }
 
+/// Draws the colours of the floor into a texture when they change.
+void Canvas::take_floor(const Drawing& drawing, const Model& model) {
+  if (floor_colors_ != 0 ? drawing.floor == floor_ : !model.floor_image && drawing.floor.empty())
+    return;
+  const OpenGl& gl = context_.gl();
+  const FloorPicture picture = floor_picture(model, drawing.floor);
+  const auto width = static_cast<GLsizei>(picture.width),
+             height = static_cast<GLsizei>(picture.height);
+  if (floor_colors_ == 0) {
+    gl.create_textures(GL_TEXTURE_2D, 1, &floor_colors_);
+    gl.texture_storage(floor_colors_, 1, GL_RGBA8, width, height);
+    gl.texture_parameter(floor_colors_, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    gl.texture_parameter(floor_colors_, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    gl.texture_parameter(floor_colors_, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    gl.texture_parameter(floor_colors_, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    gl.bind_texture_unit(1, floor_colors_);
+  }
+  gl.texture_sub_image(floor_colors_, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE,
+                       picture.rgba.data());
+  floor_ = drawing.floor;
+}
+
 void Canvas::make_target(unsigned width, unsigned height) {
   if (width <= target_width_ && height <= target_height_) return;
   const OpenGl& gl = context_.gl();
@@ -156,6 +180,7 @@ void Canvas::set_frame(const Drawing& drawing, const Model& model, const View& v
   frame.arena = {static_cast<float>(center.x()), static_cast<float>(center.y()),
                  static_cast<float>(model.arena_half_size.x()),
                  static_cast<float>(model.arena_half_size.y())};
+  frame.painting[0] = model.floor_image || !drawing.floor.empty() ? 1 : 0;
   context_.gl().named_buffer_data(frame_, sizeof frame, &frame, GL_DYNAMIC_DRAW);
 }
 
@@ -263,6 +288,7 @@ void Canvas::draw(const Drawing& drawing, const Model& model, const View& view, 
                        GL_DYNAMIC_DRAW);
   gl.named_buffer_data(line_instances_, bytes(std::span(drawing.lines)), drawing.lines.data(),
                        GL_DYNAMIC_DRAW);
+  take_floor(drawing, model);
   set_frame(drawing, model, view, {0, 0, view.width, view.height});
   if (drawing.shadow_texel > 0) draw_shadows(drawing);
   const bool with_floor = model.has_floor && view.camera.position.z() != 0;

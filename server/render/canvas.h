@@ -30,6 +30,7 @@ class Canvas {
   void make_mark_arrays();
   void make_line_arrays();
   void make_shadow_map();
+  void take_floor(const Drawing& drawing, const Model& model);
   void make_target(unsigned width, unsigned height);
   void set_frame(const Drawing& drawing, const Model& model, const View& view, const Tile& tile);
   void draw_shadows(const Drawing& drawing);
@@ -48,6 +49,8 @@ class Canvas {
   GLuint mesh_buffers_[2]{};  // vertices and indices
   GLuint body_instances_ = 0, mark_instances_ = 0, line_instances_ = 0, frame_ = 0;
   GLuint shadow_map_ = 0, shadow_target_ = 0;
+  GLuint floor_colors_ = 0;                        // texture; 0: it was not needed yet
+  std::vector<world::FloorPaint> floor_;           // that it shows
   GLuint sampled_ = 0, resolved_ = 0;              // framebuffers: four samples per pixel, and one
   GLuint buffers_[3]{};                            // theirs
   unsigned target_width_ = 0, target_height_ = 0;  // of these [rendered px]

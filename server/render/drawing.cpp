@@ -224,6 +224,7 @@ void Draftsman::draw(const world::State& state, const View& view, Drawing& drawi
   drawing.marks.clear();
   drawing.lines.clear();
   drawing.labels.clear();
+  drawing.floor = state.floor;
   const math::Quaternion camera_from_world = view.camera.orientation.conjugate();
   drawing.right = to_floats(camera_from_world * Vector3::UnitX());
   drawing.ahead = to_floats(camera_from_world * Vector3::UnitY());

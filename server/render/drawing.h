@@ -62,8 +62,9 @@ struct Drawing {
   std::vector<MarkInstance> marks;
   std::vector<LineInstance> lines;
   std::vector<Label> labels;
-  Float3 sun;               ///< unit, towards the sun
-  Float3 right, ahead, up;  ///< world's x, y and z
+  std::vector<world::FloorPaint> floor;  ///< what was painted on it
+  Float3 sun;                            ///< unit, towards the sun
+  Float3 right, ahead, up;               ///< world's x, y and z
   Matrix4
       light_from_camera;    ///< to 0 ... 1 in x and y on the shadow map, and in z away from the sun
   double shadow_texel = 0;  ///< side of a texel of the shadow map [m]; 0: no shadows

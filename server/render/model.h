@@ -1,6 +1,7 @@
 #pragma once
 // Model of a scene's constant looks: the surfaces of its links, and its floor.
 
+#include <memory>
 #include <vector>
 
 #include "scene/scene.h"
@@ -22,6 +23,8 @@ struct Model {
   double tile = 0;                                        ///< side of the squares on the floor [m]
   math::Vector2 arena_center = math::Vector2::Zero();     ///< [m]
   math::Vector2 arena_half_size = math::Vector2::Zero();  ///< [m]
+  std::shared_ptr<const scene::FloorImage> floor_image;   ///< over the arena; null: none
+  scene::Arena arena;
 };
 
 void add_bodies(const scene::Entity& entity, Model& model);

@@ -63,6 +63,7 @@ void find_buffers(const Finder& find, OpenGl& gl) {
   find("glTextureParameteri", gl.texture_parameter);
   find("glTextureParameterfv", gl.texture_parameters);
   find("glTextureStorage2D", gl.texture_storage);
+  find("glTextureSubImage2D", gl.texture_sub_image);
 }
 
 void find_programs(const Finder& find, OpenGl& gl) {

@@ -64,6 +64,7 @@ struct OpenGl {
   decltype(&glTextureParameteri) texture_parameter;
   decltype(&glTextureParameterfv) texture_parameters;
   decltype(&glTextureStorage2D) texture_storage;
+  decltype(&glTextureSubImage2D) texture_sub_image;
   decltype(&glUseProgram) use_program;
   decltype(&glVertexArrayAttribBinding) vertex_array_attrib_binding;
   decltype(&glVertexArrayAttribFormat) vertex_array_attrib_format;

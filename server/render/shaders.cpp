@@ -14,6 +14,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 up;
   vec4 ground;  // side of a tile [m], width of a line in clip coordinates, near plane [m], its height
   vec4 arena;   // centre less the origin of tiles, half size [m]
+  vec4 painting;  // x: 1 if the floor has colours of its own
 };
 layout(binding = 0) uniform sampler2DShadow shadow_map;
 
@@ -146,6 +147,7 @@ void main() {
 )";
 
 const char* const floor_fragment = R"(
+layout(binding = 1) uniform sampler2D floor_colors;
 in vec2 at;
 layout(location = 0) out vec4 pixel;
 
@@ -168,6 +170,10 @@ void main() {
   vec2 beyond = (abs(place - arena.xy) - arena.zw) / max(footprint, 1e-6);
   float inside = clamp(0.5 - max(beyond.x, beyond.y), 0.0, 1.0);
   vec3 albedo = mix(vec3(0.40, 0.41, 0.42), vec3(0.56, 0.57, 0.58), inside) * (1.0 + contrast);
+  if (painting.x > 0.0) {  // a little darker than their colours, because light adds to them
+    vec4 color = texture(floor_colors, (place - arena.xy) / (2.0 * arena.zw) + 0.5);
+    albedo = mix(albedo, 0.9 * pow(color.rgb, vec3(2.2)), color.a * inside);
+  }
   vec3 normal = up.w >= 0.0 ? up.xyz : -up.xyz;
   float extent = length(arena.zw) + abs(up.w);
   float beyond_haze = length(position) - 2.0 * extent, haze = 0.0;

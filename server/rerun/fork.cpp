@@ -234,6 +234,7 @@ std::optional<Ending> Fork::reach(const Parts& parts) {
     world.simulation.commands() = *commanded;  // values stay until a controller changes them
     world.simulation.commands().radio_messages.clear();
     world.simulation.commands().pushes.clear();
+    world.simulation.commands().floor_paints.clear();
   }
   if (!fork_options_.fresh) report(controller_replay, parts.console);
   return std::nullopt;

@@ -30,8 +30,8 @@ using Enable = void (*)(const Enabling&);
 
 struct DeviceRow {
   std::string_view name;
-  std::string_view implementation;
-  std::string_view subject;  ///< of the notice that it has no effect yet; empty: it has
+  std::string_view implementation;  ///< empty: any of those that the dialect has
+  std::string_view subject;         ///< of the notice that it has no effect yet; empty: it has
   Enable enable;
   bool is_carried = true;        ///< an entity must carry it: controllers.cpp checks that
   std::string_view places = {};  ///< of a device that describes itself: DevicePlace::name
@@ -239,20 +239,29 @@ std::array<double, 2> read_sides(Element& element, std::array<const char*, 3> na
   return {element.optional(names[1], read, both), element.optional(names[2], read, both)};
 }
 
-void enable_wheels(const Enabling& e) {
+/// @param deviation  usual one of the factor: of a wheel's speed
+void read_wheels(const Enabling& e, double deviation) {
   const auto bias_mean =
       read_sides(e.element, {"bias_avg", "bias_avg_left", "bias_avg_right"}, number, 0);
   const auto bias_deviation = read_sides(
       e.element, {"bias_stddev", "bias_stddev_left", "bias_stddev_right"}, non_negative, 0);
   const auto factor_mean =
       read_sides(e.element, {"factor_avg", "factor_avg_left", "factor_avg_right"}, number, 1);
-  const auto factor_deviation = read_sides(
-      e.element, {"factor_stddev", "factor_stddev_left", "factor_stddev_right"}, non_negative, 0);
+  const auto factor_deviation =
+      read_sides(e.element, {"factor_stddev", "factor_stddev_left", "factor_stddev_right"},
+                 non_negative, deviation);
   WheelsUse& use = use_of(e.devices.wheels);
   use.actuator = true;
   for (std::size_t i = 0; i < 2; ++i) {
     use.noise[i] = {bias_mean[i], bias_deviation[i], factor_mean[i], factor_deviation[i]};
   }
+}
+
+void enable_wheels(const Enabling& e) { read_wheels(e, 0); }
+
+/// Noise of the e-puck's own wheels is a share of their speed.
+void enable_epuck_wheels(const Enabling& e) {
+  read_wheels(e, e.element.optional("noise_std_dev", non_negative, 0.0));
 }
 
 void enable_wheel_encoders(const Enabling& e) {
@@ -273,6 +282,12 @@ void enable_rays_and_noise(const Enabling& e) {
   e.described->noise = e.element.optional("noise_level", non_negative, 0.0);
 }
 
+/// Sensors of the e-puck read as if they were calibrated.
+void enable_epuck_sensor(const Enabling& e) {
+  enable_rays_and_noise(e);
+  e.element.without_effect("calibrated", boolean, "all sensors are alike");
+}
+
 /// The sensor is also the switch: scripts turn the camera on.
 void enable_blob_camera(const Enabling& e) {
   e.described->actuator = true;
@@ -286,6 +301,13 @@ void enable_scanner(const Enabling& e) {
   e.element.without_effect("noise_range", text, "the distance scanner has no noise");
 }
 
+/// The actuator also tells whether the gripper holds something. [N]
+void enable_gripper(const Enabling& e) {
+  constexpr double usual = 10'000;
+  e.described->sensor = true;
+  e.described->strength = e.element.optional("max_force", positive, usual);
+}
+
 void enable_nothing(const Enabling&) {}
 
 // --- devices that are only checked so far -------------------------------------------------------
@@ -297,7 +319,7 @@ void enable_plain(const Enabling& e) {
 
 // --- the tables ---------------------------------------------------------------------------------
 
-constexpr std::array<DeviceRow, 14> actuator_rows{{
+constexpr auto actuator_rows = std::to_array<DeviceRow>({
     {"joints", "default", "", enable_joint_actuators, false},
     {"radios", "default", "", enable_radios_actuator},
     {"leds", "default", "", enable_leds},
@@ -305,16 +327,20 @@ constexpr std::array<DeviceRow, 14> actuator_rows{{
     {"tags", "default", "", enable_tags},
     {"magnets", "default", "", enable_magnets},
     {"differential_steering", "default", "", enable_wheels},
-    {"gripper", "default", "gripper devices", enable_plain},
+    {"gripper", "default", "", enable_gripper, true, "gripper"},
     {"range_and_bearing", "default", "", enable_range_and_bearing_actuator},
     {"quadrotor_position", "default", "quadrotor_position devices", enable_plain},
     {"quadrotor_speed", "default", "quadrotor_speed devices", enable_plain},
     {"footbot_turret", "default", "", enable_turret},
-    {"footbot_gripper", "default", "footbot_gripper devices", enable_plain},
+    {"footbot_gripper", "default", "", enable_gripper, true, "gripper"},
     {"footbot_distance_scanner", "default", "", enable_nothing, true, "footbot_distance_scanner"},
-}};
+    {"wifi", "default", "", enable_radios_actuator},
+    {"epuck_wheels", "", "", enable_epuck_wheels},
+    {"epuck_leds", "", "", enable_leds},
+    {"epuck_range_and_bearing", "", "", enable_range_and_bearing_actuator},
+});
 
-constexpr std::array<DeviceRow, 21> sensor_rows{{
+constexpr auto sensor_rows = std::to_array<DeviceRow>({
     {"joints", "default", "", enable_joint_sensors, false},
     {"radios", "default", "", enable_radios_sensor},
     {"cameras", "default", "", enable_cameras, false},
@@ -339,10 +365,18 @@ constexpr std::array<DeviceRow, 21> sensor_rows{{
     {"footbot_turret_encoder", "default", "", enable_turret_encoder},
     {"footbot_distance_scanner", "rot_z_only", "", enable_scanner, true,
      "footbot_distance_scanner"},
-}};
+    {"wifi", "default", "", enable_radios_sensor},
+    {"epuck_wheels", "", "", enable_wheel_encoders},
+    {"epuck_proximity", "", "", enable_epuck_sensor, true, "infrared"},
+    {"epuck_light", "", "", enable_epuck_sensor, true, "infrared"},
+    {"epuck_ground", "", "", enable_epuck_sensor, true, "ground"},
+    {"epuck_range_and_bearing", "", "", enable_range_and_bearing_sensor},
+});
 
 void read_device(const Enabling& e, const DeviceRow& row) {
-  e.element.required("implementation", Words{row.implementation});
+  e.element.required("implementation", row.implementation.empty()
+                                           ? Words{"default", "rot_z_only", "medium"}
+                                           : Words{row.implementation});
   if (!row.subject.empty()) {
     e.devices.to_come.emplace_back(row.name);
     e.draft.report.warn(

@@ -128,10 +128,10 @@ constexpr std::array<Component, 8> components{{
 }};
 
 constexpr std::array<Component, 6> robot_components{{
+    {"wifi", [](const Entity& e) { return e.kind == EntityKind::foot_bot; }, ""},
     {"differential_steering", [](const Entity& e) { return e.axle_length.has_value(); }, ""},
     {"footbot_turret", [](const Entity& e) { return e.turret.has_value(); }, ""},
     {"footbot_turret_encoder", [](const Entity& e) { return e.turret.has_value(); }, ""},
-    {"gripper", [](const Entity& e) { return e.kind == EntityKind::foot_bot; }, ""},
     {"quadrotor_position", [](const Entity&) { return false; }, ""},
     {"quadrotor_speed", [](const Entity&) { return false; }, ""},
 }};
@@ -141,7 +141,8 @@ bool comes_with(const Entity& entity, std::string_view device) {
   for (const Component& component : robot_components) {
     if (component.device == device) return component.is_carried(entity);
   }
-  return entity.kind == EntityKind::foot_bot || !device.starts_with("footbot_");
+  return (entity.kind == EntityKind::foot_bot || !device.starts_with("footbot_")) &&
+         (entity.kind == EntityKind::e_puck || !device.starts_with("epuck_"));
 }
 
 std::string_view kind_of(const Entity& entity) {

@@ -283,6 +283,7 @@ struct DescribedUse {
   bool actuator = false, sensor = false;
   bool show_rays = false;
   double noise = 0;                   ///< in the kind's unit, >= 0
+  double strength = 0;                ///< likewise
   std::optional<std::size_t> medium;  ///< index into Scene::media
 };
 

@@ -103,6 +103,11 @@ bool needs_controller(EntityKind kind) {
   return kind == EntityKind::foot_bot || kind == EntityKind::e_puck;
 }
 
+/// As the dialect's gripper holds them: what moves, but neither e-pucks nor prototypes.
+bool is_usually_gripped(const Entity& entity) {
+  return entity.movable && (is_single(entity.kind) || entity.kind == EntityKind::foot_bot);
+}
+
 }  // namespace
 
 std::optional<EntityKind> entity_kind(std::string_view name) {
@@ -207,9 +212,9 @@ void read_body_and_devices(Draft& draft, Element& element, Entity& entity) {
       read_robot(draft, element, entity);
       break;
     case EntityKind::light:
-      read_light(draft, element, entity);
-      break;
+      return read_light(draft, element, entity);
   }
+  entity.is_grippable = element.optional("grippable", boolean, is_usually_gripped(entity));
 }
 
 Entity read_entity(Draft& draft, Element& element, Placement placement) {

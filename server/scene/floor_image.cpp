@@ -4,7 +4,10 @@
 #include <png.h>
 
 #include <charconv>
+#include <cmath>
 #include <optional>
+
+#include "scene/scene.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -75,7 +78,23 @@ std::variant<FloorImage, std::string> read_anymap(std::string_view bytes) {
   return image;
 }
 
+/// Pixel of a place on a side of the arena; none outside.
+std::optional<std::size_t> pixel(double place, double center, double size, unsigned pixels) {
+  const double at = std::floor(((place - center) / size + 0.5) * pixels);
+  if (!(at >= 0 && at < pixels)) return std::nullopt;
+  return static_cast<std::size_t>(at);
+}
+
 }  // namespace
+
+std::uint32_t floor_color(const FloorImage& image, const Arena& arena, double x, double y) {
+  const auto column = pixel(x, arena.center.x(), arena.size.x(), image.width);
+  const auto row = pixel(y, arena.center.y(), arena.size.y(), image.height);
+  if (!column || !row) return floor_without_image;
+  const std::uint8_t* const rgb =
+      &image.rgb[3 * ((image.height - 1 - *row) * image.width + *column)];
+  return std::uint32_t{rgb[0]} << 16 | std::uint32_t{rgb[1]} << 8 | rgb[2];
+}
 
 std::variant<FloorImage, std::string> read_floor_image(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG")) return read_png(bytes);

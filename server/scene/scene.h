@@ -143,6 +143,7 @@ struct Entity {
   std::optional<Traction> traction;   ///< robots on wheels; their body is the reference link
   std::optional<double> axle_length;  ///< distance between its two driven wheels [m]
   std::optional<std::size_t> turret;  ///< index into links: a frame that turns about its z
+  bool is_grippable = false;          ///< grippers may hold it
   std::optional<double> intensity;    ///< of a light, which has one LED and no body; >= 0
   Devices devices;
   std::optional<std::size_t> controller;                    ///< index into Scene::controllers

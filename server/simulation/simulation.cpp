@@ -234,6 +234,8 @@ std::optional<std::size_t> first_not_finite(const world::Layout& layout,
 
 void Parts::step() {
   devices::Tick now = tick();
+  for (const world::FloorPaint& region : commands.floor_paints) world::paint(state.floor, region);
+  commands.floor_paints.clear();
   state.rays.clear();
   all_rays.clear();
   state.frusta.clear();

@@ -113,6 +113,20 @@ void apply_show(const world::EntityLayout& entity, const wire::Show& show,
   copy(show.tag_payloads, entity.tags, commands.tag_payloads);
 }
 
+/// Painted at the next step, with what others paint before it.
+std::optional<wire::Fault> paint(const world::FloorPaint& region,
+                                 simulation::Simulation& simulation) {
+  auto& paints = simulation.commands().floor_paints;
+  if (simulation.state().floor.size() + paints.size() < world::most_floor_paints) {
+    paints.push_back(region);
+    return std::nullopt;
+  }
+  return make_fault(ErrorCode::too_many, "paint_floor",
+                    fmt::format("The floor has {} painted regions; paint one that hides others "
+                                "wholly, for example all of the arena, and they are forgotten.",
+                                world::most_floor_paints));
+}
+
 const std::string& id_of(const wire::DirectorAct& act) {
   if (const auto* show = std::get_if<wire::Show>(&act)) return show->entity;
   if (const auto* push = std::get_if<wire::Push>(&act)) return push->entity;
@@ -189,6 +203,7 @@ std::optional<wire::Fault> Directing::check(const wire::Direction& direction) co
   };
   for (std::size_t i = 0; i < direction.acts.size(); ++i) {
     const wire::DirectorAct& act = direction.acts[i];
+    if (std::holds_alternative<world::FloorPaint>(act)) continue;
     const std::string& id = id_of(act);
     if (is_spawn(act)) {
       auto read = population_.read(id, is_taken, asked.spawns);  // the text is the element
@@ -225,6 +240,7 @@ std::optional<wire::Fault> Directing::apply(const wire::DirectorAct& act, Names&
     if (!fault) names.come();
     return fault;
   }
+  if (const auto* region = std::get_if<world::FloorPaint>(&act)) return paint(*region, simulation);
   const std::string& id = id_of(act);
   const auto entity = names.find(id);
   if (!entity) return no_entity(fmt::format("{}.entity", name_of(act)), id);

@@ -51,9 +51,28 @@ std::optional<Fault> check_show(const v1::Show& show, std::size_t act) {
   return std::nullopt;
 }
 
+/// A region without size, which is not valid, if its lists have wrong lengths.
+world::FloorPaint region_of(const v1::PaintFloor& from) {
+  world::FloorPaint region{.is_disc = from.size_size() == 1, .color = from.color()};
+  if (from.center_size() != 2 || from.size_size() < 1 || from.size_size() > 2) return region;
+  region.center = {from.center(0), from.center(1)};
+  region.half_size = region.is_disc ? std::array{from.size(0), from.size(0)}
+                                    : std::array{from.size(0) / 2, from.size(1) / 2};
+  return region;
+}
+
+std::optional<Fault> check_paint(const v1::PaintFloor& paint, std::size_t act) {
+  if (is_valid(region_of(paint))) return std::nullopt;
+  return fault_of(ErrorCode::bad_value, act, "paint_floor",
+                  "A painted region has a center of two numbers from -1e6 to 1e6, a size of two "
+                  "numbers (a rectangle) or one (the radius of a disc) above 0, and a color "
+                  "0xRRGGBB.");
+}
+
 std::optional<Fault> check_act(const v1::DirectorAct& act, std::size_t number) {
   if (act.has_push()) return check_push(act.push(), number);
   if (act.has_show()) return check_show(act.show(), number);
+  if (act.has_paint_floor()) return check_paint(act.paint_floor(), number);
   if (act.act_case() != v1::DirectorAct::ACT_NOT_SET) return std::nullopt;
   return make_fault(ErrorCode::bad_value, fmt::format("acts[{}]", number),
                     "The act has no kind that this server knows.");
@@ -77,6 +96,7 @@ DirectorAct read(const v1::DirectorAct& from) {
     const v1::Push& push = from.push();
     return Push{push.entity(), push.link(), vector_of(push.force()), vector_of(push.torque())};
   }
+  if (from.has_paint_floor()) return region_of(from.paint_floor());
   if (from.has_move()) return wire::read(from.move());
   if (from.has_set_joint()) return wire::read(from.set_joint());
   Request request;

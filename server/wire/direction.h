@@ -40,7 +40,7 @@ struct Push {
 };
 
 /// A Request is one to move, spawn or remove.
-using DirectorAct = std::variant<Request, Show, Push>;
+using DirectorAct = std::variant<Request, Show, Push, world::FloorPaint>;
 
 /// Checked, but for what only the world can tell.
 struct Direction {

@@ -44,10 +44,23 @@ void archive_numbers(math::Archive& archive, std::string_view name, std::vector<
   }
 }
 
+void archive_floor(math::Archive& archive, std::string_view name, std::vector<FloorPaint>& floor) {
+  archive.list(
+      name, floor,
+      [&](FloorPaint& region) {
+        archive("center", region.center);
+        archive("half_size", region.half_size);
+        archive("is_disc", region.is_disc);
+        archive("color", region.color);
+        archive.require(is_valid(region), "is no region of a floor");
+      },
+      most_floor_paints);
+}
+
 }  // namespace
 
 void archive(math::Archive& archive, const Layout& layout, State& state) {
-  static_assert(field_count<State>() == 12);
+  static_assert(field_count<State>() == 13);
   archive("tick", state.tick);
   archive("time_ns", state.time_ns);
   archive("origins", state.origins);
@@ -59,6 +72,7 @@ void archive(math::Archive& archive, const Layout& layout, State& state) {
   archive("tag_payloads", state.tag_payloads);
   archive("magnet_fields", state.magnet_fields);
   archive("range_and_bearing_data", state.range_and_bearing_data);
+  archive_floor(archive, "floor", state.floor);
   archive.list("rays", state.rays, [&](Ray& ray) {
     math::archive_choice(archive, "kind", ray.kind, Ray::Kind::device);
     math::archive_index(archive, "robot", ray.robot, layout.robots.size());
@@ -155,7 +169,7 @@ void archive(math::Archive& archive, const Layout& layout, const State& state,
 }
 
 void archive(math::Archive& archive, const Layout& layout, Commands& commands) {
-  static_assert(field_count<Commands>() == 13);
+  static_assert(field_count<Commands>() == 14);
   archive("joint_targets", commands.joint_targets);
   archive("led_colors", commands.led_colors);
   archive("directional_led_colors", commands.directional_led_colors);
@@ -174,6 +188,7 @@ void archive(math::Archive& archive, const Layout& layout, Commands& commands) {
     archive("force", push.force);
     archive("torque", push.torque);
   });
+  archive_floor(archive, "floor_paints", commands.floor_paints);
   archive("device_commands", commands.device_commands);
 }
 

@@ -10,6 +10,7 @@
 
 #include "world/channel.h"
 #include "world/devices.h"
+#include "world/floor.h"
 #include "world/limits.h"
 #include "world/radio_messages.h"
 
@@ -47,6 +48,8 @@ struct Commands {
   RadioMessages radio_messages;
   /// By directors, during the next tick, which empties it; no robot sets any.
   std::vector<Push> pushes;
+  /// By directors, before the next tick, which empties it; no robot sets any.
+  std::vector<FloorPaint> floor_paints;
   std::vector<double> device_commands;  ///< within the limits of Layout::device_commands
 };
 
@@ -110,6 +113,7 @@ inline constexpr std::tuple commanded{
         driven_turret, nullptr, finite, Released::zeroed},
     ByHand{&Commands::radio_messages, Hashed::no},
     ByHand{&Commands::pushes, Hashed::no},
+    ByHand{&Commands::floor_paints, Hashed::no},
     Commanded<double>{&Commands::device_commands, "device_commands", nullptr,
         "command of a device", "commands of devices",
         all<&Ranges::device_commands>, nullptr, finite, Released::described},

@@ -13,6 +13,7 @@
 
 #include "math/pose.h"
 #include "world/channel.h"
+#include "world/color.h"
 #include "world/described.h"
 #include "world/mount.h"
 #include "world/radio_messages.h"
@@ -20,9 +21,6 @@
 namespace ziggurat::world {
 
 // --- layout -------------------------------------------------------------------------------------
-
-/// A colour as 0xRRGGBB. 0 is off: not visible to anyone.
-using Color = std::uint32_t;
 
 /// A joint with an encoder: an entry of Observations::joint_readings.
 struct JointSensorLayout {

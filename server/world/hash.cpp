@@ -61,6 +61,15 @@ struct Hasher {
       add(messages.payload(entry));
     }
   }
+  /// Nothing of a floor that was not painted.
+  void add(const std::vector<FloorPaint>& floor) {
+    for (const FloorPaint& region : floor) {
+      hash.add(std::span(region.center));
+      hash.add(std::span(region.half_size));
+      add(std::uint64_t{region.is_disc});
+      add(region.color);
+    }
+  }
   void add(const std::vector<RangeAndBearingPacket>& packets) {
     const std::span data(observations.range_and_bearing_data);
     add(std::uint64_t{packets.size()});

@@ -14,7 +14,8 @@ inline constexpr std::size_t most_radio_messages_per_robot = std::size_t{1} << 1
 inline constexpr std::size_t most_received_messages = std::size_t{1} << 24;
 /// Pairs of range-and-bearing devices that reach each other at a tick.
 inline constexpr std::size_t most_pairs_in_range = std::size_t{1} << 24;
-/// Lines of sight that all cameras test at a tick: one for an LED in view, up to four for a tag.
+/// Lines of sight that all cameras test at a tick: one for an LED in view, up to four for a tag;
+/// and, counted apart, those of blob cameras and light sensors.
 inline constexpr std::size_t most_lines_of_sight = std::size_t{1} << 24;
 inline constexpr std::size_t most_tag_payload_bytes = std::size_t{64} << 10;
 /// Limit of each component of a director's push, in newtons and newton metres.

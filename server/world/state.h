@@ -11,6 +11,7 @@
 
 #include "math/pose.h"
 #include "world/channel.h"
+#include "world/floor.h"
 #include "world/layout.h"
 
 namespace ziggurat::world {
@@ -60,6 +61,8 @@ struct State {
   std::vector<math::Vector3> magnet_fields;          ///< anchor frame, the dialect's unit
   std::vector<std::uint8_t> range_and_bearing_data;  ///< at RangeAndBearingLayout::data
 
+  std::vector<FloorPaint> floor;  ///< in the order of painting
+
   std::vector<Ray> rays;
   std::vector<Frustum> frusta;
 
@@ -78,6 +81,7 @@ inline constexpr std::tuple state_fields{
     Shown<std::string>{&State::tag_payloads, "tag_payloads", &EntityLayout::tags},
     Shown<math::Vector3>{&State::magnet_fields},
     Shown<std::uint8_t>{&State::range_and_bearing_data},
+    ByHand{&State::floor, Hashed::second},
     ByHand{&State::rays, Hashed::no},
     ByHand{&State::frusta, Hashed::no},
 };

@@ -42,6 +42,18 @@ void add_numbers(const Numbers& from, const char* what, std::string_view entity,
   }
 }
 
+template <typename Size>
+void add_paint(Directing& to, const std::array<double, 2>& center, const Size& size, Color color) {
+  for (const double length : size) {
+    if (!(length > 0)) throw std::invalid_argument("a painted region must have a size above 0");
+  }
+  v1::PaintFloor paint;
+  add_numbers(center, "the center of a region of", "the floor", *paint.mutable_center());
+  add_numbers(size, "the size of a region of", "the floor", *paint.mutable_size());
+  paint.set_color(packed(color));
+  to.add_act(0).mutable_paint_floor()->Swap(&paint);
+}
+
 /// @throws std::invalid_argument without an id
 const DirectorOptions& checked(const DirectorOptions& options) {
   if (!options.director.empty() || !options.session_token.empty()) return options;
@@ -166,6 +178,15 @@ void Director::push(std::string_view entity, const std::array<double, 3>& force,
   add_numbers(force, "the force on", entity, *push.mutable_force());
   add_numbers(torque, "the torque on", entity, *push.mutable_torque());
   state_->part.add_act(entity.size() + link.size()).mutable_push()->Swap(&push);
+}
+
+void Director::paint_floor(const std::array<double, 2>& center, const std::array<double, 2>& size,
+                           Color color) {
+  add_paint(state_->part, center, size, color);
+}
+
+void Director::paint_floor(const std::array<double, 2>& center, double radius, Color color) {
+  add_paint(state_->part, center, std::array{radius}, color);
 }
 
 void Director::set_leds(std::string_view entity, std::span<const Color> colors) {

@@ -25,9 +25,22 @@ constexpr FunctionShape scanner_functions[] = {
     {"set_rpm", "set_rpm(turns_per_minute)", true, {{{"mode", 2}, {"speed", 0, turns_per_minute}}}},
 };
 
+constexpr FunctionShape gripper_functions[] = {
+    {"lock", "lock()", false, {{{"lock", 1}}}},
+    {"unlock", "unlock()", false, {{{"lock", 0}}}},
+};
+constexpr FunctionShape footbot_gripper_functions[] = {
+    {"lock_positive", "lock_positive()", false, {{{"lock", 1}}}},
+    {"lock_negative", "lock_negative()", false, {{{"lock", 1}}}},
+    {"unlock", "unlock()", false, {{{"lock", 0}}}},
+};
+
 constexpr Shape shapes[] = {
     {"footbot_light", "light"},
     {"eyebot_light", "light"},
+    {"epuck_light", "light"},
+    {"epuck_proximity", "proximity"},
+    {"epuck_ground", "ground", offsets},
     {"footbot_base_ground", "base_ground", offsets},
     {"footbot_motor_ground", "motor_ground", offsets},
     {"footbot_distance_scanner",
@@ -39,6 +52,8 @@ constexpr Shape shapes[] = {
     {"colored_blob_omnidirectional_camera", "colored_blob_omnidirectional_camera", distances,
      switches},
     {"colored_blob_perspective_camera", "colored_blob_perspective_camera", {}, switches},
+    {"gripper", "gripper", {}, gripper_functions},
+    {"footbot_gripper", "gripper", {}, footbot_gripper_functions},
 };
 
 }  // namespace

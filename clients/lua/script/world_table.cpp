@@ -231,6 +231,41 @@ int set_tags(lua_State* state) {
   return 0;
 }
 
+constexpr const char* paint_usage =
+    "world.floor.paint({x =, y =, radius =} or {x =, y =, width =, height =}, color)";
+
+/// A number of the table at index 1; none where it has no such field.
+std::optional<double> length_of(lua_State* state, const char* name) {
+  lua_getfield(state, 1, name);
+  const bool is_there = !lua_isnil(state, -1);
+  const double number = lua_type(state, -1) == LUA_TNUMBER ? lua_tonumber(state, -1) : NAN;
+  lua_pop(state, 1);
+  if (!is_there) return std::nullopt;
+  if (!std::isfinite(number)) luaL_error(state, "%s of the region must be a finite number", name);
+  return number;
+}
+
+int paint_floor(lua_State* state) {
+  check_count(state, 2, 2, paint_usage);
+  check_table(state, 1);
+  const auto x = length_of(state, "x"), y = length_of(state, "y");
+  const auto radius = length_of(state, "radius");
+  const auto width = length_of(state, "width"), height = length_of(state, "height");
+  const bool is_disc = radius && !width && !height, is_rectangle = !radius && width && height;
+  if (!x || !y || !(is_disc || is_rectangle))
+    luaL_argerror(state, 1, "{x =, y =, radius =} or {x =, y =, width =, height =} expected");
+  if (radius.value_or(1) <= 0 || width.value_or(1) <= 0 || height.value_or(1) <= 0)
+    luaL_argerror(state, 1, "a region with a size above 0 expected");
+  const Color color = check_color(state, 2);
+  if (is_disc) {
+    director_of(state).paint_floor({*x, *y}, *radius, color);
+  } else {
+    director_of(state).paint_floor({*x, *y}, {*width, *height}, color);
+  }
+  note_act(state);
+  return 0;
+}
+
 int metric(lua_State* state) {
   check_count(state, 2, 2, "metric(name, value)");
   const std::string_view name = check_text(state, 1);
@@ -343,6 +378,9 @@ void push_world(lua_State* state, const WorldParts& parts) {
   set_function<set_colors<&Director::set_directional_leds, &Entity::directional_leds>>(
       state, "set_directional_leds", &director);
   set_function<set_tags>(state, "set_tags", &director);
+  lua_newtable(state);
+  set_function<paint_floor>(state, "paint", &director);
+  lua_setfield(state, -2, "floor");
   set_function<metric>(state, "metric", &director);
   set_function<finish>(state, "finish", &director);
   set_function<contacts>(state, "contacts", &director);

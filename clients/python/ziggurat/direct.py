@@ -272,6 +272,14 @@ class World(Session):
     def remove(self, entity: str) -> None:
         self._act(remove=v1.RemoveRequest(entity=entity))
 
+    def paint_floor(self, center: Sequence[float], size: Union[float, Sequence[float]], color: Any) -> None:
+        """A region of the floor gets a colour (0xRRGGBB, or red, green and blue), which stays; ground sensors read it
+        from the next tick on.
+        center  x, y [m]
+        size    along x and y [m]: a rectangle; one number: the radius of a disc [m]"""
+        sides = [size] if isinstance(size, (int, float)) else size
+        self._act(paint_floor=v1.PaintFloor(center=center, size=sides, color=_packed(color)))
+
     def metric(self, name: str, value: float) -> None:
         """A figure of the run: `ID/name` in its summary, ID being this director's."""
         self._figures.set(0, name, value)

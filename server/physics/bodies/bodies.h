@@ -96,7 +96,8 @@ struct Body {
   std::vector<Magnet> magnets;
   std::optional<GroundMotion> ground;  ///< robots on wheels, and bodies on a plane
   std::optional<Turret> turret;
-  bool watched = false;  ///< contacts of one of its links are
+  bool is_grippable = false;  ///< grippers may hold it
+  bool watched = false;       ///< contacts of one of its links are
 
   std::optional<Articulation> articulation;  ///< in the core; none: it was removed
 

@@ -20,6 +20,14 @@ struct LinkTouch {
                          ///< against each other, `impulse` is less
 };
 
+/// Gripper at the front of a robot's turret, or of the robot: an upright cylinder from its floor
+/// on.
+struct Gripper {
+  double distance = 0;            ///< of its axis from the robot's [m]
+  double radius = 0, height = 0;  ///< [m]
+  double max_force = 0;           ///< with which it holds [N]
+};
+
 /// Convergence of the contact solver since the world began.
 struct Convergence {
   std::size_t islands = 0;        ///< solved, over all substeps

@@ -45,8 +45,8 @@ struct ContactPoint {
   Vector3 angular_impulse{0, 0, 0};  ///< of rolling and spinning friction [N m s]
 };
 
-/// A motor, a brake or a limit: a bounded impulse along one dof, or along a direction at a link. It
-/// drives that speed to a target.
+/// A motor, a brake or a grip: a bounded impulse along one dof, along a direction at a link, or
+/// between points of two links. It drives that speed to a target.
 struct Servo {
   int tree = -1;
   int dof = -1;  ///< of the tree; -1: along `direction` at `link`
@@ -55,6 +55,10 @@ struct Servo {
   double target_velocity = 0;   ///< at the end of the substep [rad/s] or [m/s]
   double lower = 0, upper = 0;  ///< of the impulse [N m s] or [N s]; lower <= 0 <= upper
   double impulse = 0;           ///< in: of the last substep; out: of this one
+  /// Link of another tree that the opposite impulse acts on, if there is one: then the speed is
+  /// that of `link` relative to it, where both are at `point`, and `direction` is linear.
+  LinkIndex other;
+  Vector3 point{0, 0, 0};  ///< in the world [m]
 };
 
 /// A bound of a revolute or prismatic joint.

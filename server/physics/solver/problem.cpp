@@ -301,33 +301,50 @@ void Problem::add(const ContactPoint& contact, int a, int b, int source) {
   set_normal_target(constraint);
   if (a >= 0 && b >= 0) add_rotation_correction(constraint, contact);
   constraint.restitution = contact.restitution;
-  if (a >= 0 && b >= 0 && a != b) {
-    const std::pair<int, int> pair(std::min(a, b), std::max(a, b));
-    if (couplings.empty() || couplings.back() != pair) couplings.push_back(pair);
-  }
+  if (a >= 0 && b >= 0 && a != b) add_coupling(a, b);
 }
 
-void Problem::add(const Servo& servo, int index, int source) {
+void Problem::add_coupling(int a, int b) {
+  const std::pair<int, int> pair(std::min(a, b), std::max(a, b));
+  if (couplings.empty() || couplings.back() != pair) couplings.push_back(pair);
+}
+
+/// Adds the rows of a servo between two trees.
+void Problem::add_grip_rows(const Servo& servo, int other, Constraint& constraint) {
+  constraint.b = other;
+  constraint.frame = frame_about(servo.direction.linear);
+  add_contact_rows(*trees[constraint.a], servo.link, servo.point, constraint, 1);
+  add_contact_rows(*trees[other], servo.other.link, servo.point, constraint, -1);
+  add_coupling(constraint.a, other);
+  if (!has_normal_mobility(*this, constraint)) constraint.law = Constraint::Law::off;
+}
+
+void Problem::add(const Servo& servo, int index, int other, int source) {
   const Tree& tree = *trees[index];
   Constraint& constraint = constraints.emplace_back();
   set_law(servo, constraint);
   constraint.a = index;
-  constraint.dofs_a = servo.dof >= 0 ? tree.dof_span(servo.dof) : tree.dofs_of(servo.link);
-  double* row = add_rows(1, constraint.dofs_a.size(), constraint.jacobian_a);
-  if (servo.dof >= 0) {
-    *row = 1;
+  constraint.source = source;
+  if (other >= 0) {
+    add_grip_rows(servo, other, constraint);
   } else {
-    const Vector3 arm = tree.position[servo.link] - tree.origin;
-    for (const int k : constraint.dofs_a) {
-      const Motion& axis = tree.motion_subspace[k];
-      *row++ = servo.direction.angular.dot(axis.angular) +
-               servo.direction.linear.dot(axis.linear + axis.angular.cross(arm));
+    constraint.dofs_a = servo.dof >= 0 ? tree.dof_span(servo.dof) : tree.dofs_of(servo.link);
+    double* row = add_rows(1, constraint.dofs_a.size(), constraint.jacobian_a);
+    if (servo.dof >= 0) {
+      *row = 1;
+    } else {
+      const Vector3 arm = tree.position[servo.link] - tree.origin;
+      for (const int k : constraint.dofs_a) {
+        const Motion& axis = tree.motion_subspace[k];
+        *row++ = servo.direction.angular.dot(axis.angular) +
+                 servo.direction.linear.dot(axis.linear + axis.angular.cross(arm));
+      }
     }
   }
   compute_mobility(constraint);
+  if (constraint.law == Constraint::Law::off) return;
   constraint.target_velocity[0] = servo.target_velocity;
   constraint.impulse[0] = std::clamp(servo.impulse, servo.lower, servo.upper);
-  constraint.source = source;
 }
 
 void Problem::add(const Limit& limit, int index, int source) {

@@ -49,7 +49,8 @@ struct Problem {
   const double* mass_of(std::size_t tree) const { return mass.data() + mass_offset[tree]; }
   /// Adds a constraint between trees of the island, given by their indices.
   void add(const ContactPoint& contact, int a, int b, int source);
-  void add(const Servo& servo, int index, int source);
+  /// @param other  the tree of Servo::other; -1: none
+  void add(const Servo& servo, int index, int other, int source);
   /// A limit that may be reached within the substep.
   void add(const Limit& limit, int index, int source);
 
@@ -86,6 +87,8 @@ struct Problem {
   double* add_rows(int rows, std::size_t dofs, int& first);
   void add_contact_rows(const Tree& tree, int link, const Vector3& point, Constraint& constraint,
                         double sign);
+  void add_grip_rows(const Servo& servo, int other, Constraint& constraint);
+  void add_coupling(int a, int b);
   void compute_mobility(Constraint& constraint) const;
   Vector3 point_bias_acceleration(int tree, int link, const Vector3& point,
                                   const ContactPoint& contact) const;

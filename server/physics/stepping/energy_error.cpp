@@ -203,7 +203,10 @@ void list_held_dofs(const Problem& problem, std::vector<unsigned char>& held) {
   for (const Tree* tree : problem.trees)
     held.insert(held.end(), tree->is_symmetric_rotor.begin(), tree->is_symmetric_rotor.end());
   for (const Constraint& constraint : problem.constraints) {
-    if (constraint.kind == Constraint::Kind::contact || !constraint.is_unsaturated()) continue;
+    const bool is_between_trees = constraint.b >= 0;  // contacts and grips
+    if (constraint.kind == Constraint::Kind::contact || is_between_trees ||
+        !constraint.is_unsaturated())
+      continue;
     const bool drives = constraint.kind == Constraint::Kind::servo;
     for (const int k : constraint.dofs_a) {
       unsigned char& dof = held[problem.offset[constraint.a] + k];

@@ -247,7 +247,8 @@ void assemble_problem(const IslandStep& step) {
   for (const IslandItem& item : step.island.items) {
     if (item.kind != IslandItem::Kind::servo) continue;
     const Servo& servo = constraints.servos[item.index];
-    if (is_unsaturated(servo)) memory.has_servos[index_in_island[servo.tree]] = 1;
+    if (servo.other.tree < 0 && is_unsaturated(servo))
+      memory.has_servos[index_in_island[servo.tree]] = 1;
   }
   for (std::size_t i = 0; i < step.island.trees.size(); ++i) {
     problem.add(step.trees[step.island.trees[i]], memory.work, memory.has_servos[i]);
@@ -263,7 +264,8 @@ void assemble_problem(const IslandStep& step) {
         break;
       }
       case IslandItem::Kind::servo:
-        problem.add(constraints.servos[index], index_of(constraints.servos[index].tree), index);
+        problem.add(constraints.servos[index], index_of(constraints.servos[index].tree),
+                    index_of(constraints.servos[index].other.tree), index);
         break;
       case IslandItem::Kind::limit:
         problem.add(constraints.limits[index], index_of(constraints.limits[index].tree), index);

@@ -57,21 +57,24 @@ void build_islands(const std::vector<Tree>& trees, const Sleep& sleep, std::span
   for (const int i : awake) out.parent[i] = i;
   const auto moves = [&](int tree) { return tree >= 0 && trees[tree].dofs > 0; };
   const auto acts = [&](int tree) { return moves(tree) && !sleep.is_asleep(tree); };
+  const auto join = [&](int a, int b) {  // the lower index leads
+    a = island_root(a, out.parent), b = island_root(b, out.parent);
+    out.parent[std::max(a, b)] = std::min(a, b);
+  };
   out.unsorted.clear();
   for (std::size_t i = 0; i < constraints.contact_trees.size(); ++i) {
     auto [a, b] = constraints.contact_trees[i];
     if (!moves(a)) std::swap(a, b);
     if (!acts(a) || (moves(b) && sleep.is_asleep(b))) continue;
-    if (moves(b)) {  // the lower index leads
-      a = island_root(a, out.parent), b = island_root(b, out.parent);
-      out.parent[std::max(a, b)] = std::min(a, b);
-    }
+    if (moves(b)) join(a, b);
     out.unsorted.push_back({a, IslandItem::Kind::contact, static_cast<int>(i)});
   }
   for (std::size_t i = 0; i < constraints.servos.size(); ++i) {
-    if (acts(constraints.servos[i].tree))
-      out.unsorted.push_back(
-          {constraints.servos[i].tree, IslandItem::Kind::servo, static_cast<int>(i)});
+    const Servo& servo = constraints.servos[i];
+    const int other = servo.other.tree;
+    if (!acts(servo.tree) || (other >= 0 && !acts(other))) continue;
+    if (other >= 0) join(servo.tree, other);
+    out.unsorted.push_back({servo.tree, IslandItem::Kind::servo, static_cast<int>(i)});
   }
   for (std::size_t i = 0; i < constraints.limits.size(); ++i) {
     if (acts(constraints.limits[i].tree))

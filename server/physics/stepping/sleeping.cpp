@@ -112,17 +112,17 @@ bool comes_to_touch(const Sleep& sleep, const std::vector<Tree>& trees,
   return contact.gap + time_step * (apart - faster) < 1e-5;
 }
 
-/// Hashes the commands of each tree's servos, and lists its servos.
+/// Hashes the commands of each tree's servos, and lists its servos; a grip is no command.
 void hash_servo_commands(Sleep& sleep, std::span<const Servo> servos) {
   for (const Servo& servo : servos) {
-    if (servo.tree < 0) continue;
+    if (servo.tree < 0 || servo.other.tree >= 0) continue;
     sleep.states[servo.tree].command = 0;
     sleep.states[servo.tree].first_servo = -1;
   }
   sleep.next_servo.resize(servos.size());
   for (std::size_t i = 0; i < servos.size(); ++i) {
     const Servo& servo = servos[i];
-    if (servo.tree < 0) continue;
+    if (servo.tree < 0 || servo.other.tree >= 0) continue;
     set_flag(sleep, servo.tree, Sleep::commanded);
     SleepState& sleeper = sleep.states[servo.tree];
     sleep.next_servo[i] = std::exchange(sleeper.first_servo, static_cast<int>(i));

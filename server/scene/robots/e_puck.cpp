@@ -26,6 +26,10 @@ constexpr std::array<double, 8> proximity_bearings{5.98, 5.48, 4.71, 3.64, 2.64,
 constexpr double proximity_height = 0.03;  // [m]
 constexpr double proximity_range = 0.04;   // [m]
 
+/// The same sensors as the dialect's own devices of the e-puck count them: counter-clockwise from
+/// the left of the front [degrees].
+constexpr std::array<double, 8> infrared_bearings{17, 50, 90, 150, -150, -90, -50, -17};
+
 /// Counter-clockwise from 22.5 degrees, as the dialect has them.
 constexpr unsigned light_sensors = 8;
 constexpr double light_height = 0.03;  // [m]
@@ -34,10 +38,14 @@ constexpr double light_height = 0.03;  // [m]
 constexpr double ground_front = 0.03;
 constexpr std::array<double, 3> ground_offsets{-0.009, 0, 0.009};
 
-/// LED0 in front, the others clockwise.
+/// LED0 in front, the others clockwise; then that of the body, on top, and the one beside the
+/// camera.
 constexpr unsigned leds = 8;
 constexpr double led_radius = 0.0355;  // just outside of the body [m]
 constexpr double led_height = 0.03;    // [m]
+
+constexpr double body_led_height = 0.0455;                       // just above the body [m]
+constexpr double front_led_y = -0.01, front_led_height = 0.035;  // [m]
 
 constexpr double range_and_bearing_height = 0.045;  // [m]
 constexpr double range_and_bearing_range = 0.8;     // [m]
@@ -55,9 +63,19 @@ void equip(Entity& entity) {
                                led_height);
     entity.devices.leds.push_back({"led_" + std::to_string(i + 1), {}, offset, Color{}, {}});
   }
+  const double front_led_x = std::sqrt(led_radius * led_radius - front_led_y * front_led_y);
+  for (const math::Vector3& offset : {math::Vector3(0, 0, body_led_height),
+                                      math::Vector3(front_led_x, front_led_y, front_led_height)}) {
+    const std::string number = std::to_string(entity.devices.leds.size() + 1);
+    entity.devices.leds.push_back({"led_" + number, {}, offset, Color{}, {}});
+  }
   for (const double bearing : proximity_bearings) {
     entity.devices.proximity_sensors.push_back(
         outward_sensor(bearing, proximity_height, body_radius, proximity_range));
+  }
+  for (const double bearing : infrared_bearings) {
+    add_outward_place(entity, "infrared", bearing * std::numbers::pi / 180, proximity_height,
+                      body_radius);
   }
   for (const double y : ground_offsets) add_place(entity, "ground", {ground_front, y, 0});
   for (unsigned i = 0; i < light_sensors; ++i) {

@@ -43,8 +43,12 @@ constexpr std::array<std::array<double, 2>, 8> base_ground{{{0.08, 0},
                                                             {0, -0.08},
                                                             {0.042, -0.065}}};
 
+constexpr double gripper_radius = 0.01;  // of an upright cylinder about the turret's front [m]
+
 constexpr double scanner_height = 0.123199866;  // [m]; its rays begin at the body's surface
 constexpr double omnidirectional_camera_height = 0.288699733;  // [m]
+
+constexpr double wifi_range = 10;  // [m]
 
 constexpr double range_and_bearing_height = 0.1;  // [m]
 constexpr double range_and_bearing_range = 3;     // [m]
@@ -98,6 +102,8 @@ void equip(Entity& entity) {
   entity.axle_length = axle_length;
   add_ground_sensors(entity);
   add_place(entity, "footbot_distance_scanner", {0, 0, scanner_height}, {body_radius});
+  add_place(entity, "gripper", {body_radius, 0, 0}, {gripper_radius, body_height}).anchor.link =
+      static_cast<int>(*entity.turret);
   add_leds(entity, static_cast<int>(*entity.turret));
   for (unsigned i = 0; i < proximity_sensors; ++i) {
     const double bearing = (7.5 + 360.0 / proximity_sensors * i) * degree;
@@ -105,6 +111,7 @@ void equip(Entity& entity) {
         outward_sensor(bearing, proximity_height, body_radius, proximity_range));
     add_outward_place(entity, "light", bearing, proximity_height, body_radius);
   }
+  entity.devices.radios.push_back({"wifi", {}, {0, 0, range_and_bearing_height}, wifi_range, {}});
   entity.devices.range_and_bearing = level_range_and_bearing(
       range_and_bearing_height, range_and_bearing_range, range_and_bearing_bytes);
 }

@@ -67,6 +67,9 @@ void read_robot(Draft& draft, Element& element, Entity& entity) {
   antenna.data_size =
       element.optional("rab_data_size", Whole{0, most_data_bytes}, antenna.data_size);
   devices.range_and_bearing_medium = first_medium(draft.scene, MediumKind::range_and_bearing);
+  devices.radio_medium = first_medium(draft.scene, MediumKind::radio);
+  for (Radio& wifi : devices.radios)
+    wifi.range = element.optional("wifi_range", positive, wifi.range);
   devices.led_medium = first_medium(draft.scene, MediumKind::led);
   entity.kind == EntityKind::foot_bot ? read_blob_cameras(element, entity)
                                       : ignore_blob_cameras(element);

@@ -21,7 +21,7 @@ struct BlobCameras {
 void add_blob_cameras(Entity& entity, const BlobCameras& cameras);
 }  // namespace foot_bot
 
-/// An e-puck: anchor `base`, two wheels, 8 LEDs, 8 proximity sensors, range and bearing.
+/// An e-puck: anchor `base`, two wheels, 10 LEDs, 8 proximity sensors, range and bearing.
 namespace e_puck {
 void equip(Entity& entity);
 }

@@ -100,6 +100,21 @@ TEST(Channels, DevicesShowWhatTheyAreSetTo) {
   EXPECT_EQ(poses.tag_payloads(0).payload(), "12");
 }
 
+TEST(Channels, TheFloorIsAPictureAndWhatWasPaintedOnIt) {
+  ShownWorld shown;
+  EXPECT_TRUE(shown.read<v1::World>("/world").floor_picture().empty());
+  shown.scene.floor_image =
+      std::make_shared<const scene::FloorImage>(scene::FloorImage{2, 1, {255, 0, 0, 0, 255, 0}});
+  shown.populate();
+  EXPECT_EQ(shown.read<v1::World>("/world").floor_picture().substr(1, 3), "PNG");
+  shown.simulation.commands().floor_paints = {{{1, 2}, {3, 4}, false, 0x123456},
+                                              {{5, 6}, {7, 7}, true, 0xFF}};
+  shown.simulation.step();
+  const auto& paints = shown.read<v1::Poses>("/poses").floor_paints();
+  EXPECT_EQ(std::vector<double>(paints.begin(), paints.end()),
+            std::vector<double>({1, 2, 3, 4, 0, 0x123456, 5, 6, 7, 7, 1, 0xFF}));
+}
+
 TEST(Channels, ARobotsReadingsAndCommandsAreThoseOfItsSession) {
   ShownWorld shown;
   shown.simulation.commands().joint_targets = {0.25};

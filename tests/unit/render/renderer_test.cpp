@@ -185,5 +185,48 @@ TEST(Renderer, ThrowsAShadow) {
   EXPECT_EQ(difference(pixel(picture, light), pixel(empty, light)), 0);
 }
 
+TEST(Renderer, ColoursTheFloorAsItsPictureAndWhatWasPaintedOverIt) {
+  SmallWorld world;
+  world.scene.physics.floor.emplace();
+  world.scene.arena.size = {4, 4, 1};
+  View view = forward_view();
+  view.camera = look_at({-2, 0, 2}, {0, 0, 0});
+  const auto at = [&](const Picture& picture, double x, double y) {
+    return pixel(picture, project(view, {x, y, 0}));
+  };
+  const testing::Pixel plain = at(world.picture(view), 0.5, 0);
+  world.state.floor = {{{0.5, 0}, {0.3, 0.3}, true, 0x0000FF}};
+  const Picture painted = world.picture(view);
+  EXPECT_GT(at(painted, 0.5, 0).blue, 2 * at(painted, 0.5, 0).red);
+  EXPECT_LT(difference(at(painted, 0.5, 0.35), plain), 30) << "beside the disc";
+  // Two pixels: red where x < 0, green beyond.
+  world.scene.floor_image =
+      std::make_shared<const scene::FloorImage>(scene::FloorImage{2, 1, {255, 0, 0, 0, 255, 0}});
+  const Picture all = world.picture(view);
+  EXPECT_GT(at(all, -0.5, 0.2).red, 2 * at(all, -0.5, 0.2).green);
+  EXPECT_GT(at(all, 0.5, 0.35).green, 2 * at(all, 0.5, 0.35).red);
+  EXPECT_GT(at(all, 0.5, 0).blue, 2 * at(all, 0.5, 0).green);
+}
+
+TEST(Renderer, ColoursTheFloorAnewWhenItChanges) {
+  SmallWorld world;
+  world.scene.physics.floor.emplace();
+  world.scene.arena.size = {4, 4, 1};
+  View view = forward_view();
+  view.camera = look_at({-2, 0, 2}, {0, 0, 0});
+  Renderer renderer(world.scene, world.entities, world.layout);
+  Picture picture;
+  const auto center = project(view, {0, 0, 0});
+  world.state.floor = {{{0, 0}, {1, 1}, false, 0xFF0000}};
+  renderer.draw(world.state, view, picture);
+  EXPECT_GT(pixel(picture, center).red, 2 * pixel(picture, center).green);
+  world.state.floor = {{{0, 0}, {1, 1}, false, 0x00FF00}};
+  renderer.draw(world.state, view, picture);
+  EXPECT_GT(pixel(picture, center).green, 2 * pixel(picture, center).red);
+  world.state.floor.clear();
+  renderer.draw(world.state, view, picture);
+  EXPECT_EQ(picture.rgb, world.picture(view).rgb) << "of a world that was put back";
+}
+
 }  // namespace
 }  // namespace ziggurat::render

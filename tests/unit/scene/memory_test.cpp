@@ -176,7 +176,7 @@ TEST(Memory, DevicesOfAControllerCountForEachRobot) {
       "principal_point='1,1' resolution='4096,4096' "
       "image='true'/></cameras></sensors></external_controller>"
       "</controllers>";
-  EXPECT_NE(only_fault(text).find("is too many: each of these entities takes some 50.3 MB"),
+  EXPECT_NE(only_fault(text).find("is too many: each of these entities takes some 50.4 MB"),
             std::string::npos);
 }
 

@@ -191,7 +191,7 @@ TEST(Robots, EPuckMatchesItsDataSheet) {
   EXPECT_EQ(std::get<Cylinder>(robot.links.at(0).geometry).radius, 0.035);
   EXPECT_EQ(robot.axle_length, 0.053);
   EXPECT_FALSE(robot.turret);
-  EXPECT_EQ(robot.devices.leds.size(), 8u);
+  EXPECT_EQ(robot.devices.leds.size(), 10u) << "a ring of 8, body and front";
   ASSERT_EQ(robot.devices.proximity_sensors.size(), 8u);
   EXPECT_LT(robot.devices.proximity_sensors[0].direction.y(), 0);  // PS0 is on the right
   EXPECT_GT(robot.devices.proximity_sensors[7].direction.y(), 0);
@@ -220,9 +220,14 @@ TEST(Robots, HaveOnlyTheirOwnDevices) {
   EXPECT_EQ(lacks("differential_steering", "e-puck"), 0u);
   EXPECT_EQ(lacks("footbot_turret", "foot-bot"), 0u);
   EXPECT_EQ(lacks("footbot_turret", "e-puck"), 1u);
-  EXPECT_EQ(lacks("radios", "foot-bot"), 1u);
+  EXPECT_EQ(lacks("radios", "e-puck"), 1u);
+  EXPECT_EQ(lacks("wifi", "foot-bot"), 0u);
+  EXPECT_EQ(lacks("wifi", "e-puck"), 1u);
   EXPECT_EQ(lacks("quadrotor_speed", "foot-bot"), 1u);
   EXPECT_EQ(lacks("gripper", "foot-bot"), 0u);
+  EXPECT_EQ(lacks("gripper", "e-puck"), 1u);
+  EXPECT_EQ(lacks("epuck_wheels", "e-puck"), 0u);
+  EXPECT_EQ(lacks("epuck_wheels", "foot-bot"), 1u);
 }
 
 }  // namespace

@@ -88,5 +88,42 @@ TEST(GroundWithoutPicture, IsWhite) {
   for (const double reading : simulation.observations().device_readings) EXPECT_EQ(reading, 1);
 }
 
+TEST(PaintedGround, CoversThePictureFromTheNextTickOn) {
+  Simulation simulation =
+      SmallScene{"", grey, R"(<foot-bot id="r"><body/><controller config="c"/></foot-bot>)"}.run();
+  const auto readings = [&] { return simulation.observations().device_readings; };
+  simulation.step();
+  EXPECT_EQ(readings(), std::vector<double>({1, 1, 1, 1}));
+  simulation.commands().floor_paints = {{{5, 0}, {5, 9}, false, 0xFF0000}};  // x > 0
+  simulation.step();
+  EXPECT_TRUE(simulation.commands().floor_paints.empty());
+  EXPECT_NEAR(readings()[0], 0.299, 1e-12) << "front left";
+  EXPECT_EQ(readings()[1], 1) << "rear left";
+  simulation.step();
+  EXPECT_NEAR(readings()[3], 0.299, 1e-12) << "it stays";
+  // 0.0116 m from the robot's axis, 0.063 m ahead.
+  simulation.commands().floor_paints = {{{0.063, 0.0116}, {0.001, 0.001}, true, 0}};
+  simulation.step();
+  EXPECT_EQ(readings()[0], 0);
+  EXPECT_NEAR(readings()[3], 0.299, 1e-12);
+}
+
+TEST(PaintedGround, IsPartOfTheState) {
+  const SmallScene scene{"", grey,
+                         R"(<foot-bot id="r"><body/><controller config="c"/></foot-bot>)"};
+  const scene::Scene read = scene.read();
+  Simulation plain(read, {1}), painted(read, {1});
+  painted.commands().floor_paints = {{{5, 5}, {1, 1}, true, 0x123456}};  // far from sensors
+  plain.step();
+  painted.step();
+  EXPECT_NE(plain.hash(), painted.hash());
+  Snapshot snapshot = painted.snapshot();
+  snapshot.is_checked = false;  // as if it was read from a file
+  plain.restore(read, snapshot);
+  EXPECT_EQ(plain.hash(), painted.hash());
+  ASSERT_EQ(plain.state().floor.size(), 1u);
+  EXPECT_EQ(plain.state().floor[0].color, 0x123456U);
+}
+
 }  // namespace
 }  // namespace ziggurat::simulation::ground_sensors

@@ -152,5 +152,24 @@ TEST(Radio, AccumulatesNothingWithoutASensor) {
   }
 }
 
+TEST(Wifi, ReachesAllFootBotsInRange) {
+  const auto foot_bot = [](const std::string& id, const std::string& x,
+                           const std::string& range = "10") {
+    return "<foot-bot id=\"" + id + "\" wifi_range=\"" + range + R"("><body position=")" + x +
+           R"(,0,0"/><controller config="c"/></foot-bot>)";
+  };
+  constexpr const char* wifi = R"(<wifi implementation="default"/>)";
+  Simulation simulation =
+      SmallScene{wifi, wifi, foot_bot("a", "0") + foot_bot("b", "1") + foot_bot("c", "3", "2.5")}
+          .run();
+  EXPECT_EQ(simulation.layout().radios.at(0).id, "wifi");
+  send(simulation, 0, "x");
+  simulation.step();
+  EXPECT_EQ(received(simulation), (Messages{{1, "x"}, {2, "x"}}));
+  send(simulation, 2, "y");
+  simulation.step();
+  EXPECT_EQ(received(simulation), (Messages{{1, "y"}})) << "a is 3 m away";
+}
+
 }  // namespace
 }  // namespace ziggurat::simulation

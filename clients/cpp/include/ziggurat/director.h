@@ -130,6 +130,12 @@ class Director {
   /// @param link    its id; empty: the entity's first
   void push(std::string_view entity, const std::array<double, 3>& force,
             const std::array<double, 3>& torque = {}, std::string_view link = {});
+  /// A rectangle of the floor along the world's axes, or a disc, gets a colour, which stays. Ground
+  /// sensors read it from the next tick on.
+  /// @param center  x, y [m];  @param size  along x and y [m], > 0;  @param radius  [m], > 0
+  void paint_floor(const std::array<double, 2>& center, const std::array<double, 2>& size,
+                   Color color);
+  void paint_floor(const std::array<double, 2>& center, double radius, Color color);
   /// Colours of all LEDs of an entity, which stay until changed. A controller's actuators win.
   void set_leds(std::string_view entity, std::span<const Color> colors);
   void set_directional_leds(std::string_view entity, std::span<const Color> colors);

@@ -4,6 +4,7 @@ import type { Contacts, Entity, Poses, RadioTraffic, Rays, World } from "../mode
 import { compose, poseAt, type Pose, type Vector } from "../model/pose";
 import type { Frame, Frames } from "../model/timeline";
 import { Bodies } from "./bodies";
+import { Floor } from "./floor";
 import { Lights } from "./lights";
 import { Lines } from "./lines";
 import {
@@ -37,7 +38,8 @@ function isSame(a: Poses, b: Poses): boolean {
   };
   return a.tagPayloads.length === 0 && b.tagPayloads.length === 0 && same(a.positions, b.positions)
       && same(a.orientations, b.orientations) && same(a.ledColors, b.ledColors)
-      && same(a.directionalLedColors, b.directionalLedColors) && same(a.magnetMoments, b.magnetMoments);
+      && same(a.directionalLedColors, b.directionalLedColors) && same(a.magnetMoments, b.magnetMoments)
+      && same(a.floorPaints ?? [], b.floorPaints ?? []);
 }
 
 /** X_WE of an entity's origin. */
@@ -54,6 +56,7 @@ const restAfter = 0.4; // [s] without change, the picture is drawn once with all
 export class View {
   readonly stage: Stage;
   private readonly bodies: Bodies;
+  private readonly floor = new Floor(() => { this.stage.isDirty = true; });
   private readonly tags = new Tags();
   private readonly lights = new Lights();
   private readonly lines = new Lines();
@@ -79,7 +82,7 @@ export class View {
     this.stage = new Stage(canvas);
     this.bodies = new Bodies(this.stage.isSlow);
     this.hasFramed = keepsLook;
-    this.stage.scene.add(this.bodies.group, this.tags.group, this.lights.group, this.lines.object,
+    this.stage.scene.add(this.floor.group, this.bodies.group, this.tags.group, this.lights.group, this.lines.object,
                          this.inside.object);
   }
 
@@ -120,6 +123,7 @@ export class View {
     this.hadLines = hasLines;
     this.bodies.setPoses(poses);
     this.stage.shadowsChange();
+    this.floor.setPoses(poses);
     this.tags.setPoses(poses);
     this.lights.setPoses(poses);
     this.follow(before);
@@ -135,6 +139,7 @@ export class View {
   private setWorld(world: World): void {
     this.world = world;
     this.bodies.setWorld(world, this.stage.triangles(false));
+    this.floor.setWorld(world);
     this.tags.setWorld(world);
     this.lights.setWorld(world);
     this.stage.setWorld(world);

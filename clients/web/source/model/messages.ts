@@ -68,12 +68,14 @@ export interface World {
   leds: Led[]; directionalLeds: Led[]; tags: Tag[]; magnets: Magnet[]; radios: Radio[];
   proximitySensors: Proximity[]; rangeAndBearing: RangeAndBearing[];
   models: { id: string; kind: Kind }[]; controllers: string[]; tagPatterns: number[];
+  floorPicture?: Uint8Array;
 }
 
 export interface Poses {
   tick: number; timeNs: number; generation: number; positions: Floats; orientations: Floats;
   jointPositions: Floats; ledColors: Floats; directionalLedColors: Floats;
   tagPayloads: { tag: number; payload: Uint8Array }[]; magnetCurrents: Floats; magnetMoments: Floats;
+  floorPaints?: Floats;
 }
 
 export interface Rays { tick: number; kinds: Floats; robots: Floats; segments: Floats; hits: ArrayLike<boolean> }

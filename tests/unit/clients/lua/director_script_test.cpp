@@ -167,6 +167,8 @@ TEST(DirectorScript, ActsInTheOrderOfItsCalls) {
       world.set_leds("arm", {"red", "0,1,2,255"})
       world.set_joint("arm", "hinge", -0.5)
       world.set_joint(world.entities.arm, "hinge", 1, 2.5)
+      world.floor.paint({x = 1, y = 2, radius = 0.5}, "red")
+      world.floor.paint({x = 1, y = 2, width = 3, height = 4}, "0,1,2,255")
       world.metric("height", 0.5)
       metric("width", 2)
     end
@@ -174,7 +176,7 @@ TEST(DirectorScript, ActsInTheOrderOfItsCalls) {
                                 0);
   ASSERT_EQ(directed.directions.size(), 1U) << directed.leave.message();
   const v1::Direction& all = directed.directions[0];
-  ASSERT_EQ(all.acts_size(), 9);
+  ASSERT_EQ(all.acts_size(), 11);
   EXPECT_NEAR(all.acts(0).move().orientation(0), 0, 1e-15);
   EXPECT_NEAR(all.acts(0).move().orientation(3), 1, 1e-15);
   EXPECT_EQ(all.acts(1).move().orientation_size(), 0);
@@ -189,6 +191,12 @@ TEST(DirectorScript, ActsInTheOrderOfItsCalls) {
   EXPECT_EQ(all.acts(7).set_joint().position(), -0.5);
   EXPECT_EQ(all.acts(7).set_joint().velocity(), 0);
   EXPECT_EQ(all.acts(8).set_joint().velocity(), 2.5);
+  EXPECT_EQ(all.acts(9).paint_floor().color(), 0xff0000U);
+  EXPECT_EQ(all.acts(9).paint_floor().size_size(), 1) << "a disc";
+  EXPECT_EQ(all.acts(9).paint_floor().size(0), 0.5);
+  EXPECT_EQ(all.acts(10).paint_floor().color(), 0x000102U);
+  EXPECT_EQ(all.acts(10).paint_floor().center(1), 2);
+  EXPECT_EQ(all.acts(10).paint_floor().size(1), 4);
   ASSERT_EQ(all.metrics_size(), 2);
   EXPECT_EQ(all.metrics(1).name(), "width");
 }
@@ -214,6 +222,9 @@ TEST(DirectorScript, SaysWhatIsWrong) {
   has("world.set_tags('box', 'x')", "'box' has no tags");
   has("world.set_leds('arm', 'reddish')", "'reddish' is no color");
   has("world.set_leds('missing', 'red')", "no entity 'missing' is in the world");
+  has("world.floor.paint({x = 1, y = 2}, 'red')", "{x =, y =, radius =} or {x =, y =, width =,");
+  has("world.floor.paint({x = 1, y = 2, radius = 0}, 'red')", "a size above 0");
+  has("world.floor.paint({x = 1, y = 2, radius = 1}, 'reddish')", "'reddish' is no color");
   has("world.finish(string.rep('x', 2000))", "at most 1024 bytes");
   has("world.metric('a b', 1)", "the name of a metric");
   has("for i = 1, 10001 do world.remove('box') end", "at most 10000 things");
