@@ -126,7 +126,7 @@ std::unique_ptr<supervision::World> Run::load_world() {
     if (status.is_done) {
       auto world = loading.take();
       apply_scene(world->scene, options_);
-      world->simulation.set_threads(options_.threads);
+      world->simulation.set_threads(threads_for(options_, world->simulation.entities()));
       if (service_ == Service::serve)
         tell_how_to_connect(options_, server_.endpoints().front(), *world, console_);
       return world;
