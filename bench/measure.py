@@ -82,7 +82,7 @@ def load(told):
 
 def per_tick(make, ticks, skip=0, options=(), of=wall, scale=1.0):
     """A figure of a scene's run per tick, times scale. With skip it is the difference between a run of `skip`
-    ticks and one of so many more."""
+    ticks and one of so many more: for what needs some time to come to rest."""
     def measure(place, quick):
         first, more = (min(skip, 2), 5) if quick else (skip, ticks)
         tree = make()

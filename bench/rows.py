@@ -39,10 +39,11 @@ substeps = 10  # of the swarm's tick
 def swarm(count, threads, processes=1):
     options = ("--threads", threads, "--lua-processes", processes)
     more = f", {processes} Lua processes" if processes > 1 else ""
+    curve = f"{threads} thread{'s' * (threads > 1)}{', {processes} Lua' * (processes > 1)}"
     return Row(f"swarm-{count}-threads-{threads}{f'-lua-{processes}' if processes > 1 else ''}",
                f"{count} two-wheeled robots, {threads} thread{'s' * (threads > 1)}{more}", "µs per robot and substep",
                per_tick(lambda: scenes.swarm(count), 40, options=options, scale=1e6 / count / substeps),
-               plot="robots", curve=f"{threads} thread{'s' * (threads > 1)}{more}", x=count)
+               plot="robots", curve=curve, x=count)
 
 
 def pile(count):
@@ -64,18 +65,18 @@ def rest(count):
 
 def construction(count):
     return Row(f"construction-{count}", f"{count} robot{'s' * (count > 1)} that stack{'s' * (count == 1)} blocks", "ms per tick",
-               per_tick(lambda: scenes.stacking(count, 25), 200, skip=10, scale=1e3))
+               per_tick(lambda: scenes.stacking(count, 25), 200, scale=1e3))
 
 
 def magnets(columns, rows):
     count = columns * rows
     return Row(f"magnets-{count}", f"{count} magnetic boxes", "ms per tick",
-               per_tick(lambda: scenes.magnets(columns, rows), 30, skip=10, scale=1e3), plot="magnets", curve="", x=count)
+               per_tick(lambda: scenes.magnets(columns, rows), 40, scale=1e3), plot="magnets", curve="", x=count)
 
 
 def cameras(count):
     return Row(f"cameras-{count}", f"{count} robot{'s' * (count > 1)} with a camera and five tags, exchange", "µs per tick",
-               per_tick(lambda: scenes.cameras(count), 200, skip=20, of=exchange, scale=1e6),
+               per_tick(lambda: scenes.cameras(count), 400, of=exchange, scale=1e6),
                plot="cameras", curve="exchange", x=count)
 
 
@@ -111,9 +112,9 @@ ROWS = [
     *(construction(count) for count in (1, 4, 16)),
     *(magnets(*layout) for layout in ((5, 4), (10, 10), (20, 20))),
     Row("vehicle", "vehicle", "ms per tick",
-        per_tick(lambda: scenes.report("dynamics3d_multi_body_test", 25), 500, skip=10, scale=1e3)),
+        per_tick(lambda: scenes.report("dynamics3d_multi_body_test", 25), 500, scale=1e3)),
     Row("foot-bot-cameras", "foot-bot with two cameras, exchange", "µs per tick",
-        per_tick(lambda: scenes.report("footbot_camera_prototype_example"), 500, skip=20, of=exchange, scale=1e6)),
+        per_tick(lambda: scenes.report("footbot_camera_prototype_example"), 1000, of=exchange, scale=1e6)),
     *(cameras(count) for count in (1, 16, 64)),
     *(lockstep(*size) for size in ((1, 1), (4, 1), (16, 1), (1, 256))),
     *(worlds(count) for count in (1, 8)),
