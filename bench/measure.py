@@ -24,6 +24,7 @@ class Place:
 
     def __init__(self, programs):
         self.programs = pathlib.Path(programs).resolve()
+        self.phases = {}  # of the last run, by name [s]
         self.folder = tempfile.TemporaryDirectory(prefix="zb", dir="/tmp")
         self.scenes = pathlib.Path(self.folder.name) / "scenes"
         shutil.copytree(scenes.SCENES, self.scenes)
@@ -54,6 +55,7 @@ class Place:
         told = json.loads(summary.read_text())
         told["processor_s"] = processor_time() - before
         told["all_s"] = time.monotonic() - begin
+        self.phases = told["phases_s"]
         return told
 
 

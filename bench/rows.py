@@ -39,7 +39,7 @@ substeps = 10  # of the swarm's tick
 def swarm(count, threads, processes=1):
     options = ("--threads", threads, "--lua-processes", processes)
     more = f", {processes} Lua processes" if processes > 1 else ""
-    curve = f"{threads} thread{'s' * (threads > 1)}{', {processes} Lua' * (processes > 1)}"
+    curve = f"{threads} thread{'s' * (threads > 1)}" + (f", {processes} Lua" if processes > 1 else "")
     return Row(f"swarm-{count}-threads-{threads}{f'-lua-{processes}' if processes > 1 else ''}",
                f"{count} two-wheeled robots, {threads} thread{'s' * (threads > 1)}{more}", "µs per robot and substep",
                per_tick(lambda: scenes.swarm(count), 40, options=options, scale=1e6 / count / substeps),

@@ -63,6 +63,11 @@ class BenchTest(unittest.TestCase):
         self.assertEqual(outcome.returncode, 1)
         self.assertIn("no row's name begins with 'nothing'", outcome.stderr)
 
+    def test_the_document_has_all_rows(self):
+        outcome = self.run_bench("--docs", "--only", "vehicle")
+        self.assertEqual(outcome.returncode, 2)
+        self.assertIn("leave out --only and --quick", outcome.stderr)
+
     def test_ctrl_c_keeps_what_was_measured(self):
         bench = subprocess.Popen([*self.command, "--only", "vehicle", "--rounds", "1000"], stdout=subprocess.PIPE,
                                  stderr=subprocess.PIPE, text=True)
