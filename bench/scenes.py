@@ -149,3 +149,120 @@ def swarm(count):
                                    yaw=i * 137 % 360, rays=rays))
     text = SWARM.format(size=columns * pitch + 1, robots="".join(robots))
     return ElementTree.ElementTree(ElementTree.fromstring(text.strip()))
+
+
+BARE = """
+<argos-configuration>
+  <framework><experiment length="0" ticks_per_second="10" random_seed="1"/></framework>
+  <controllers/>
+  <arena size="{size:g}, {size:g}, 20" center="0, 0, 10">{entities}</arena>
+  <physics_engines>
+    <dynamics3d id="dynamics" iterations="{iterations}"><gravity g="9.8"/><floor height="0.01"/></dynamics3d>
+  </physics_engines>
+  <media/>
+</argos-configuration>
+"""
+
+
+def bare(size, entities, iterations=10):
+    text = BARE.format(size=size, entities=entities, iterations=iterations)
+    return ElementTree.ElementTree(ElementTree.fromstring(text.strip()))
+
+
+def boxes(count):
+    """Boxes of 10 cm that stand on the floor, 5 cm apart."""
+    columns = math.ceil(math.sqrt(count))
+    rows = math.ceil(count / columns)
+    return bare(0.15 * columns + 1, f"""
+<distribute>
+  <position method="grid" center="0, 0, 0" distances="0.15, 0.15, 0" layout="{columns}, {rows}, 1"/>
+  <orientation method="constant" values="0, 0, 0"/>
+  <entity quantity="{count}" max_trials="1"><box id="b" size="0.1, 0.1, 0.1" movable="true" mass="1"/></entity>
+</distribute>""")
+
+
+def chain(links=20, load=100):
+    """A chain of spherical joints with a load [kg] at its end, which falls from the horizontal; 500 substeps
+    a second."""
+    parts = ['<link id="base" geometry="box" size="0.1, 0.1, 0.1" mass="1" position="0, 0, 0" orientation="0, 0, 0"/>']
+    joints = []
+    for i in range(links):
+        parts.append(f'<link id="l{i}" geometry="cylinder" radius="0.01" height="0.1" mass="0.1" '
+                     'position="0, 0, 0" orientation="0, 0, 0"/>')
+        joints.append(f'<joint id="j{i}" type="spherical"><parent link="{f"l{i - 1}" if i else "base"}" position="0, 0, 0.1"/>'
+                      f'<child link="l{i}"/></joint>')
+    parts.append(f'<link id="load" geometry="sphere" radius="0.1" mass="{load}" position="0, 0, 0" orientation="0, 0, 0"/>')
+    joints.append(f'<joint id="load" type="fixed"><parent link="l{links - 1}" position="0, 0, 0.1"/><child link="load"/></joint>')
+    return bare(20, f"""
+<prototype id="chain" movable="false">
+  <body position="0, 0, 5" orientation="0, 90, 0"/>
+  <links ref="base">{"".join(parts)}</links>
+  <joints>{"".join(joints)}</joints>
+</prototype>""", 50)
+
+
+CAMERA_ROBOT = """
+<prototype id="r{number}" movable="true">
+  <body position="{x:g}, {y:g}, 0" orientation="0, 0, 0"/>
+  <controller config="look"/>
+  <links ref="base">
+    <link id="base" geometry="box" size="0.1, 0.1, 0.1" mass="0.2" position="0, 0, 0" orientation="0, 0, 0"/>
+  </links>
+</prototype>
+"""
+
+TARGET = """
+<prototype id="t{robot}_{number}" movable="true">
+  <body position="{x:g}, {y:g}, 0" orientation="0, 0, 0"/>
+  <links ref="base">
+    <link id="base" geometry="box" size="0.04, 0.04, 0.04" mass="0.05" position="0, 0, 0" orientation="0, 0, 0"/>
+  </links>
+  <devices>
+    <tags medium="tags">
+      <tag payload="{number}" side_length="0.025" observable_angle="75" anchor="base" position="-0.021, 0, 0.02"
+           orientation="0, -90, 0"/>
+    </tags>
+  </devices>
+</prototype>
+"""
+
+LOOKING = """
+<lua_controller id="look">
+  <actuators/>
+  <sensors>
+    <cameras implementation="default" show_frustum="false">
+      <camera id="camera" range="0.05:0.8" resolution="640, 360" anchor="base" position="0.06, 0, 0.03"
+              orientation="-90, 90, 0" focal_length="884, 884" principal_point="320, 180">
+        <tag_detector medium="tags" show_rays="false"/>
+      </camera>
+    </cameras>
+  </sensors>
+  <params script="look.lua"/>
+</lua_controller>
+"""
+
+LOOK = """\
+-- Adds up where its camera sees tags.
+local sum = 0
+function init() end
+function step()
+  for _, tag in ipairs(robot.cameras.camera.tag_detector) do sum = sum + tag.center.x end
+end
+function reset() sum = 0 end
+function destroy() end
+"""
+
+
+def cameras(count):
+    """Robots that stand 1 m apart, each with a camera that sees five tags. Their script, LOOK, must stand
+    beside the scene as look.lua."""
+    columns = math.ceil(math.sqrt(count))
+    entities = []
+    for i in range(count):
+        x, y = i % columns - (columns - 1) / 2 - 0.2, i // columns - (columns - 1) / 2
+        entities.append(CAMERA_ROBOT.format(number=i, x=x, y=y))
+        entities += [TARGET.format(robot=i, number=j, x=x + 0.45, y=y + 0.05 * (j - 2)) for j in range(5)]
+    tree = bare(columns + 2, "".join(entities))
+    tree.find("controllers").append(ElementTree.fromstring(LOOKING.strip()))
+    ElementTree.SubElement(tree.find("media"), "tag", id="tags")
+    return tree

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Steps per second of vector_env: 1, 2, 4, 8 worlds of a foot-bot and of the construction robot.
 
-usage: PYTHONPATH=build/…/python vector_env.py ZIGGURAT [--seconds S]
+usage: PYTHONPATH=build/…/python vector_env.py ZIGGURAT [--seconds S] [--scene NAME] [--worlds N]
 
 Each number of worlds runs for S seconds (default 5), with constant actions. A step of n worlds counts n times.
 Processor time is that of this program and of its servers.
@@ -54,10 +54,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("ziggurat")
     parser.add_argument("--seconds", type=float, default=5)
+    parser.add_argument("--scene", choices=[name for name, *_ in SCENES], help="this one only")
+    parser.add_argument("--worlds", type=int, help="this number only")
     options = parser.parse_args()
     print("| scene | worlds | steps per second | processor time of a step | reset of a world |\n|---|---|---|---|---|")
     for name, scene, robot in SCENES:
-        for n in (1, 2, 4, 8):
+        if options.scene not in (None, name):
+            continue
+        for n in [options.worlds] if options.worlds else (1, 2, 4, 8):
             rate, used, reset = measure(options.ziggurat, scene, robot, n, options.seconds)
             print(f"| {name} | {n} | {rate:.0f} | {1e6 * used:.0f} µs | {1e3 * reset:.1f} ms |", flush=True)
 

@@ -1,6 +1,7 @@
 // Time of a lock-step tick compared with bare ZeroMQ with the same message sizes and processes.
 //
 // usage: bench_lockstep [PAIRS [TRANSPORT]]     9 pairs over ipc by default
+//        bench_lockstep [PAIRS [TRANSPORT [PROCESSES ROBOTS]]]     one row
 //        bench_lockstep [PAIRS] curve           our server with CURVE compared with it without,
 //        over tcp
 //
@@ -169,7 +170,12 @@ int main(int argc, char** argv) try {
   setup.client =
       std::filesystem::read_symlink("/proc/self/exe").parent_path() / "bench_lockstep_client";
   print_heading(setup, pairs);
-  for (const Row& row : rows) run_row(row, setup, pairs);
+  const bool is_one = argc > 4;
+  for (const Row& row : rows) {
+    const bool is_wanted =
+        !is_one || (row.processes == std::stoul(argv[3]) && row.robots == std::stoul(argv[4]));
+    if (is_wanted) run_row(row, setup, pairs);
+  }
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "bench_lockstep: %s\n", error.what());

@@ -2,6 +2,7 @@
 //
 // usage: bench_yardstick          errors, a table per check
 //        bench_yardstick cost     microseconds of CPU time per substep
+//        bench_yardstick robots COUNT (ours | mujoco)     one of them, per robot
 //
 // MuJoCo runs with elliptic cones, its Newton solver and the contact parameters that it takes by
 // default; "stiff": with the shortest time constant that it takes, two steps.
@@ -10,6 +11,7 @@
 #include <cstdio>
 #include <ctime>
 #include <functional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -370,5 +372,13 @@ void costs() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  argc > 1 && std::string_view(argv[1]) == "cost" ? costs() : errors();
+  const std::string_view what = argc > 1 ? argv[1] : "";
+  if (what == "robots" && argc == 4) {
+    const int count = std::stoi(argv[2]), substeps = 2000 / count + 20;
+    const bool is_ours = argv[3] == std::string_view("ours");
+    std::printf("%.3f\n",
+                (is_ours ? our_robots(count, substeps) : their_robots(count, substeps)) / count);
+    return 0;
+  }
+  what == "cost" ? costs() : errors();
 }

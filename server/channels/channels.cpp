@@ -65,13 +65,23 @@ constexpr std::array whole_world{
 };
 
 v1::Phases phases_of(const Moment& moment) {
+  using timing::Phase;
   v1::Phases phases;
   phases.set_tick(moment.state.tick);
   phases.set_time_ns(moment.state.time_ns);
-  phases.set_exchange(moment.phases.exchange);
-  phases.set_physics(moment.phases.physics);
-  phases.set_recording(moment.phases.recording);
-  phases.set_pacing(moment.phases.pacing);
+  const timing::PhaseTimes& times = moment.phases;
+  phases.set_exchange(times.exchange());
+  phases.set_physics(times.physics());
+  phases.set_recording(times[Phase::recording]);
+  phases.set_pacing(times[Phase::pacing]);
+  phases.set_encode(times[Phase::encode]);
+  phases.set_wait(times[Phase::wait]);
+  phases.set_forces(times[Phase::forces]);
+  phases.set_magnetism(times[Phase::magnetism]);
+  phases.set_contacts(times[Phase::contacts]);
+  phases.set_solve(times[Phase::solve]);
+  phases.set_integrate(times[Phase::integrate]);
+  phases.set_sensing(times[Phase::sensing]);
   return phases;
 }
 

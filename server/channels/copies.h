@@ -39,7 +39,7 @@ struct TickCopy {
   world::Observations observations;
   world::Commands commands;
   std::vector<world::Contact> contacts;
-  PhaseTimes phases;
+  timing::PhaseTimes phases;
   std::optional<std::vector<world::Ray>> rays;  ///< of all devices; nothing: State::rays
 
   Moment view() const;

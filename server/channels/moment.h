@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "timing/phases.h"
 #include "world/commands.h"
 #include "world/layout.h"
 #include "world/state.h"
@@ -27,18 +28,13 @@ struct Population {
   const world::State& state;
 };
 
-/// Wall time of a tick's phases [s].
-struct PhaseTimes {
-  double exchange = 0, physics = 0, recording = 0, pacing = 0;
-};
-
 /// The world at a tick.
 struct Moment {
   const world::State& state;
   const world::Observations& observations;
   const world::Commands& commands;  ///< that led to the state, until the tick is answered
   std::span<const world::Contact> contacts;
-  PhaseTimes phases;                                     ///< of the tick before
+  timing::PhaseTimes phases;                             ///< of the tick before
   std::optional<std::span<const world::Ray>> rays = {};  ///< of all devices; nothing: State::rays
 };
 

@@ -66,7 +66,9 @@ class NewtonCore {
   /// @param time_step  [s]
   /// @param splits     a motor may give its impulse in so many substeps
   /// @param stiff      the plug-in that has stiff pairs; null: none
-  void substep(std::span<Body> bodies, double time_step, int splits, Plugin* stiff);
+  /// @param watch      gets the times of its stages; null: none
+  void substep(std::span<Body> bodies, double time_step, int splits, Plugin* stiff,
+               timing::Stopwatch* watch = nullptr);
   /// Lists contacts of the last substep, in ascending order.
   void contacts(std::vector<LinkContact>& out) const { contacts_.list_contacts(out); }
   Convergence convergence() const { return convergence_; }
@@ -137,6 +139,7 @@ class NewtonCore {
   DeferredForces deferred_forces_;
   dynamics::PredictedVelocities prediction_;
   Convergence convergence_;
+  timing::Stopwatch* watch_ = nullptr;  // of the present substep
 };
 
 /// Puts a joint to a position [m] or [rad] and a speed [m/s] or [rad/s]; its body remembers no

@@ -25,6 +25,8 @@ class Magnets final : public Plugin {
  public:
   explicit Magnets(const scene::Magnetism& magnetism);
 
+  timing::Phase phase() const override { return timing::Phase::magnetism; }
+
   void body_added(Body& body) override;
   void body_removed(const Body& body) override;
   void body_moved(Body& body) override;

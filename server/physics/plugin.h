@@ -9,6 +9,7 @@
 
 #include "physics/bodies/bodies.h"
 #include "physics/bodies/link_contact.h"
+#include "timing/phases.h"
 
 namespace ziggurat::math {
 class Archive;
@@ -27,6 +28,9 @@ struct StiffPair {
 class Plugin {
  public:
   virtual ~Plugin() = default;
+
+  /// The phase of a tick that its forces belong to.
+  virtual timing::Phase phase() const { return timing::Phase::forces; }
 
   virtual void body_added(Body&) {}
   virtual void body_removed(const Body&) {}  ///< it still has its links

@@ -55,8 +55,11 @@ void Plugins::move(Body& body) {
   for (auto& plugin : plugins_) plugin->body_moved(body);
 }
 
-void Plugins::before_substep(std::span<Body> bodies, double substep) {
-  for (auto& plugin : plugins_) plugin->before_substep(bodies, substep);
+void Plugins::before_substep(std::span<Body> bodies, double substep, timing::Stopwatch* watch) {
+  for (auto& plugin : plugins_) {
+    enter(watch, plugin->phase());
+    plugin->before_substep(bodies, substep);
+  }
 }
 
 Plugin* Plugins::stiff() const {

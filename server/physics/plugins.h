@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "physics/plugin.h"
+#include "timing/stopwatch.h"
 
 namespace ziggurat::physics {
 
@@ -22,7 +23,8 @@ class Plugins {
   void add(Body& body);
   void remove(const Body& body);
   void move(Body& body);
-  void before_substep(std::span<Body> bodies, double substep);
+  /// @param watch  gets the time of each phase; null: none
+  void before_substep(std::span<Body> bodies, double substep, timing::Stopwatch* watch = nullptr);
   /// The one that has stiff pairs in the coming substep; null: none has.
   Plugin* stiff() const;
   /// Tells of contacts, then of the end.

@@ -201,7 +201,7 @@ bool NewtonCore::wake_disturbed(const SubstepPart& part,
 /// Advances by the constraints of wake_disturbed().
 void NewtonCore::step(const SubstepPart& part) {
   system_.rotations_until_impact = contacts_.rotations_until_impact;
-  const dynamics::Report report = system_.advance(limits_);
+  const dynamics::Report report = system_.advance(limits_, watch_);
   if (!system_.islands_to_subdivide.trees.empty()) {
     set_active(stepped_, system_.islands_to_subdivide.trees, false, system_.trees.size());
     contacts_.keep_contacts(stepped_);
@@ -216,7 +216,10 @@ void NewtonCore::step(const SubstepPart& part) {
                   convergence_);
 }
 
-void NewtonCore::substep(std::span<Body> bodies, double time_step, int splits, Plugin* stiff) {
+void NewtonCore::substep(std::span<Body> bodies, double time_step, int splits, Plugin* stiff,
+                         timing::Stopwatch* watch) {
+  watch_ = watch;
+  enter(watch_, timing::Phase::contacts);
   for (const Grip& grip : grips_) {
     if (is_commanded_anew(grip, bodies)) system_.wake(static_cast<int>(grip.entity));
   }
@@ -287,6 +290,7 @@ bool NewtonCore::predict_contacts(const SubstepPart& part,
 /// Advances some trees by a part of the substep, but those whose impacts end it. Trees that they
 /// may touch are awake.
 void NewtonCore::step_active(std::span<Body> bodies, const SubstepPart& part) {
+  enter(watch_, timing::Phase::contacts);
   colliders_.update_poses(system_, part.time_step, *part.active);
   prepare(bodies, part);
   std::span<dynamics::ContactPoint> contacts =
@@ -312,10 +316,12 @@ void NewtonCore::step_part(std::span<Body> bodies, const SubstepPart& part) {
 void NewtonCore::apply_impacts(std::span<Body> bodies, const SubstepPart& part) {
   const double near =
       1e-3 * part.time_step;  // contacts are those within the reach of this time [s]
+  enter(watch_, timing::Phase::contacts);
   colliders_.update_poses(system_, near, *part.active);
   prepare(bodies, part);
-  system_.apply_impacts(contacts_.find_contacts(near, *part.active, part.force_share), servos_,
-                        limits_, part.trees());
+  const auto contacts = contacts_.find_contacts(near, *part.active, part.force_share);
+  enter(watch_, timing::Phase::solve);
+  system_.apply_impacts(contacts, servos_, limits_, part.trees());
   contacts_.add_impact_impulses();
 }
 
@@ -374,6 +380,7 @@ void NewtonCore::step_leapfrog(std::span<Body> bodies, double time_step, int spl
   part.options.allowed_overlap = overlap_of_magnets;
   part.options.compliance_factor = 0;  // half of the parts have no forces, so no normal load
   contacts_.begin_parts(active);
+  enter(watch_, stiff.phase());
   stiff.choose_stiff(active.contains);
   stiff.push_stiff(bodies, -1);
   deferred_forces_.gravity.clear();
@@ -386,6 +393,7 @@ void NewtonCore::step_leapfrog(std::span<Body> bodies, double time_step, int spl
     part.force_share = kick * part.time_step / time_step;
     part.is_followed = i < count;
     if (i > 0) {
+      enter(watch_, stiff.phase());
       apply_deferred(system_, active, deferred_forces_, kick);
       stiff.push_stiff(bodies, kick);
     }

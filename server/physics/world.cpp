@@ -211,13 +211,14 @@ void World::move(std::size_t entity, const math::Pose& pose) {
   parts_->plugins.move(body);
 }
 
-void World::step() {
+void World::step(timing::Stopwatch* watch) {
   Parts& p = *parts_;
   p.stepped = p.bodies.size();
   for (int split = 0; split < p.splits; ++split) {
-    p.plugins.before_substep(p.bodies, p.length);
-    p.core.substep(p.bodies, p.length, p.splits, p.plugins.stiff());
+    p.plugins.before_substep(p.bodies, p.length, watch);
+    p.core.substep(p.bodies, p.length, p.splits, p.plugins.stiff(), watch);
     p.core.end_grips(p.bodies);
+    enter(watch, timing::Phase::sensing);
     p.plugins.after_substep(p.bodies, p.length, p.core);
   }
 }

@@ -10,6 +10,7 @@
 
 #include "physics/bodies/values.h"
 #include "scene/scene.h"
+#include "timing/stopwatch.h"
 #include "world/commands.h"
 #include "world/state.h"
 
@@ -106,7 +107,8 @@ class World {
   void move(std::size_t entity, const math::Pose& pose);
 
   /// Advances by one substep.
-  void step();
+  /// @param watch  gets the times of its stages; null: none
+  void step(timing::Stopwatch* watch = nullptr);
   /// Substeps are shared by so many threads, with the same bits for any number. 1 at first.
   /// @throws std::system_error if the system allows no more threads; then nothing changes
   void set_threads(unsigned threads);

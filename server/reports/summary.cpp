@@ -13,6 +13,8 @@
 namespace ziggurat::reports {
 namespace {
 
+using timing::Phase;
+
 const char* to_string(Ending ending) {
   switch (ending) {
     case Ending::finished:
@@ -79,6 +81,35 @@ std::string metrics(const std::map<std::string, double>& all) {
   return text + "\n";
 }
 
+/// A line with the shares of a tick's phases in its wall time.
+std::string shares(const timing::PhaseTimes& wall) {
+  if (wall.ticks() == 0) return {};
+  std::string text;
+  for (std::size_t i = static_cast<std::size_t>(Phase::encode); i < timing::phase_count; ++i) {
+    if (wall.seconds[i] == 0) continue;
+    text += fmt::format("{}{} {:.1f} %", text.empty() ? "  of a tick: " : ", ",
+                        timing::phase_names[i], 100 * wall.seconds[i] / wall.ticks());
+  }
+  return text + "\n";
+}
+
+/// The time of the start-up, and of the parts of the ticks [s].
+nlohmann::ordered_json parts(const timing::PhaseTimes& wall) {
+  return {{"startup", wall[Phase::startup]},
+          {"physics", wall.physics()},
+          {"exchange", wall.exchange()},
+          {"recording", wall[Phase::recording]},
+          {"pacing", wall[Phase::pacing]}};
+}
+
+/// The time of each phase of a tick [s].
+nlohmann::ordered_json phases(const timing::PhaseTimes& wall) {
+  nlohmann::ordered_json json;
+  for (std::size_t i = static_cast<std::size_t>(Phase::encode); i < timing::phase_count; ++i)
+    json[timing::phase_names[i]] = wall.seconds[i];
+  return json;
+}
+
 bool is_by_controller(Ending ending) {
   return ending == Ending::controller_vanished || ending == Ending::failed_fast ||
          ending == Ending::deadline_missed;
@@ -94,15 +125,18 @@ std::string_view heading_of(Ending ending) {
 std::string to_text(const Summary& summary) {
   std::string text = fmt::format(
       "{}: {} ticks, {:.3f} s simulated in {:.3f} s: real-time factor {:.2f}, {:.0f} ticks/s\n",
-      heading_of(summary.ending), summary.ticks, summary.simulated_s, summary.wall_s,
-      ratio(summary.simulated_s, summary.wall_s),
-      ratio(static_cast<double>(summary.ticks), summary.wall_s));
-  text += fmt::format("  wall time: physics {:.3f} s, exchange {:.3f} s, recording {:.3f} s",
-                      summary.physics_s, summary.exchange_s, summary.recording_s);
-  if (summary.pacing_s > 0) {
-    text += fmt::format(", pacing {:.3f} s ({} ticks late)", summary.pacing_s, summary.late_ticks);
+      heading_of(summary.ending), summary.ticks, summary.simulated_s, summary.wall.ticks(),
+      ratio(summary.simulated_s, summary.wall.ticks()),
+      ratio(static_cast<double>(summary.ticks), summary.wall.ticks()));
+  text +=
+      fmt::format("  wall time: physics {:.3f} s, exchange {:.3f} s, recording {:.3f} s",
+                  summary.wall.physics(), summary.wall.exchange(), summary.wall[Phase::recording]);
+  if (summary.wall[Phase::pacing] > 0) {
+    text += fmt::format(", pacing {:.3f} s ({} ticks late)", summary.wall[Phase::pacing],
+                        summary.late_ticks);
   }
-  text += fmt::format("; before it, start-up {:.3f} s\n", summary.startup_s);
+  text += fmt::format("; before it, start-up {:.3f} s\n", summary.wall[Phase::startup]);
+  text += shares(summary.wall);
   if (!summary.shutdown_reason.empty()) {
     text +=
         fmt::format("  shut down by a supervisor: {}\n", text::indented(summary.shutdown_reason));
@@ -158,15 +192,11 @@ std::string to_json(const Summary& summary) {
       {"ending", to_string(summary.ending)},
       {"ticks", summary.ticks},
       {"simulated_s", summary.simulated_s},
-      {"wall_s", summary.wall_s},
-      {"real_time_factor", ratio(summary.simulated_s, summary.wall_s)},
-      {"ticks_per_s", ratio(static_cast<double>(summary.ticks), summary.wall_s)},
-      {"wall_time_s",
-       {{"startup", summary.startup_s},
-        {"physics", summary.physics_s},
-        {"exchange", summary.exchange_s},
-        {"recording", summary.recording_s},
-        {"pacing", summary.pacing_s}}},
+      {"wall_s", summary.wall.ticks()},
+      {"real_time_factor", ratio(summary.simulated_s, summary.wall.ticks())},
+      {"ticks_per_s", ratio(static_cast<double>(summary.ticks), summary.wall.ticks())},
+      {"wall_time_s", parts(summary.wall)},
+      {"phases_s", phases(summary.wall)},
       {"late_ticks", summary.late_ticks},
       {"seed", summary.seed},
       {"hash", math::to_hex(summary.hash)},

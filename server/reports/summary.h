@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "timing/phases.h"
 #include "wire/request.h"
 
 namespace ziggurat::reports {
@@ -40,13 +41,7 @@ struct Summary {
   Ending ending = Ending::finished;
   std::uint64_t ticks = 0;
   double simulated_s = 0;
-  double startup_s =
-      0;  ///< wall time until every robot had its controller, and of the wait for a first viewer
-  double wall_s = 0;  ///< of the ticks; the next four are parts of it
-  double physics_s = 0;
-  double exchange_s = 0;  ///< sending, and waiting for controllers
-  double recording_s = 0;
-  double pacing_s = 0;           ///< waiting for the wall clock (--real-time)
+  timing::PhaseTimes wall;       ///< wall time of the start-up and of the ticks
   std::uint64_t late_ticks = 0;  ///< paced ticks that began after their time
   std::uint64_t seed = 0;
   std::uint64_t hash = 0;

@@ -20,7 +20,7 @@
 
 namespace ziggurat::rerun {
 
-using supervision::Phase;
+using timing::Phase;
 
 namespace {
 
@@ -192,11 +192,12 @@ int ReplayRun::execute() {
 /// From the first recorded state to the last one, or to the first that differs.
 ReplayRun::End ReplayRun::repeat() {
   simulation::Simulation& simulation = world_.simulation;
-  timer_.end_startup(summary_);
   const bool draws_rays = options_.run.pictures && options_.run.pictures->view.layers.rays;
   std::uint64_t epoch = 0;
-  while (replay_.advance()) {
-    timer_.end_phase(Phase::physics, summary_);
+  for (;;) {
+    watch_.enter(Phase::forces);
+    if (!replay_.advance(&watch_)) return End::complete;
+    watch_.enter(Phase::recording);
     if (!replay_.is_same()) {
       difference_ = explain_difference(file_, states_, replay_, world_);
       return End::differs;
@@ -213,9 +214,9 @@ ReplayRun::End ReplayRun::repeat() {
     if (live_view_) live_view_->tick({});
     if (progress_.needs_update()) progress_.show(same_ - 1, "");
     if (options_.until && inputs.tick() == *options_.until) return End::complete;
-    timer_.end_phase(Phase::recording, summary_);
+    watch_.enter(Phase::pacing);
     if (!wait()) return End::stopped;
-    timer_.end_phase(Phase::pacing, summary_);
+    watch_.enter(Phase::recording);
     replay_.act();
     recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands(),
                         take_metrics());
@@ -225,9 +226,7 @@ ReplayRun::End ReplayRun::repeat() {
       simulation.list_contacts(live_view_->wants_contacts());
     }
     simulation.list_rays((live_view_ && live_view_->wants_rays()) || draws_rays);
-    timer_.end_phase(Phase::recording, summary_);
   }
-  return End::complete;
 }
 
 /// Metrics of the current inputs.
@@ -297,7 +296,7 @@ void ReplayRun::complete_summary(End end) {
   summary_.ending = end == End::stopped ? reports::Ending::interrupted : reports::Ending::finished;
   summary_.ticks = simulation.state().tick;
   summary_.simulated_s = static_cast<double>(summary_.ticks) * simulation.tick_length();
-  summary_.wall_s = summary_.physics_s + summary_.recording_s + summary_.pacing_s;
+  summary_.wall = watch_.take();
   summary_.seed = world_.seed;
   summary_.hash = replay_.hash();
   summary_.solver = supervision::solver_status(simulation);

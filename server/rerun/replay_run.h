@@ -16,10 +16,10 @@
 #include "rerun/viewer_controls.h"
 #include "run/live_view.h"
 #include "run/options.h"
-#include "run/phase_timer.h"
 #include "run/recorders.h"
 #include "run/schedule.h"
 #include "supervision/world.h"
+#include "timing/stopwatch.h"
 
 namespace ziggurat::rerun {
 
@@ -69,7 +69,7 @@ class ReplayRun {
   const std::unique_ptr<run::LiveView> live_view_;  ///< null: not shown
   reports::Progress progress_;
   reports::Summary summary_;
-  run::PhaseTimer timer_;
+  timing::Stopwatch watch_;
   std::uint64_t same_ = 0;  ///< states that are as recorded
   std::string difference_;  ///< what differs first
   std::string damage_;      ///< what ends the recording early

@@ -121,11 +121,11 @@ void LiveView::show_all(const std::vector<std::uint32_t>& wanted) {
   if (!wanted.empty()) server_.show(moment(), {wanted, wanted, wants(Kind::image)});
 }
 
-void LiveView::tick(const std::array<double, supervision::phase_count>& phases) {
+void LiveView::tick(const timing::PhaseTimes& phases) {
   is_current_ = false;
   is_gathered_ = true;
   if (!has_viewers() || wanted_.empty()) return;
-  phases_ = {phases[0], phases[1], phases[2], phases[3]};
+  phases_ = phases;
   const auto now = clock::now();
   const std::chrono::duration<double> least(0.9 / frames_per_second_);
   if (now - last_frame_ < least) return;

@@ -1,7 +1,6 @@
 #pragma once
 // Live view of a run: the state that viewers see, and their requests.
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -16,8 +15,8 @@
 #include "run/options.h"
 #include "run/schedule.h"
 #include "supervision/callers.h"
-#include "supervision/tick_budget.h"
 #include "supervision/world.h"
+#include "timing/phases.h"
 #include "view/viewer_server.h"
 
 namespace ziggurat::run {
@@ -57,8 +56,8 @@ class LiveView {
   bool is_watched() { return !wanted_.empty(); }  ///< a viewer has subscribed to something
 
   /// Takes a published tick. At most `frames_per_second_` ticks are shown in a second of wall time.
-  /// @param phases  wall time of the tick before, as supervision::Phase [s]
-  void tick(const std::array<double, supervision::phase_count>& phases);
+  /// @param phases  wall time of the tick before
+  void tick(const timing::PhaseTimes& phases);
   /// The tick was answered: its commands are known.
   void answered();
   /// A viewer wants contacts, which the next tick must list.
@@ -98,7 +97,7 @@ class LiveView {
   std::vector<view::ViewerCall> calls_;  ///< not taken yet
   std::map<std::uint64_t, view::ViewerCall> unanswered_;  ///< by Request::id
   std::uint64_t next_call_ = 1, seen_changes_ = 0;
-  channels::PhaseTimes phases_;
+  timing::PhaseTimes phases_;
   double frames_per_second_ = 60;
   clock::time_point last_frame_{}, last_barrier_{}, last_fresh_{};
   bool is_current_ = false;  ///< the present tick was shown

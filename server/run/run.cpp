@@ -22,7 +22,7 @@
 namespace ziggurat::run {
 
 using reports::Ending;
-using supervision::Phase;
+using timing::Phase;
 
 namespace {
 
@@ -126,7 +126,7 @@ std::unique_ptr<supervision::World> Run::load_world() {
     if (status.is_done) {
       auto world = loading.take();
       apply_scene(world->scene, options_);
-      world->simulation.set_threads(options_.threads);
+      world->simulation.set_threads(threads_for(options_, world->simulation.entities()));
       if (service_ == Service::serve)
         tell_how_to_connect(options_, server_.endpoints().front(), *world, console_);
       return world;
@@ -274,14 +274,14 @@ std::optional<Ending> Run::reach_start() {
 Ending Run::run_to_end() {
   if (const auto ending = reach_start()) return *ending;
   for (;;) {
+    statistics_.watch.enter(Phase::startup);
     std::optional<Ending> ending = wait([&] { return watch_.gather(); });
-    statistics_.timer.end_startup(statistics_.summary);
     if (!ending) {
       supervision_.gathered();
       ending = run_world();
     }
+    statistics_.summary.wall += statistics_.watch.take();
     if (ending != Ending::reset) return *ending;
-    statistics_.timer.end_startup(statistics_.summary);
   }
 }
 
@@ -292,32 +292,32 @@ Ending Run::run_world() {
                           simulation.observations(), simulation.contacts()};
   schedule_.begin(simulation.state().tick, supervision_.paused_for());
   for (;;) {
+    statistics_.watch.enter(Phase::encode);
     // Controllers compute while the files are written.
     server_.publish(simulation.observations(), simulation.state().tag_payloads, &truth);
     supervision_.published();
-    statistics_.timer.end_phase(Phase::exchange, statistics_.summary);
+    statistics_.watch.enter(Phase::recording);
     recorders_.tick(simulation);
     if (recorded_) recorded_->tick();
-    if (live_view_) live_view_->tick(statistics_.timer.last_tick());
-    statistics_.timer.end_phase(Phase::recording, statistics_.summary);
+    if (live_view_) live_view_->tick(statistics_.last_tick);
 
+    statistics_.watch.enter(Phase::wait);
     auto stopped = collect();
-    statistics_.timer.end_phase(Phase::exchange, statistics_.summary);
     const bool is_last = simulation.state().tick == plan_.ticks;
     if (!stopped && !is_last && (schedule_.is_paced() || waits_for_viewer_)) {
       stopped = pace();
       if (!stopped) stopped = collect();
-      statistics_.timer.end_phase(Phase::pacing, statistics_.summary);
     }
     if (stopped) return *stopped;
+    statistics_.watch.enter(Phase::recording);
     radio_watch_.tick(simulation.observations(), simulation.commands());
     recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands(),
                         watch_.measured());
     keep(watch_.measured(), statistics_.summary);
     if (live_view_) live_view_->answered();
-    statistics_.timer.end_phase(Phase::recording, statistics_.summary);
     statistics_.summary.result = directing_.result();
     if (is_last || statistics_.summary.result) return Ending::finished;
+    statistics_.watch.enter(Phase::forces);
     directing_.act();
     if (recorded_) recorded_->step(watch_.measured());
     simulation.list_contacts((live_view_ && live_view_->wants_contacts()) ||
@@ -325,11 +325,16 @@ Ending Run::run_world() {
                              directing_.wants_contacts());
     simulation.list_rays((live_view_ && live_view_->wants_rays()) ||
                          (options_.pictures && options_.pictures->view.layers.rays));
-    simulation.step();
-    statistics_.timer.end_phase(Phase::physics, statistics_.summary);
+    simulation.step(&statistics_.watch);
     print_troubles();
-    statistics_.timer.end_tick(supervision_, schedule_.is_paced());
+    end_tick();
   }
+}
+
+void Run::end_tick() {
+  statistics_.last_tick = statistics_.watch.take();
+  statistics_.summary.wall += statistics_.last_tick;
+  supervision_.add(statistics_.last_tick);
 }
 
 /// Until the tick is complete. Again if the world is paused then, or if a client has connected to a
@@ -348,13 +353,14 @@ std::optional<Ending> Run::collect() {
 std::optional<Ending> Run::pace() {
   const std::uint64_t tick = world_.simulation.state().tick;
   if (std::exchange(waits_for_viewer_, false)) {
+    statistics_.watch.enter(Phase::startup);
     const auto stopped = wait([&] { return watch_.wait_for_viewer(world_.simulation.commands()); });
-    statistics_.timer.end_startup(statistics_.summary);
     if (stopped) return stopped;
     schedule_.begin(tick, supervision_.paused_for());
   }
   const auto moment = [&] { return schedule_.end_of(tick, supervision_.paused_for()); };
   if (!schedule_.is_paced()) return std::nullopt;
+  statistics_.watch.enter(Phase::pacing);
   const bool is_late = Watch::clock::now() > moment();
   if (is_late) ++statistics_.summary.late_ticks;
   const auto stopped =

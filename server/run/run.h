@@ -18,7 +18,6 @@
 #include "run/live_view.h"
 #include "run/local_endpoints.h"
 #include "run/options.h"
-#include "run/phase_timer.h"
 #include "run/radio_watch.h"
 #include "run/record.h"
 #include "run/recorders.h"
@@ -28,6 +27,7 @@
 #include "supervision/directing.h"
 #include "supervision/supervision.h"
 #include "supervision/world.h"
+#include "timing/stopwatch.h"
 
 namespace ziggurat::run {
 
@@ -45,7 +45,8 @@ struct Plan {
 /// Statistics of a run, for its summary and its report card.
 struct RunStatistics {
   reports::Summary summary;
-  PhaseTimer timer;
+  timing::Stopwatch watch;
+  timing::PhaseTimes last_tick;  ///< wall time
   std::chrono::system_clock::time_point date =
       std::chrono::system_clock::now();         ///< of the beginning
   std::vector<reports::TickStart> tick_starts;  ///< of paced ticks
@@ -90,6 +91,7 @@ class Run {
   std::optional<Ending> pace();
   std::optional<Ending> wait(const Wait& step);
   bool reset_world();
+  void end_tick();
   void print_troubles();
 
   // Ending.

@@ -35,8 +35,6 @@ void Run::complete_summary() {
   statistics_.summary.ticks = simulation.state().tick;
   statistics_.summary.simulated_s =
       static_cast<double>(statistics_.summary.ticks) * simulation.tick_length();
-  statistics_.summary.wall_s = statistics_.summary.physics_s + statistics_.summary.exchange_s +
-                               statistics_.summary.recording_s + statistics_.summary.pacing_s;
   statistics_.summary.seed = world_.seed;  // a reset may have changed it
   statistics_.summary.hash = simulation.hash();
   statistics_.summary.solver = supervision::solver_status(simulation);

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 #include "processes/scripts.h"
@@ -140,6 +141,13 @@ void check_programs(const scene::Scene& scene) {
              director.id)});
   }
   if (!problems.empty()) throw scene::SceneError(std::move(problems));
+}
+
+unsigned threads_for(const Options& options, std::span<const scene::Entity> entities) {
+  constexpr std::ptrdiff_t few = 64;  // measured: docs/performance.md
+  if (options.threads > 0) return options.threads;
+  if (std::ranges::count(entities, true, &scene::Entity::movable) < few) return 1;
+  return std::clamp(std::thread::hardware_concurrency(), 1U, 256U);
 }
 
 wire::End end_message(const reports::Summary& summary) {

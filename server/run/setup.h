@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,11 @@ wire::Run description_of(const supervision::World& world, const std::vector<std:
 /// Checks that directors can be started. @throws scene::SceneError that names those without script
 /// and command
 void check_programs(const scene::Scene& scene);
+
+/// Number of threads for the physics: what the options say, else that of the processors, if so many
+/// bodies move that a team gives more than it costs. Local controllers need none of them: they wait
+/// while the physics computes.
+unsigned threads_for(const Options& options, std::span<const scene::Entity> entities);
 
 /// Message to clients at the end of the run.
 wire::End end_message(const reports::Summary& summary);

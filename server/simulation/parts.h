@@ -31,7 +31,7 @@ struct Parts {
   void look_around();          // rays and index take the poses of the state
   bool looks_are_old = false;  // they have not since something was moved, added or removed
   /// @throws std::runtime_error that names the first entity whose state is not finite then
-  void step();
+  void step(timing::Stopwatch* watch);
   void move(std::size_t entity, const math::Pose& pose);
 
   /// All that the next step reads. @throws math::ArchiveError

@@ -215,7 +215,7 @@ const world::State& Simulation::state() const { return parts_->state; }
 const world::Observations& Simulation::observations() const { return parts_->observations; }
 world::Commands& Simulation::commands() { return parts_->commands; }
 
-void Simulation::step() { parts_->step(); }
+void Simulation::step(timing::Stopwatch* watch) { parts_->step(watch); }
 
 std::optional<std::size_t> first_not_finite(const world::Layout& layout,
                                             const world::State& state) {
@@ -232,7 +232,8 @@ std::optional<std::size_t> first_not_finite(const world::Layout& layout,
   return std::nullopt;
 }
 
-void Parts::step() {
+void Parts::step(timing::Stopwatch* watch) {
+  enter(watch, timing::Phase::forces);
   devices::Tick now = tick();
   for (const world::FloorPaint& region : commands.floor_paints) world::paint(state.floor, region);
   commands.floor_paints.clear();
@@ -242,7 +243,7 @@ void Parts::step() {
   devices.apply(now);
   set_pushes(physics, commands.pushes);
   for (unsigned i = 0; i < substeps; ++i) {
-    physics.step();
+    physics.step(watch);
     devices.after_substep(now);
   }
   if (lists_contacts) physics.list_contacts(contacts);

@@ -14,6 +14,7 @@
 #include "scene/scene.h"
 #include "simulation/placement.h"
 #include "simulation/snapshot.h"
+#include "timing/stopwatch.h"
 #include "world/commands.h"
 #include "world/layout.h"
 #include "world/state.h"
@@ -84,8 +85,9 @@ class Simulation {
   const std::vector<world::Ray>& rays() const;
 
   /// Advances by one tick.
+  /// @param watch  gets the times of its stages, on which no result depends; null: none
   /// @throws std::runtime_error that names the first entity whose state is not finite then
-  void step();
+  void step(timing::Stopwatch* watch = nullptr);
 
   /// Hash of the last tick's state and observations.
   std::uint64_t hash() const;

@@ -297,8 +297,6 @@ void Supervision::published() {
   if (steps_left_ > 0 && --steps_left_ == 0) server_.set_paused(true);
 }
 
-void Supervision::charge(Phase phase, double seconds) { budget_.add(phase, seconds); }
-
 wire::Status Supervision::status() const {
   const world::State& state = world_.simulation.state();
   wire::Status status;

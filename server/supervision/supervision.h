@@ -54,8 +54,8 @@ class Supervision {
 
   void gathered() { is_gathered_ = true; }  ///< every robot has its controller
   void published();                         ///< a tick was published
-  /// Adds wall time to a phase of the tick that ends.
-  void charge(Phase phase, double seconds);
+  /// Takes the wall time of a tick that has ended.
+  void add(const timing::PhaseTimes& tick) { budget_.add(tick); }
 
   /// A supervisor asks for a reset or a restore: the caller calls restart() between two ticks.
   bool requests_restart() const { return resetting_.has_value(); }

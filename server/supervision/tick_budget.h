@@ -2,27 +2,27 @@
 // Wall time of recent ticks by phase.
 
 #include <array>
-#include <vector>
+#include <cstddef>
+#include <cstdint>
 
-#include "network/latencies.h"
+#include "timing/phases.h"
 #include "wire/request.h"
 
 namespace ziggurat::supervision {
 
-/// Parts of a tick's wall time.
-enum class Phase { exchange, physics, recording, pacing };
-constexpr std::size_t phase_count = 4;
-
 class TickBudget {
  public:
-  /// Adds the wall time of a phase of one tick.
-  void add(Phase phase, double seconds);
+  static constexpr std::size_t remembered = 1000;  ///< ticks
 
-  /// Appends each phase that has any time to the status.
+  /// Adds a tick.
+  void add(const timing::PhaseTimes& tick);
+
+  /// Appends each phase of the remembered ticks that has any time to the status.
   void fill(wire::Status& status) const;
 
  private:
-  std::array<network::Latencies, phase_count> times_;  // by Phase
+  std::array<std::array<float, timing::phase_count>, remembered> ticks_{};  // oldest overwritten
+  std::uint64_t count_ = 0;
 };
 
 }  // namespace ziggurat::supervision

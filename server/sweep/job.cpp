@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <system_error>
 
 namespace ziggurat::sweep {
@@ -49,9 +50,12 @@ std::vector<std::string> run_command(const Experiment& experiment, const Combina
     command.push_back(axis.kind == Axis::Kind::parameter ? "--param" : "--set");
     command.push_back(fmt::format("{}={}", axis.name, combination.values[i]));
   }
+  const auto& given = experiment.run_arguments;
+  const auto is_threads = [](const std::string& word) { return word.starts_with("--threads"); };
+  if (std::ranges::none_of(given, is_threads)) command.insert(command.end(), {"--threads", "1"});
   command.insert(command.end(), {"--summary", (folder / "summary.json").string()});
   if (records) command.insert(command.end(), {"--record", (folder / "run.mcap").string()});
-  for (const std::string& argument : experiment.run_arguments) {
+  for (const std::string& argument : given) {
     command.push_back(with_number(argument, combination.run));
   }
   return command;

@@ -170,7 +170,11 @@ class Files(SceneTest):
         self.assertAlmostEqual(sum(parts[name] for name in
                                    ("physics", "exchange", "recording", "pacing")),
                                summary["wall_s"])
-        self.assertGreater(parts["physics"], 0)
+        phases = summary["phases_s"]
+        self.assertAlmostEqual(sum(phases.values()), summary["wall_s"])
+        for name in ("encode", "wait", "forces", "contacts", "solve", "integrate", "sensing"):
+            self.assertGreater(phases[name], 0, name)
+        self.assertEqual(phases["magnetism"], 0)
 
 
 class Seed(SceneTest):

@@ -40,7 +40,7 @@ class VectorEnv:
     autoreset   in the place of an episode that is over the world's next one begins, in the same step
     randomize   as in ParallelEnv
     dtype       of observations
-    command     the server's program; arguments: its other options
+    command     the server's program; arguments: its other options. Several worlds have one thread each without --threads.
 
     Arrays have the shape (n, …) if one robot acts, otherwise (n, robots, …).
     """
@@ -62,10 +62,12 @@ class VectorEnv:
         self._reward, self._terminated = reward, terminated
         self._max_ticks, self._autoreset = max_ticks, autoreset
         self._worlds: List[World] = []
+        is_told = any(word.startswith("--threads") for word in arguments)
+        threads = ["--threads", "1"] if n > 1 and not is_told else []  # worlds are stepped side by side
         try:
             for number in range(n):
                 self._worlds.append(World(str(scene), number=number, robots=robots, randomize=randomize, keeps_begin=True, command=command,
-                                          arguments=["--duration", "0", *arguments], name="vector_env"))
+                                          arguments=["--duration", "0", *threads, *arguments], name="vector_env"))
             self._shape_spaces(action_space, dtype)
         except BaseException:
             self.close()

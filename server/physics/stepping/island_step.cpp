@@ -155,6 +155,7 @@ bool violates_limit(const IslandStep& step, int of = -1) {
 bool integrate_free_island(const IslandStep& step) {
   const auto is_limit = [](const IslandItem& item) { return item.kind == IslandItem::Kind::limit; };
   if (!std::ranges::all_of(step.island.items, is_limit) || violates_limit(step)) return false;
+  enter(step.watch, timing::Phase::integrate);
   IslandMemory& memory = step.memory;
   if (!step.island.items.empty()) save_states(step.trees, step.island.trees, memory.saved_state);
   for (const int tree : step.island.trees)
@@ -276,6 +277,7 @@ void assemble_problem(const IslandStep& step) {
 
 IslandOutcome step_island(const IslandStep& step) {
   if (integrate_free_island(step)) return {};
+  enter(step.watch, timing::Phase::solve);
   IslandMemory& memory = step.memory;
   Problem& problem = memory.problem;
   assemble_problem(step);
@@ -294,6 +296,7 @@ IslandOutcome step_island(const IslandStep& step) {
   add(solution, step.report);
   if (free > 0) clear_contact_impulses(problem, memory.is_free);
   write_impulses(problem, step.constraints);
+  enter(step.watch, timing::Phase::integrate);
   if (free > 0 && integrate_free_trees(step) && !problem.leaves_trees_penetrating()) return {};
 
   compute_energy_errors(problem, memory.work, memory.energy_errors);

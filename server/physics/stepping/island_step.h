@@ -11,6 +11,7 @@
 #include "physics/stepping/impact.h"
 #include "physics/stepping/islands.h"
 #include "physics/stepping/unconstrained_trees.h"
+#include "timing/stopwatch.h"
 
 namespace ziggurat::dynamics {
 
@@ -63,6 +64,7 @@ struct alignas(64) IslandMemory {
   GeometricStiffness geometric_stiffness;
   IslandEnergyErrors energy_errors;
   std::vector<double> saved_state, displacement;
+  timing::Stopwatch watch;  ///< of the stages of its islands
 };
 
 /// An island in a step.
@@ -76,6 +78,7 @@ struct IslandStep {
   double time_step = 0;  ///< [s]
   IslandMemory& memory;
   Report& report;
+  timing::Stopwatch* watch = nullptr;  ///< gets the times of solve and integrate; null: none
 };
 
 /// Outcome of an island's step. It is left unchanged if it is to be divided.

@@ -76,16 +76,26 @@ void System::subdivide(std::span<const int> island, const IslandOutcome& outcome
 }
 
 /// Advances an island. It changes nothing of other islands.
-void System::advance_island(std::size_t island, IslandMemory& memory) {
+void System::advance_island(std::size_t island, IslandMemory& memory, bool is_measured) {
   prefetch_after(islands_, island, trees, constraints_.contacts);
   AdvancedIsland& out = advanced_[island];
   out = {};
-  out.outcome = step_island(island_step(island, memory, out.report));
+  IslandStep step = island_step(island, memory, out.report);
+  if (is_measured) step.watch = &memory.watch;
+  out.outcome = step_island(step);
   out.ran_out_of_steps = std::exchange(memory.work.ran_out_of_steps, false);
 }
 
+/// Advances islands that follow each other.
+/// @param is_measured  whether the memory's watch gets the times of their stages
+void System::advance_block(const IslandBlock& block, IslandMemory& memory, bool is_measured) {
+  if (is_measured) memory.watch.start(timing::Phase::solve);
+  for (std::size_t i = block.first; i < block.last; ++i) advance_island(i, memory, is_measured);
+  if (is_measured) memory.watch.stop();
+}
+
 /// Shares the islands among the team's threads, in blocks of similar estimated cost.
-void System::share_islands() {
+void System::share_islands(bool is_measured) {
   constexpr double blocks_of_thread = 8;
   const auto cost_of = [&](std::size_t i) {
     const double size = static_cast<double>(islands_[i].trees.size());
@@ -102,27 +112,41 @@ void System::share_islands() {
   }
   for (IslandMemory& memory : memories_) memory.solver.options = solver().options;
   team_->share(blocks_.size(), [&](std::size_t block, unsigned member) {
-    for (std::size_t i = blocks_[block].first; i < blocks_[block].last; ++i)
-      advance_island(i, memories_[member]);
+    advance_block(blocks_[block], memories_[member], is_measured);
   });
 }
 
-/// Advances all islands.
-void System::advance_islands() {
-  constexpr std::size_t few = 64;  // constraints that are not worth waking a thread
+/// Advances all islands. Their time is divided among their stages as in the last step in which
+/// these were measured: that is not each step, because an island may take no longer than to read a
+/// clock.
+/// @param watch  of the present stage; null: nothing is measured
+void System::advance_islands(timing::Stopwatch* watch) {
+  constexpr std::size_t few = 64;           // constraints that are not worth waking a thread
+  constexpr unsigned steps_per_sample = 7;  // divides no usual number of substeps
+  const bool is_measured = watch && steps_++ % steps_per_sample == 0;
   advanced_.resize(islands_.size());
-  if (team_ && islands_.size() > 1 && islands_.items.size() >= few) return share_islands();
-  for (std::size_t i = 0; i < islands_.size(); ++i) advance_island(i, memories_.front());
+  if (team_ && islands_.size() > 1 && islands_.items.size() >= few) {
+    share_islands(is_measured);
+  } else {
+    advance_block({0, islands_.size(), 0}, memories_.front(), is_measured);
+  }
+  if (is_measured) {
+    stages_ = {};
+    for (IslandMemory& memory : memories_) stages_.add(memory.watch);
+  }
+  if (watch) watch->divide_like(stages_);
 }
 
-Report System::advance(std::span<Limit> limits) {
+Report System::advance(std::span<Limit> limits, timing::Stopwatch* watch) {
+  enter(watch, timing::Phase::solve);
   constraints_.limits = limits;
   Report report;
   islands_to_subdivide.islands.clear();
   islands_to_subdivide.trees.clear();
   find_islands();
   report.awake = static_cast<int>(awake_.size());
-  advance_islands();
+  advance_islands(watch);
+  enter(watch, timing::Phase::integrate);
   for (std::size_t i = 0; i < islands_.size(); ++i) {
     const AdvancedIsland& island = advanced_[i];
     add(island.report, report);

@@ -88,7 +88,8 @@ class System {
               std::span<Limit> limits = {}, std::span<const int> chosen = {});
 
   /// Advances by one substep with the constraints of wake_disturbed().
-  Report advance(std::span<Limit> limits);
+  /// @param watch  gets the times of solve and integrate; null: none
+  Report advance(std::span<Limit> limits, timing::Stopwatch* watch = nullptr);
 
   /// Applies the impact law to touching contacts that approach: velocities change, positions stay.
   /// @param contacts, servos, limits  in: as in step(); servos with the bounds of what they may
@@ -118,9 +119,11 @@ class System {
   void clear_wrenches();
   void find_islands();
   IslandStep island_step(std::size_t island, IslandMemory& memory, Report& report);
-  void advance_island(std::size_t island, IslandMemory& memory);
-  void advance_islands();
-  void share_islands();
+  void advance_island(std::size_t island, IslandMemory& memory, bool is_measured);
+  struct IslandBlock;
+  void advance_block(const IslandBlock& block, IslandMemory& memory, bool is_measured);
+  void advance_islands(timing::Stopwatch* watch);
+  void share_islands(bool is_measured);
   void subdivide(std::span<const int> island, const IslandOutcome& outcome);
 
   Sleep sleep_;
@@ -144,6 +147,8 @@ class System {
     double cost = 0;
   };
   std::vector<IslandBlock> blocks_;
+  timing::Stopwatch stages_;    // of the islands, in the last step in which they were measured
+  unsigned steps_ = 0;          // with a watch
   std::shared_ptr<Team> team_;  // null: one thread
   // Memory of predict_velocities().
   std::vector<int> disturbed_;

@@ -42,14 +42,14 @@ void Replay::fail(const std::string& what) const {
                                    epoch_ > 0 ? fmt::format(" (epoch {})", epoch_) : "", what));
 }
 
-bool Replay::advance() {
+bool Replay::advance(timing::Stopwatch* watch) {
   const bool is_first = inputs_ == nullptr;
   if (!is_first && !acted_) act();
   const v1::Inputs* next = source_();
   if (!next) return false;
   if (!is_first && next->epoch() == epoch_) {
     if (!has_commands_) fail("they have no commands, and yet there is a next tick");
-    if (!links_) world_.simulation.step();
+    if (!links_) world_.simulation.step(watch);
   }
   inputs_ = next;
   epoch_ = next->epoch();

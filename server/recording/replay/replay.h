@@ -22,6 +22,7 @@
 #include "scene/scene.h"
 #include "simulation/simulation.h"
 #include "simulation/snapshot.h"
+#include "timing/stopwatch.h"
 #include "world/commands.h"
 #include "world/state.h"
 
@@ -61,7 +62,8 @@ class Replay {
   /// is none; then the world stays.
   /// @throws RecordingError for inputs that this world cannot have had; std::runtime_error of a
   /// step
-  bool advance();
+  /// @param watch  gets the times of the step's stages; null: none
+  bool advance(timing::Stopwatch* watch = nullptr);
   /// Does what happened after the present state: acts, then commands. advance() does it otherwise.
   /// @throws RecordingError
   void act();

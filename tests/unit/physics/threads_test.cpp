@@ -66,5 +66,22 @@ TEST(Threads, MayBeMoreAndFewer) {
   EXPECT_EQ(world.energy(), same.energy());
 }
 
+TEST(Threads, AWatchHasTheStagesOfASubstepAndChangesNoBit) {
+  using timing::Phase;
+  for (const unsigned threads : {1U, 2U}) {
+    World world(with_floor(9.8), 0.01), same(with_floor(9.8), 0.01);
+    fill(world);
+    fill(same);
+    world.set_threads(threads);
+    timing::Stopwatch watch(Phase::forces);
+    for (int i = 0; i < 30; ++i) world.step(&watch), same.step();
+    EXPECT_EQ(world.energy(), same.energy());
+    const timing::PhaseTimes times = watch.take();
+    for (const Phase stage : {Phase::forces, Phase::contacts, Phase::solve, Phase::integrate})
+      EXPECT_GT(times[stage], 0) << threads << " threads, phase " << static_cast<int>(stage);
+    EXPECT_DOUBLE_EQ(times.ticks(), times.physics());
+  }
+}
+
 }  // namespace
 }  // namespace ziggurat::physics

@@ -49,7 +49,8 @@ TEST(Summary, JsonHasTheRatesAndTheHashInFull) {
   Summary summary;
   summary.ticks = 20;
   summary.simulated_s = 4;
-  summary.wall_s = 0.5;
+  summary.wall[timing::Phase::wait] = 0.375;
+  summary.wall[timing::Phase::solve] = 0.125;
   summary.seed = 7;
   summary.hash = 0xAB;
   summary.failures.push_back({"r\xff", "drive", 4, "not UTF-8: \xff"});

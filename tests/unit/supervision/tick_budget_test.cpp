@@ -13,14 +13,35 @@ using namespace std::chrono_literals;
 
 TEST(TickBudget, NamesThePhasesThatHaveAnyTime) {
   TickBudget budget;
-  budget.add(Phase::physics, 0.25);
-  budget.add(Phase::pacing, 0.5);
+  timing::PhaseTimes tick;
+  tick[timing::Phase::startup] = 9;
+  tick[timing::Phase::solve] = 0.25;
+  budget.add(tick);
+  tick[timing::Phase::pacing] = 0.5;
+  budget.add(tick);
   wire::Status status;
   budget.fill(status);
   ASSERT_EQ(status.budget.size(), 2U);
-  EXPECT_EQ(status.budget[0].phase, "physics");
+  EXPECT_EQ(status.budget[0].phase, "solve");
   EXPECT_FLOAT_EQ(static_cast<float>(status.budget[0].wall.max), 0.25F);
   EXPECT_EQ(status.budget[1].phase, "pacing");
+}
+
+TEST(TickBudget, HasPercentilesOfTheLastTicks) {
+  TickBudget budget;
+  timing::PhaseTimes tick;
+  tick[timing::Phase::wait] = 50;
+  budget.add(tick);
+  for (std::size_t i = TickBudget::remembered; i > 0; --i) {
+    tick[timing::Phase::wait] = 1e-3 * static_cast<double>(i);
+    budget.add(tick);
+  }
+  wire::Status status;
+  budget.fill(status);
+  ASSERT_EQ(status.budget.size(), 1U);
+  EXPECT_FLOAT_EQ(static_cast<float>(status.budget[0].wall.p50), 0.5F);
+  EXPECT_FLOAT_EQ(static_cast<float>(status.budget[0].wall.p99), 0.99F);
+  EXPECT_FLOAT_EQ(static_cast<float>(status.budget[0].wall.max), 1);
 }
 
 TEST(PauseTimer, AddsUpThePauses) {

@@ -66,7 +66,7 @@ struct ServerStatus {
   std::vector<std::string> gone_robots;     ///< ids: they left the run forever
   std::vector<std::string> free_directors;  ///< ids: likewise without a session
   struct Phase {
-    std::string name;  ///< "exchange", "physics", "recording" or "pacing"
+    std::string name;  ///< "encode", "wait", "forces", "solve", … (docs/performance.md)
     Latency wall;
   };
   std::vector<Phase> budget;  ///< where the wall time of a tick goes

@@ -101,7 +101,8 @@ export interface Barrier {
   };
   histograms: { controller: string; least: number; growth: number; counts: Floats; missedTicks: number }[];
 }
-export interface Phases { tick: number; exchange: number; physics: number; recording: number; pacing: number }
+export interface Phases { tick: number; encode: number; wait: number; forces: number; magnetism: number;
+  contacts: number; solve: number; integrate: number; sensing: number; recording: number; pacing: number }
 export interface Log { level: number; message: string; name: string }
 
 export interface Observation {

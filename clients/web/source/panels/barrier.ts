@@ -8,7 +8,7 @@ import type { Panel } from "./panel";
 const states = ["?", "ready", "waited for", "answered", "paused", "draining", "lost"];
 const mostSessions = 200; // in the table
 const mostRobots = 50; // of a session, when the mouse is over it
-const phases = ["exchange", "physics", "recording", "pacing"] as const;
+const phases = ["encode", "wait", "forces", "magnetism", "contacts", "solve", "integrate", "sensing", "recording", "pacing"] as const;
 
 function seconds(value: number): string {
   if (value >= 1) return `${value.toFixed(2)} s`;
@@ -40,7 +40,7 @@ export class BarrierPanel implements Panel {
   /** The mean over the last frames, as a bar. */
   private phases(): HTMLElement {
     const { timeline } = this.app;
-    const sums = { exchange: 0, physics: 0, recording: 0, pacing: 0 };
+    const sums = Object.fromEntries(phases.map((phase) => [phase, 0])) as Record<typeof phases[number], number>;
     let count = 0;
     for (let s = timeline.last; s >= timeline.first && s > timeline.last - 60; --s) {
       const message = timeline.at(s)?.messages.get("/phases");

@@ -1,10 +1,18 @@
-// The substep of the drop scene (n/2 boxes and n/2 cylinders of 1 cm, 0.25 kg, at the areal density
-// of dynamics3d_single_body_test, 10 ms substeps) in two worlds, interleaved round by round:
+// Substeps of bodies that fall, in one of two worlds:
 //
-//   ours   physics::World, its state read once per tick of 20 substeps
-//   raw    bare Bullet in raw metres with its default margins and 10 iterations, box floor of 1 cm
+//   ours     physics::World, its state read once per tick of 20 substeps
+//   bullet   bare Bullet in raw metres with its default margins and 10 iterations, box floor
 //
-// Thread CPU time. usage: bench_drop [rounds]
+// usage: bench_bodies SCENE COUNT (ours | bullet)
+//
+// SCENE is one of
+//
+//   fall    the first 0.6 s of the drop scene: n/2 boxes and n/2 cylinders of 1 cm, 0.25 kg, at the
+//           areal density of dynamics3d_single_body_test
+//   whole   8 s of it
+//   pile    the first second of n boxes of 10 cm, 1 kg, dropped in layers into a bin
+//
+// Substeps of 10 ms. Prints microseconds of the thread's CPU time per substep.
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
@@ -19,9 +27,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
+#include <memory>
 #include <random>
+#include <stdexcept>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "physics/bodies/convert.h"
@@ -75,35 +86,56 @@ std::vector<Placed> drop_scene(int count) {
   return placed;
 }
 
+/// Walls of a bin, then boxes in layers, turned at random.
+std::vector<Placed> pile_scene(int count) {
+  constexpr double side = 0.1, pitch = 0.15;
+  const int across = std::max(3, static_cast<int>(std::lround(std::cbrt(count / 2.0))));
+  const double inner = across * pitch, height = 0.15 * count / across / across + 0.5;
+  std::vector<Placed> placed;
+  for (const double sign : {1.0, -1.0}) {
+    const double middle = sign * (inner / 2 + 0.1);
+    placed.push_back({scene::Box{{0.2, inner, height}}, standing(middle, 0), 0});
+    placed.push_back({scene::Box{{inner + 0.4, 0.2, height}}, standing(0, middle), 0});
+  }
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int i = 0; i < count; ++i) {
+    const math::Vector3 at(pitch * (i % across - (across - 1) / 2.0),
+                           pitch * (i / across % across - (across - 1) / 2.0),
+                           pitch * (i / (across * across) + 1));
+    math::Quaternion turn(uniform(engine), uniform(engine), uniform(engine), uniform(engine));
+    turn.normalize();
+    const math::Vector3 bottom = at - turn * math::Vector3(0, 0, side / 2);
+    placed.push_back({scene::Box{{side, side, side}}, {bottom, turn}, 1});
+  }
+  return placed;
+}
+
 double cpu_seconds() {
   timespec now;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Microseconds per substep over the fall, the settling and the whole 8 s.
-struct Times {
-  double fall, settle, all;
+/// A scene, and for how long it is measured.
+struct Experiment {
+  std::vector<Placed> placed;
+  int ticks = 0;  // of 0.2 s
 };
 
-Times time_run(const std::function<void(int)>& tick) {
-  double mark[4] = {cpu_seconds()};
-  for (int n = 0; n < 40; ++n) {  // ticks of 0.2 s
-    tick(n);
-    if (n == 2) mark[1] = cpu_seconds();
-    if (n == 9) mark[2] = cpu_seconds();
-  }
-  mark[3] = cpu_seconds();
-  return {(mark[1] - mark[0]) / (3 * per_tick) * 1e6, (mark[2] - mark[1]) / (7 * per_tick) * 1e6,
-          (mark[3] - mark[0]) / (40 * per_tick) * 1e6};
+/// Microseconds per substep.
+double time_run(const Experiment& experiment, const std::function<void()>& tick) {
+  const double begin = cpu_seconds();
+  for (int n = 0; n < experiment.ticks; ++n) tick();
+  return (cpu_seconds() - begin) / (experiment.ticks * per_tick) * 1e6;
 }
 
-Times ours(const std::vector<Placed>& placed) {
+double ours(const Experiment& experiment) {
   scene::Physics settings;
   settings.floor = scene::Floor{};
   settings.gravity = 9.8;
   physics::World world(settings, substep);
-  for (const Placed& each : placed) {
+  for (const Placed& each : experiment.placed) {
     scene::Entity entity;
     entity.kind = scene::EntityKind::box;
     entity.movable = each.mass > 0;
@@ -116,7 +148,7 @@ Times ours(const std::vector<Placed>& placed) {
     world.add(entity);
   }
   world::State state;
-  return time_run([&](int) {
+  return time_run(experiment, [&] {
     for (int i = 0; i < per_tick; ++i) world.step();
     world.read(state);
   });
@@ -154,7 +186,7 @@ btTransform centre(const Placed& placed) {
   return physics::to_bullet(placed.pose * math::Pose{{0, 0, up}, math::Quaternion::Identity()});
 }
 
-Times raw(const std::vector<Placed>& placed) {
+double bullet(const Experiment& experiment) {
   BareBodies bare;
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher(&configuration);
@@ -164,46 +196,33 @@ Times raw(const std::vector<Placed>& placed) {
   world.setGravity(btVector3(0, 0, -9.8));
   btTransform floor(btQuaternion::getIdentity(), btVector3(0, 0, -0.005));
   world.addRigidBody(&bare.add(std::make_unique<btBoxShape>(btVector3(2, 2, 0.005)), 0, floor));
-  for (const Placed& each : placed) {
+  for (const Placed& each : experiment.placed) {
     world.addRigidBody(&bare.add(bullet_shape(each), each.mass, centre(each)));
   }
-  const Times times = time_run([&](int) {
+  const double time = time_run(experiment, [&] {
     for (int i = 0; i < per_tick; ++i) world.stepSimulation(substep, 0);
   });
   for (auto& body : bare.bodies) world.removeRigidBody(body.get());
-  return times;
+  return time;
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
-void compare(int count, int rounds) {
-  const std::vector<Placed> placed = drop_scene(count);
-  std::vector<Times> own, bare;
-  for (int round = 0; round < rounds; ++round) {
-    own.push_back(ours(placed));
-    bare.push_back(raw(placed));
-  }
-  const auto row = [&](const char* phase, double Times::*part) {
-    std::vector<double> us, faster;
-    for (int i = 0; i < rounds; ++i) {
-      us.push_back(own[i].*part);
-      faster.push_back(bare[i].*part / (own[i].*part));
-    }
-    fmt::print("| {} | {} | {:.0f} | {:.2f} |\n", count, phase, median(us), median(faster));
-  };
-  row("fall, 0-0.6 s", &Times::fall);
-  row("settling, 0.6-2 s", &Times::settle);
-  row("whole, 0-8 s", &Times::all);
+Experiment experiment_of(std::string_view scene, int count) {
+  if (scene == "fall") return {drop_scene(count), 3};
+  if (scene == "whole") return {drop_scene(count), 40};
+  if (scene == "pile") return {pile_scene(count), 5};
+  throw std::invalid_argument("SCENE is fall, whole or pile");
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  const int rounds = argc > 1 ? std::atoi(argv[1]) : 7;
-  fmt::print("| bodies | phase | us per substep | raw Bullet / ours |\n|---|---|---|---|\n");
-  for (const int count : {100, 400, 1600})
-    compare(count, count > 1000 ? std::max(1, rounds / 2) : rounds);
+int main(int argc, char** argv) try {
+  if (argc != 4) throw std::invalid_argument("write bench_bodies SCENE COUNT (ours | bullet)");
+  const Experiment experiment = experiment_of(argv[1], std::stoi(argv[2]));
+  const std::string_view world = argv[3];
+  if (world != "ours" && world != "bullet") throw std::invalid_argument("write ours or bullet");
+  fmt::print("{:.3f}\n", world == "ours" ? ours(experiment) : bullet(experiment));
+  return 0;
+} catch (const std::exception& error) {
+  fmt::print(stderr, "bench_bodies: {}\n", error.what());
+  return 1;
 }
