@@ -30,6 +30,9 @@ std::unique_ptr<Kind> make_footbot_motor_ground();
 std::unique_ptr<Kind> make_distance_scanner();
 std::unique_ptr<Kind> make_omnidirectional_camera();
 std::unique_ptr<Kind> make_perspective_camera();
+std::unique_ptr<Kind> make_quadrotor();
+std::unique_ptr<Kind> make_kilobot_motors();
+std::unique_ptr<Kind> make_kilobot_communication();
 
 Devices::Devices() {
   constexpr std::array kinds{make_joints,
@@ -53,7 +56,10 @@ Devices::Devices() {
                              make_footbot_motor_ground,
                              make_distance_scanner,
                              make_omnidirectional_camera,
-                             make_perspective_camera};
+                             make_perspective_camera,
+                             make_quadrotor,
+                             make_kilobot_motors,
+                             make_kilobot_communication};
   for (const auto make : kinds) kinds_.push_back(make());
 }
 

@@ -68,6 +68,10 @@ class World {
   void set_turret(std::size_t entity, std::optional<double> speed);
   double turret(std::size_t entity) const;  ///< of the turret in the robot, [-pi, pi] [rad]
 
+  /// The target of an entity that flies, to be changed. At the start it hovers where it is.
+  /// @param entity  one with a flight, in order of adding
+  FlightTarget& flight_target(std::size_t entity);
+
   /// Sets the currents of all magnets: current times its active field is added to a magnet's
   /// passive one. 0 at the start; without effect where the scene has no magnetism.
   /// @param currents  of the magnets of all entities, in order of adding

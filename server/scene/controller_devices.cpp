@@ -35,6 +35,7 @@ struct DeviceRow {
   Enable enable;
   bool is_carried = true;        ///< an entity must carry it: controllers.cpp checks that
   std::string_view places = {};  ///< of a device that describes itself: DevicePlace::name
+  std::string_view kind = {};    ///< likewise, if its kind has not the name of the element
 };
 
 // --- joints -------------------------------------------------------------------------------------
@@ -286,6 +287,22 @@ void enable_scanner(const Enabling& e) {
 
 void enable_nothing(const Enabling&) {}
 
+/// Its medium may be left out: it is the first one of LEDs then.
+void enable_kilobot_led(const Enabling& e) {
+  LedsUse& use = e.devices.leds.emplace();
+  if (e.element.has("medium")) use.medium = read_medium(e.draft, e.element, MediumKind::led);
+}
+
+/// Its medium may be left out: robots without one hear each other.
+void enable_kilobot_communication(const Enabling& e) {
+  if (e.element.has("medium")) {
+    e.described->medium = read_medium(e.draft, e.element, MediumKind::kilobot_communication);
+  }
+  e.described->noise = e.element.optional("noise_std_dev", non_negative, 0.0);
+  e.described->loss = e.element.optional("message_drop_prob", probability, 0.0);
+  e.element.without_effect("show_rays", boolean, "messages are not drawn");
+}
+
 // --- devices that are only checked so far -------------------------------------------------------
 
 void enable_plain(const Enabling& e) {
@@ -295,7 +312,7 @@ void enable_plain(const Enabling& e) {
 
 // --- the tables ---------------------------------------------------------------------------------
 
-constexpr std::array<DeviceRow, 14> actuator_rows{{
+constexpr std::array<DeviceRow, 17> actuator_rows{{
     {"joints", "default", "", enable_joint_actuators, false},
     {"radios", "default", "", enable_radios_actuator},
     {"leds", "default", "", enable_leds},
@@ -305,14 +322,17 @@ constexpr std::array<DeviceRow, 14> actuator_rows{{
     {"differential_steering", "default", "", enable_wheels},
     {"gripper", "default", "gripper devices", enable_plain},
     {"range_and_bearing", "default", "", enable_range_and_bearing_actuator},
-    {"quadrotor_position", "default", "quadrotor_position devices", enable_plain},
-    {"quadrotor_speed", "default", "quadrotor_speed devices", enable_plain},
+    {"quadrotor_position", "default", "", enable_nothing, true, "quadrotor", "quadrotor"},
+    {"quadrotor_speed", "default", "", enable_nothing, true, "quadrotor", "quadrotor"},
     {"footbot_turret", "default", "", enable_turret},
     {"footbot_gripper", "default", "footbot_gripper devices", enable_plain},
     {"footbot_distance_scanner", "default", "", enable_nothing, true, "footbot_distance_scanner"},
+    {"kilobot_differential_drive", "default", "", enable_nothing, true, "kilobot_motors"},
+    {"kilobot_led", "default", "", enable_kilobot_led},
+    {"kilobot_communication", "default", "", enable_nothing, true, "kilobot_communication"},
 }};
 
-constexpr std::array<DeviceRow, 21> sensor_rows{{
+constexpr std::array<DeviceRow, 24> sensor_rows{{
     {"joints", "default", "", enable_joint_sensors, false},
     {"radios", "default", "", enable_radios_sensor},
     {"cameras", "default", "", enable_cameras, false},
@@ -330,11 +350,15 @@ constexpr std::array<DeviceRow, 21> sensor_rows{{
     {"colored_blob_perspective_camera", "default", "", enable_blob_camera, true,
      "colored_blob_perspective_camera"},
     {"footbot_proximity", "default", "", enable_footbot_proximity},
+    {"eyebot_proximity", "default", "", enable_footbot_proximity},
     {"footbot_light", "rot_z_only", "", enable_rays_and_noise, true, "light"},
     {"eyebot_light", "rot_z_only", "", enable_rays_and_noise, true, "light"},
     {"footbot_base_ground", "rot_z_only", "", enable_rays_and_noise, true, "base_ground"},
     {"footbot_motor_ground", "rot_z_only", "", enable_rays_and_noise, true, "motor_ground"},
     {"footbot_turret_encoder", "default", "", enable_turret_encoder},
+    {"kilobot_light", "rot_z_only", "", enable_rays_and_noise, true, "light", "light"},
+    {"kilobot_communication", "default", "", enable_kilobot_communication, true,
+     "kilobot_communication"},
     {"footbot_distance_scanner", "rot_z_only", "", enable_scanner, true,
      "footbot_distance_scanner"},
 }};
@@ -355,13 +379,14 @@ void read_device(const Enabling& e, const DeviceRow& row) {
   e.element.done();
 }
 
-/// The use of a device that describes itself: its actuator and its sensor share one.
+/// The use of a device that describes itself: all elements of its kind share one.
 DescribedUse* described_use(const DeviceRow& row, ControllerDevices& devices, bool is_sensor) {
   if (row.places.empty()) return nullptr;
-  auto use = std::ranges::find(devices.described, row.name, &DescribedUse::element);
+  const std::string_view kind = row.kind.empty() ? row.name : row.kind;
+  auto use = std::ranges::find(devices.described, kind, &DescribedUse::kind);
   if (use == devices.described.end()) {
     use = devices.described.insert(devices.described.end(), DescribedUse());
-    use->element = row.name;
+    use->kind = kind;
     use->places = row.places;
   }
   (is_sensor ? use->sensor : use->actuator) = true;

@@ -115,13 +115,15 @@ constexpr std::array<Component, 8> components{{
     {"battery", [](const Entity& e) { return e.devices.battery.has_value(); }, "battery"},
 }};
 
-constexpr std::array<Component, 6> robot_components{{
+constexpr std::array<Component, 8> robot_components{{
     {"differential_steering", [](const Entity& e) { return e.axle_length.has_value(); }, ""},
     {"footbot_turret", [](const Entity& e) { return e.turret.has_value(); }, ""},
     {"footbot_turret_encoder", [](const Entity& e) { return e.turret.has_value(); }, ""},
     {"gripper", [](const Entity& e) { return e.kind == EntityKind::foot_bot; }, ""},
-    {"quadrotor_position", [](const Entity&) { return false; }, ""},
-    {"quadrotor_speed", [](const Entity&) { return false; }, ""},
+    {"footbot_proximity", [](const Entity& e) { return e.kind == EntityKind::foot_bot; }, ""},
+    {"eyebot_proximity", [](const Entity& e) { return e.kind == EntityKind::eye_bot; }, ""},
+    {"kilobot_led", [](const Entity& e) { return e.kind == EntityKind::kilobot; }, ""},
+    {"footbot_gripper", [](const Entity& e) { return e.kind == EntityKind::foot_bot; }, ""},
 }};
 
 /// Whether a built-in robot has a device that is not in the table `components`.
@@ -129,13 +131,10 @@ bool comes_with(const Entity& entity, std::string_view device) {
   for (const Component& component : robot_components) {
     if (component.device == device) return component.is_carried(entity);
   }
-  return entity.kind == EntityKind::foot_bot || !device.starts_with("footbot_");
+  return false;
 }
 
-std::string_view kind_of(const Entity& entity) {
-  if (entity.kind == EntityKind::foot_bot) return "foot-bot";
-  return entity.kind == EntityKind::e_puck ? "e-puck" : "prototype";
-}
+std::string_view kind_of(const Entity& entity) { return to_string(entity.kind); }
 
 /// Part that an entity needs for a device and does not have, or nothing.
 std::optional<std::string> missing_for(const Entity& entity, const DeviceUse& use) {

@@ -274,11 +274,12 @@ struct CamerasUse {
 
 /// A device that describes itself (world/described.h), as a controller enables it.
 struct DescribedUse {
-  std::string_view element;  ///< name of its element, of the table of all devices
-  std::string_view places;   ///< name of the places that it uses
+  std::string_view kind;    ///< of the table of all devices: several elements may be of one
+  std::string_view places;  ///< name of the places that it uses
   bool actuator = false, sensor = false;
   bool show_rays = false;
   double noise = 0;                   ///< in the kind's unit, >= 0
+  double loss = 0;                    ///< probability that a message is lost, 0 ... 1
   std::optional<std::size_t> medium;  ///< index into Scene::media
 };
 

@@ -10,8 +10,6 @@ namespace {
 /// Elements whose table has another name.
 constexpr std::pair<std::string_view, const char*> names[] = {
     {"footbot_gripper", "gripper"},
-    {"quadrotor_position", "quadrotor"},
-    {"quadrotor_speed", "quadrotor"},
 };
 
 }  // namespace

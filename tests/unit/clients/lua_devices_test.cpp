@@ -284,13 +284,12 @@ TEST_F(Devices, PositioningHasOneFormOfEachRotation) {
 }
 
 TEST_F(Devices, ThatDoNotWorkYetAreEmptyTables) {
-  for (const char* device : {"footbot_gripper", "quadrotor_speed"}) {
+  for (const char* device : {"footbot_gripper"}) {
     robot_.add_devices_to_come(device);
   }
   EXPECT_RUNS(start(R"lua(
     function step()
       for _ in pairs(robot.gripper) do error("it has a reading") end
-      for _ in pairs(robot.quadrotor) do error("it has a reading") end
       assert(robot.ground == nil, "nothing enables it")
     end
   )lua"));

@@ -181,15 +181,15 @@ TEST(Controllers, EveryNameOfTheDialectIsKnown) {
   const auto warnings = texts_of(result, Problem::Severity::warning);
   for (const char* subject :
        {": gripper devices do not work yet: <gripper> is checked, and its table in Lua is empty",
-        "quadrotor_speed devices do not work yet"}) {
+        "footbot_gripper devices do not work yet"}) {
     EXPECT_EQ(count_containing(warnings, subject), 1u) << subject << all_problems(result);
   }
   const auto& to_come = result.scene.controllers.at(0).devices.to_come;
-  EXPECT_EQ(to_come.size(), 4u);  // of 32
+  EXPECT_EQ(to_come.size(), 2u);  // of 32
   const auto& described = result.scene.controllers.at(0).devices.described;
-  EXPECT_EQ(described.size(), 8u) << "the distance scanner is one device";
+  EXPECT_EQ(described.size(), 9u) << "scanner and quadrotor are one device each";
   const auto scanner =
-      std::ranges::find(described, "footbot_distance_scanner", &DescribedUse::element);
+      std::ranges::find(described, "footbot_distance_scanner", &DescribedUse::kind);
   ASSERT_NE(scanner, described.end());
   EXPECT_TRUE(scanner->actuator && scanner->sensor);
 }
