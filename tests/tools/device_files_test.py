@@ -40,7 +40,8 @@ for path in sorted(listed - found):
     print(f"docs/adding-a-device.md lists {path}, which does not name light sensors")
 if len(listed) > most:
     print(f"light sensors are in {len(listed)} files; a device must cost at most {most}")
+old_words = {"server/scene/old_words.cpp"}  # has what other versions called its attribute
 others = set(files_that_name(SCANNER))
-if len(others) > len(listed):
+if len(others - old_words) > len(listed):
     print(f"the distance scanner is in {len(others)} files: {', '.join(sorted(others))}")
-sys.exit(found != listed or len(listed) > most or len(others) > len(listed))
+sys.exit(found != listed or len(listed) > most or len(others - old_words) > len(listed))
