@@ -29,6 +29,18 @@ Entity::Kind kind_of(scene::EntityKind kind) {
       return Entity::FOOT_BOT;
     case scene::EntityKind::e_puck:
       return Entity::E_PUCK;
+    case scene::EntityKind::eye_bot:
+      return Entity::EYE_BOT;
+    case scene::EntityKind::spiri:
+      return Entity::SPIRI;
+    case scene::EntityKind::mini_quadrotor:
+      return Entity::MINI_QUADROTOR;
+    case scene::EntityKind::kilobot:
+      return Entity::KILOBOT;
+    case scene::EntityKind::pi_puck:
+      return Entity::PI_PUCK;
+    case scene::EntityKind::builderbot:
+      return Entity::BUILDERBOT;
     case scene::EntityKind::light:
       break;
   }

@@ -21,7 +21,7 @@ world::Range extend(world::Range& of_robot, std::size_t begin, std::size_t count
 void Described::lay_out(const Carrier& carrier, world::RobotLayout& robot,
                         world::Layout& layout) const {
   const auto& uses = carrier.enabled.described;
-  const auto use = std::ranges::find(uses, kind_.name, &scene::DescribedUse::element);
+  const auto use = std::ranges::find(uses, kind_.name, &scene::DescribedUse::kind);
   if (use == uses.end()) return;
   for (const scene::DevicePlace& place : carrier.entity.devices.places) {
     if (place.name != use->places) continue;
@@ -55,7 +55,7 @@ void Described::add(const Setting& setting) {
     }
     if (devices.count == 0) continue;
     const auto& uses = setting.enabled(layout).described;
-    const auto use = std::ranges::find(uses, kind_.name, &scene::DescribedUse::element);
+    const auto use = std::ranges::find(uses, kind_.name, &scene::DescribedUse::kind);
     std::vector<scene::DevicePlace> places;
     std::ranges::copy_if(setting.entity(layout.entity).devices.places, std::back_inserter(places),
                          [&](const auto& place) { return place.name == use->places; });

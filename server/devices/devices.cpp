@@ -35,6 +35,9 @@ std::unique_ptr<Kind> make_footbot_gripper();
 std::unique_ptr<Kind> make_epuck_proximity();
 std::unique_ptr<Kind> make_epuck_light();
 std::unique_ptr<Kind> make_epuck_ground();
+std::unique_ptr<Kind> make_quadrotor();
+std::unique_ptr<Kind> make_kilobot_motors();
+std::unique_ptr<Kind> make_kilobot_communication();
 
 Devices::Devices() {
   constexpr std::array kinds{make_joints,
@@ -63,7 +66,10 @@ Devices::Devices() {
                              make_footbot_gripper,
                              make_epuck_proximity,
                              make_epuck_light,
-                             make_epuck_ground};
+                             make_epuck_ground,
+                             make_quadrotor,
+                             make_kilobot_motors,
+                             make_kilobot_communication};
   for (const auto make : kinds) kinds_.push_back(make());
 }
 

@@ -46,6 +46,12 @@ inline Pose inverse(const Pose& a_b) {
   return {-(inverted * a_b.position), inverted};
 }
 
+/// Heading of a pose in W: of its x axis about z, from the x axis of W [rad].
+inline double heading_of(const Pose& pose) {
+  const Vector3 ahead = pose.orientation * Vector3::UnitX();
+  return std::atan2(ahead.y(), ahead.x());
+}
+
 /// Principal axes of an inertia as a rotation; none where the inertia is diagonal already.
 Quaternion principal_axes(const Eigen::Matrix3d& inertia);
 

@@ -17,6 +17,15 @@ void LinkBody::archive(math::Archive& archive) {
   archive("magnitude", touch->magnitude);
 }
 
+void FlightTarget::archive(math::Archive& archive) {
+  archive("holds_position", holds_position);
+  archive("position", position);
+  archive("velocity", velocity);
+  archive("holds_heading", holds_heading);
+  archive("heading", heading);
+  archive("turn_rate", turn_rate);
+}
+
 void Body::archive(math::Archive& archive) {
   archive("placed", placed);
   archive("links", links);
@@ -30,6 +39,7 @@ void Body::archive(math::Archive& archive) {
     archive("speed", turret->speed);
     archive("angle", turret->angle);
   }
+  if (flight) flight->target.archive(archive);
 }
 
 namespace {

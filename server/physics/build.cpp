@@ -4,6 +4,7 @@
 
 #include "physics/bodies/bodies.h"
 #include "physics/collision/shape.h"
+#include "physics/flight.h"
 #include "physics/magnet_source.h"
 #include "physics/welding.h"
 
@@ -27,7 +28,7 @@ LinkBody link_body(const scene::Link& link, bool moves, const Pose& placed) {
 /// Ground motion of a body on wheels or on a plane, unless it is loose.
 std::optional<scene::Traction> traction_of(const scene::Entity& entity,
                                            const scene::Physics& physics) {
-  if (!entity.movable || entity.traction) return entity.traction;
+  if (!entity.movable || entity.traction || entity.flight) return entity.traction;
   if (entity.kind == scene::EntityKind::prototype) return std::nullopt;
   const scene::Plane* plane = physics.flat ? plane_of(entity, physics) : nullptr;
   if (!plane) return std::nullopt;
@@ -54,6 +55,8 @@ void make_single_part(Body& body, const scene::Entity& entity, const std::vector
   if (const auto traction = traction_of(entity, physics)) {
     body.ground = GroundMotion{.limits = *traction};
   }
+  if (entity.flight)
+    body.flight = FlyingBody{.limits = *entity.flight, .target = hover_at(entity.pose)};
 }
 
 void make_parts(Body& body, const scene::Entity& entity, const std::vector<Pose>& assembled,
@@ -69,7 +72,7 @@ void make_parts(Body& body, const scene::Entity& entity, const std::vector<Pose>
 }  // namespace
 
 bool is_single_part(const scene::Entity& entity) {
-  if (scene::is_single(entity.kind) || entity.traction) return true;
+  if (scene::is_single(entity.kind) || entity.traction || entity.flight) return true;
   return entity.kind == scene::EntityKind::prototype && entity.links.size() == 1 &&
          entity.links[0].collides && entity.devices.magnets.empty();
 }

@@ -46,7 +46,8 @@ dynamics::Tree make_tree(const Body& body, const scene::Entity& entity,
     if (part != body.links[joint.parent].part) join(links[part], body, joint);
   }
   dynamics::Tree tree(std::move(links), base_pose(body), freedoms_of(body, entity, physics));
-  tree.gravity.z() = -physics.gravity.value_or(0);
+  // Rotors of a flying body balance it all the time (physics/flight.h).
+  if (!body.flight) tree.gravity.z() = -physics.gravity.value_or(0);
   return tree;
 }
 

@@ -7,6 +7,7 @@
 
 #include "physics/contact_sensing.h"
 #include "physics/core.h"
+#include "physics/flight.h"
 #include "physics/forces.h"
 #include "physics/magnets.h"
 #include "physics/wheels.h"
@@ -27,6 +28,7 @@ constexpr std::array choices{
     +[](const scene::Physics&) { return make<ViscousDamping>(); },
     +[](const scene::Physics& p) { return p.magnetism ? make<Magnets>(*p.magnetism) : nullptr; },
     +[](const scene::Physics&) { return make<Wheels>(); },
+    +[](const scene::Physics&) { return make<Flight>(); },
     +[](const scene::Physics&) { return make<ContactSensing>(); },
 };
 

@@ -143,6 +143,10 @@ bool World::holds(std::size_t entity) const {
   return grip && !grip->is_torn;
 }
 
+FlightTarget& World::flight_target(std::size_t entity) {
+  return parts_->bodies[entity].flight.value().target;
+}
+
 void World::set_currents(std::span<const double> currents) {
   for (Body& body : parts_->bodies) {
     for (std::size_t i = 0; i < body.magnets.size(); ++i) {

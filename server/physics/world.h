@@ -77,6 +77,10 @@ class World {
   void release(std::size_t entity);      ///< opens the gripper
   bool holds(std::size_t entity) const;  ///< false once a grip tore, or what it held was removed
 
+  /// The target of an entity that flies, to be changed. At the start it hovers where it is.
+  /// @param entity  one with a flight, in order of adding
+  FlightTarget& flight_target(std::size_t entity);
+
   /// Sets the currents of all magnets: current times its active field is added to a magnet's
   /// passive one. 0 at the start; without effect where the scene has no magnetism.
   /// @param currents  of the magnets of all entities, in order of adding

@@ -31,10 +31,10 @@ using Enable = void (*)(const Enabling&);
 struct DeviceRow {
   std::string_view name;
   std::string_view implementation;  ///< empty: any of those that the dialect has
-  std::string_view subject;         ///< of the notice that it has no effect yet; empty: it has
   Enable enable;
   bool is_carried = true;        ///< an entity must carry it: controllers.cpp checks that
   std::string_view places = {};  ///< of a device that describes itself: DevicePlace::name
+  std::string_view kind = {};    ///< likewise, if its kind has not the name of the element
 };
 
 // --- joints -------------------------------------------------------------------------------------
@@ -310,80 +310,88 @@ void enable_gripper(const Enabling& e) {
 
 void enable_nothing(const Enabling&) {}
 
-// --- devices that are only checked so far -------------------------------------------------------
+/// Its medium may be left out: it is the first one of LEDs then.
+void enable_kilobot_led(const Enabling& e) {
+  LedsUse& use = e.devices.leds.emplace();
+  if (e.element.has("medium")) use.medium = read_medium(e.draft, e.element, MediumKind::led);
+}
 
-void enable_plain(const Enabling& e) {
-  e.element.optional("show_rays", boolean);
-  e.element.optional("noise_level", non_negative);
+/// Its medium may be left out: robots without one hear each other.
+void enable_kilobot_communication(const Enabling& e) {
+  if (e.element.has("medium")) {
+    e.described->medium = read_medium(e.draft, e.element, MediumKind::kilobot_communication);
+  }
+  e.described->noise = e.element.optional("noise_std_dev", non_negative, 0.0);
+  e.described->loss = e.element.optional("message_drop_prob", probability, 0.0);
+  e.element.without_effect("show_rays", boolean, "messages are not drawn");
 }
 
 // --- the tables ---------------------------------------------------------------------------------
 
 constexpr auto actuator_rows = std::to_array<DeviceRow>({
-    {"joints", "default", "", enable_joint_actuators, false},
-    {"radios", "default", "", enable_radios_actuator},
-    {"leds", "default", "", enable_leds},
-    {"directional_leds", "default", "", enable_directional_leds},
-    {"tags", "default", "", enable_tags},
-    {"magnets", "default", "", enable_magnets},
-    {"differential_steering", "default", "", enable_wheels},
-    {"gripper", "default", "", enable_gripper, true, "gripper"},
-    {"range_and_bearing", "default", "", enable_range_and_bearing_actuator},
-    {"quadrotor_position", "default", "quadrotor_position devices", enable_plain},
-    {"quadrotor_speed", "default", "quadrotor_speed devices", enable_plain},
-    {"footbot_turret", "default", "", enable_turret},
-    {"footbot_gripper", "default", "", enable_gripper, true, "gripper"},
-    {"footbot_distance_scanner", "default", "", enable_nothing, true, "footbot_distance_scanner"},
-    {"wifi", "default", "", enable_radios_actuator},
-    {"epuck_wheels", "", "", enable_epuck_wheels},
-    {"epuck_leds", "", "", enable_leds},
-    {"epuck_range_and_bearing", "", "", enable_range_and_bearing_actuator},
+    {"joints", "default", enable_joint_actuators, false},
+    {"radios", "default", enable_radios_actuator},
+    {"leds", "default", enable_leds},
+    {"directional_leds", "default", enable_directional_leds},
+    {"tags", "default", enable_tags},
+    {"magnets", "default", enable_magnets},
+    {"differential_steering", "default", enable_wheels},
+    {"gripper", "default", enable_gripper, true, "gripper"},
+    {"range_and_bearing", "default", enable_range_and_bearing_actuator},
+    {"quadrotor_position", "default", enable_nothing, true, "quadrotor", "quadrotor"},
+    {"quadrotor_speed", "default", enable_nothing, true, "quadrotor", "quadrotor"},
+    {"footbot_turret", "default", enable_turret},
+    {"footbot_gripper", "default", enable_gripper, true, "gripper"},
+    {"footbot_distance_scanner", "default", enable_nothing, true, "footbot_distance_scanner"},
+    {"kilobot_differential_drive", "default", enable_nothing, true, "kilobot_motors"},
+    {"kilobot_led", "default", enable_kilobot_led},
+    {"kilobot_communication", "default", enable_nothing, true, "kilobot_communication"},
+    {"wifi", "default", enable_radios_actuator},
+    {"epuck_wheels", "", enable_epuck_wheels},
+    {"epuck_leds", "", enable_leds},
+    {"epuck_range_and_bearing", "", enable_range_and_bearing_actuator},
 });
 
 constexpr auto sensor_rows = std::to_array<DeviceRow>({
-    {"joints", "default", "", enable_joint_sensors, false},
-    {"radios", "default", "", enable_radios_sensor},
-    {"cameras", "default", "", enable_cameras, false},
-    {"imus", "default", "", enable_imus, false},
-    {"contact_sensors", "default", "", enable_contact_sensors, false},
-    {"proximity", "default", "", enable_proximity},
-    {"positioning", "default", "", enable_positioning, false},
-    {"differential_steering", "default", "", enable_wheel_encoders},
-    {"battery", "default", "", enable_battery},
-    {"ground", "rot_z_only", "", enable_rays_and_noise, true, "ground"},
-    {"light", "default", "", enable_rays_and_noise, true, "light"},
-    {"range_and_bearing", "medium", "", enable_range_and_bearing_sensor},
-    {"colored_blob_omnidirectional_camera", "rot_z_only", "", enable_blob_camera, true,
+    {"joints", "default", enable_joint_sensors, false},
+    {"radios", "default", enable_radios_sensor},
+    {"cameras", "default", enable_cameras, false},
+    {"imus", "default", enable_imus, false},
+    {"contact_sensors", "default", enable_contact_sensors, false},
+    {"proximity", "default", enable_proximity},
+    {"positioning", "default", enable_positioning, false},
+    {"differential_steering", "default", enable_wheel_encoders},
+    {"battery", "default", enable_battery},
+    {"ground", "rot_z_only", enable_rays_and_noise, true, "ground"},
+    {"light", "default", enable_rays_and_noise, true, "light"},
+    {"range_and_bearing", "medium", enable_range_and_bearing_sensor},
+    {"colored_blob_omnidirectional_camera", "rot_z_only", enable_blob_camera, true,
      "colored_blob_omnidirectional_camera"},
-    {"colored_blob_perspective_camera", "default", "", enable_blob_camera, true,
+    {"colored_blob_perspective_camera", "default", enable_blob_camera, true,
      "colored_blob_perspective_camera"},
-    {"footbot_proximity", "default", "", enable_footbot_proximity},
-    {"footbot_light", "rot_z_only", "", enable_rays_and_noise, true, "light"},
-    {"eyebot_light", "rot_z_only", "", enable_rays_and_noise, true, "light"},
-    {"footbot_base_ground", "rot_z_only", "", enable_rays_and_noise, true, "base_ground"},
-    {"footbot_motor_ground", "rot_z_only", "", enable_rays_and_noise, true, "motor_ground"},
-    {"footbot_turret_encoder", "default", "", enable_turret_encoder},
-    {"footbot_distance_scanner", "rot_z_only", "", enable_scanner, true,
-     "footbot_distance_scanner"},
-    {"wifi", "default", "", enable_radios_sensor},
-    {"epuck_wheels", "", "", enable_wheel_encoders},
-    {"epuck_proximity", "", "", enable_epuck_sensor, true, "infrared"},
-    {"epuck_light", "", "", enable_epuck_sensor, true, "infrared"},
-    {"epuck_ground", "", "", enable_epuck_sensor, true, "ground"},
-    {"epuck_range_and_bearing", "", "", enable_range_and_bearing_sensor},
+    {"footbot_proximity", "default", enable_footbot_proximity},
+    {"eyebot_proximity", "default", enable_footbot_proximity},
+    {"footbot_light", "rot_z_only", enable_rays_and_noise, true, "light"},
+    {"eyebot_light", "rot_z_only", enable_rays_and_noise, true, "light"},
+    {"footbot_base_ground", "rot_z_only", enable_rays_and_noise, true, "base_ground"},
+    {"footbot_motor_ground", "rot_z_only", enable_rays_and_noise, true, "motor_ground"},
+    {"footbot_turret_encoder", "default", enable_turret_encoder},
+    {"kilobot_light", "rot_z_only", enable_rays_and_noise, true, "light", "light"},
+    {"kilobot_communication", "default", enable_kilobot_communication, true,
+     "kilobot_communication"},
+    {"footbot_distance_scanner", "rot_z_only", enable_scanner, true, "footbot_distance_scanner"},
+    {"wifi", "default", enable_radios_sensor},
+    {"epuck_wheels", "", enable_wheel_encoders},
+    {"epuck_proximity", "", enable_epuck_sensor, true, "infrared"},
+    {"epuck_light", "", enable_epuck_sensor, true, "infrared"},
+    {"epuck_ground", "", enable_epuck_sensor, true, "ground"},
+    {"epuck_range_and_bearing", "", enable_range_and_bearing_sensor},
 });
 
 void read_device(const Enabling& e, const DeviceRow& row) {
   e.element.required("implementation", row.implementation.empty()
                                            ? Words{"default", "rot_z_only", "medium"}
                                            : Words{row.implementation});
-  if (!row.subject.empty()) {
-    e.devices.to_come.emplace_back(row.name);
-    e.draft.report.warn(
-        e.element.where(), row.subject,
-        fmt::format("{} do not work yet: <{}> is checked, and its table in Lua is empty",
-                    row.subject, row.name));
-  }
   if (row.is_carried) {
     e.use.devices.push_back({std::string(row.name), e.element.where(), row.places});
   }
@@ -391,13 +399,14 @@ void read_device(const Enabling& e, const DeviceRow& row) {
   e.element.done();
 }
 
-/// The use of a device that describes itself: its actuator and its sensor share one.
+/// The use of a device that describes itself: all elements of its kind share one.
 DescribedUse* described_use(const DeviceRow& row, ControllerDevices& devices, bool is_sensor) {
   if (row.places.empty()) return nullptr;
-  auto use = std::ranges::find(devices.described, row.name, &DescribedUse::element);
+  const std::string_view kind = row.kind.empty() ? row.name : row.kind;
+  auto use = std::ranges::find(devices.described, kind, &DescribedUse::kind);
   if (use == devices.described.end()) {
     use = devices.described.insert(devices.described.end(), DescribedUse());
-    use->element = row.name;
+    use->kind = kind;
     use->places = row.places;
   }
   (is_sensor ? use->sensor : use->actuator) = true;

@@ -127,28 +127,29 @@ constexpr std::array<Component, 8> components{{
     {"battery", [](const Entity& e) { return e.devices.battery.has_value(); }, "battery"},
 }};
 
-constexpr std::array<Component, 6> robot_components{{
-    {"wifi", [](const Entity& e) { return e.kind == EntityKind::foot_bot; }, ""},
+bool is_foot_bot(const Entity& entity) { return entity.kind == EntityKind::foot_bot; }
+bool is_e_puck(const Entity& entity) { return entity.kind == EntityKind::e_puck; }
+
+constexpr auto robot_components = std::to_array<Component>({
+    {"wifi", is_foot_bot, ""},
     {"differential_steering", [](const Entity& e) { return e.axle_length.has_value(); }, ""},
     {"footbot_turret", [](const Entity& e) { return e.turret.has_value(); }, ""},
     {"footbot_turret_encoder", [](const Entity& e) { return e.turret.has_value(); }, ""},
-    {"quadrotor_position", [](const Entity&) { return false; }, ""},
-    {"quadrotor_speed", [](const Entity&) { return false; }, ""},
-}};
+    {"footbot_proximity", is_foot_bot, ""},
+    {"epuck_wheels", is_e_puck, ""},
+    {"epuck_leds", is_e_puck, ""},
+    {"epuck_range_and_bearing", is_e_puck, ""},
+    {"eyebot_proximity", [](const Entity& e) { return e.kind == EntityKind::eye_bot; }, ""},
+    {"kilobot_led", [](const Entity& e) { return e.kind == EntityKind::kilobot; }, ""},
+});
 
 /// Whether a built-in robot has a device that is not in the table `components`.
 bool comes_with(const Entity& entity, std::string_view device) {
-  for (const Component& component : robot_components) {
-    if (component.device == device) return component.is_carried(entity);
-  }
-  return (entity.kind == EntityKind::foot_bot || !device.starts_with("footbot_")) &&
-         (entity.kind == EntityKind::e_puck || !device.starts_with("epuck_"));
+  const auto found = std::ranges::find(robot_components, device, &Component::device);
+  return found != robot_components.end() && found->is_carried(entity);
 }
 
-std::string_view kind_of(const Entity& entity) {
-  if (entity.kind == EntityKind::foot_bot) return "foot-bot";
-  return entity.kind == EntityKind::e_puck ? "e-puck" : "prototype";
-}
+std::string_view kind_of(const Entity& entity) { return to_string(entity.kind); }
 
 /// Part that an entity needs for a device and does not have, or nothing.
 std::optional<std::string> missing_for(const Entity& entity, const DeviceUse& use) {

@@ -278,12 +278,13 @@ struct CamerasUse {
 
 /// A device that describes itself (world/described.h), as a controller enables it.
 struct DescribedUse {
-  std::string_view element;  ///< name of its element, of the table of all devices
-  std::string_view places;   ///< name of the places that it uses
+  std::string_view kind;    ///< of the table of all devices: several elements may be of one
+  std::string_view places;  ///< name of the places that it uses
   bool actuator = false, sensor = false;
   bool show_rays = false;
   double noise = 0;                   ///< in the kind's unit, >= 0
   double strength = 0;                ///< likewise
+  double loss = 0;                    ///< probability that a message is lost, 0 ... 1
   std::optional<std::size_t> medium;  ///< index into Scene::media
 };
 
@@ -305,8 +306,6 @@ struct ControllerDevices {
   std::vector<Imu> imus;
   std::vector<ContactSensor> contact_sensors;
   std::vector<DescribedUse> described;
-  std::vector<std::string>
-      to_come;  ///< elements of devices that have no readings and do nothing yet
   /// About what those that are fixed to an anchor take in each robot [bytes].
   std::size_t mounted_memory = 0;
 };

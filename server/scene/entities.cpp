@@ -14,14 +14,18 @@ namespace {
 constexpr Surface single_body_surface{0.5, 2e-4};
 constexpr Damping single_body_damping{0.0, 0.0};
 
-constexpr std::array<std::pair<std::string_view, EntityKind>, 7> kinds{{
+constexpr std::array<std::pair<std::string_view, EntityKind>, 11> kinds{{
     {"box", EntityKind::box},
     {"cylinder", EntityKind::cylinder},
     {"sphere", EntityKind::sphere},
     {"prototype", EntityKind::prototype},
+    {"light", EntityKind::light},
     {"foot-bot", EntityKind::foot_bot},
     {"e-puck", EntityKind::e_puck},
-    {"light", EntityKind::light},
+    {"eye-bot", EntityKind::eye_bot},
+    {"spiri", EntityKind::spiri},
+    {"mini-quadrotor", EntityKind::mini_quadrotor},
+    {"kilobot", EntityKind::kilobot},
 }};
 
 }  // namespace
@@ -99,10 +103,6 @@ std::string read_entity_id(Element& element, Placement placement) {
   return element.required("id", placement == Placement::distributed ? start_of_ids : identifier);
 }
 
-bool needs_controller(EntityKind kind) {
-  return kind == EntityKind::foot_bot || kind == EntityKind::e_puck;
-}
-
 /// As the dialect's gripper holds them: what moves, but neither e-pucks nor prototypes.
 bool is_usually_gripped(const Entity& entity) {
   return entity.movable && (is_single(entity.kind) || entity.kind == EntityKind::foot_bot);
@@ -132,7 +132,7 @@ std::string_view to_string(EntityKind kind) {
 }
 
 bool may_have_controller(EntityKind kind) {
-  return kind == EntityKind::prototype || needs_controller(kind);
+  return kind == EntityKind::prototype || is_robot(kind);
 }
 
 void refuse_id(const Element& element, std::string_view what, Location earlier) {
@@ -207,12 +207,11 @@ void read_body_and_devices(Draft& draft, Element& element, Entity& entity) {
     case EntityKind::prototype:
       read_prototype(draft, element, entity);
       break;
-    case EntityKind::foot_bot:
-    case EntityKind::e_puck:
-      read_robot(draft, element, entity);
-      break;
     case EntityKind::light:
-      return read_light(draft, element, entity);
+      read_light(draft, element, entity);
+      break;
+    default:
+      read_robot(draft, element, entity);
   }
   entity.is_grippable = element.optional("grippable", boolean, is_usually_gripped(entity));
 }
@@ -236,7 +235,7 @@ Entity read_entity(Draft& draft, Element& element, Placement placement) {
                                                  : read_body(element, placement);
   if (may_have_controller(entity.kind)) {
     if (auto own = read_controller_choice(draft, element)) controller = std::move(own);
-    const bool lacks_controller = needs_controller(entity.kind) && !controller;
+    const bool lacks_controller = is_robot(entity.kind) && !controller;
     if (lacks_controller && placement != Placement::looked_at) element.required_child("controller");
     if (controller) give_controller(draft, *controller, entity);
   }

@@ -7,8 +7,8 @@
 namespace ziggurat::scene {
 namespace {
 
-constexpr std::array<std::string_view, 5> medium_names{"led", "directional_led", "tag", "radio",
-                                                       "range_and_bearing"};
+constexpr std::array<std::string_view, 6> medium_names{
+    "led", "directional_led", "tag", "radio", "range_and_bearing", "kilobot_communication"};
 
 std::optional<MediumKind> kind_of(std::string_view name) {
   for (std::size_t i = 0; i < medium_names.size(); ++i) {

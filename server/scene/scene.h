@@ -112,10 +112,27 @@ struct Joint {
   Location where;
 };
 
-enum class EntityKind { box, cylinder, sphere, prototype, foot_bot, e_puck, light };
+enum class EntityKind {
+  box,
+  cylinder,
+  sphere,
+  prototype,
+  light,
+  foot_bot,
+  e_puck,
+  eye_bot,
+  spiri,
+  mini_quadrotor,
+  kilobot,
+  pi_puck,
+  builderbot,
+};
 
 /// The name of its element.
 std::string_view to_string(EntityKind kind);
+
+/// Whether it is a robot that comes as it is, with a controller.
+bool is_robot(EntityKind kind);
 
 /// Whether it is one body or light and no more, without joints, controller or name for its link.
 constexpr bool is_single(EntityKind kind) {
@@ -130,6 +147,14 @@ struct Traction {
   double max_torque = 0;  ///< about z [N m]
 };
 
+/// Limits of a flying body, which its rotors hold up, upright and where it is to be.
+struct Flight {
+  double max_speed = 0;              ///< that it aims at [m/s]
+  double max_acceleration = 0;       ///< beyond what balances gravity [m/s^2]
+  double max_turn_rate = 0;          ///< that it aims at [rad/s]
+  double max_turn_acceleration = 0;  ///< [rad/s^2]
+};
+
 /// Anything that stands in the arena. A `<box>` is an entity with one unnamed link.
 struct Entity {
   std::string id;
@@ -142,6 +167,7 @@ struct Entity {
                                       ///< the reference link or the child of an earlier joint
   std::optional<Traction> traction;   ///< robots on wheels; their body is the reference link
   std::optional<double> axle_length;  ///< distance between its two driven wheels [m]
+  std::optional<Flight> flight;       ///< robots that fly; their body is the reference link
   std::optional<std::size_t> turret;  ///< index into links: a frame that turns about its z
   bool is_grippable = false;          ///< grippers may hold it
   std::optional<double> intensity;    ///< of a light, which has one LED and no body; >= 0
@@ -214,7 +240,14 @@ struct Physics {
   Location where;
 };
 
-enum class MediumKind { led, directional_led, tag, radio, range_and_bearing };
+enum class MediumKind {
+  led,
+  directional_led,
+  tag,
+  radio,
+  range_and_bearing,
+  kilobot_communication
+};
 
 struct Medium {
   std::string id;

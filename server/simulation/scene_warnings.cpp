@@ -99,29 +99,9 @@ class SceneWarnings {
       ++kind.more;
       return;
     }
-    kind.first = {scene::Problem::Severity::warning, scene::file_of(scene_, entity.where),
-                  entity.where,
-                  fmt::format("{} {} {}", to_text(entity), scene::in_quotes(entity.id), text)};
-  }
-
-  static const char* to_text(const scene::Entity& entity) {
-    switch (entity.kind) {
-      case scene::EntityKind::box:
-        return "box";
-      case scene::EntityKind::cylinder:
-        return "cylinder";
-      case scene::EntityKind::sphere:
-        return "sphere";
-      case scene::EntityKind::prototype:
-        return "prototype";
-      case scene::EntityKind::foot_bot:
-        return "foot-bot";
-      case scene::EntityKind::e_puck:
-        return "e-puck";
-      case scene::EntityKind::light:
-        return "light";
-    }
-    return "entity";
+    kind.first = {
+        scene::Problem::Severity::warning, scene::file_of(scene_, entity.where), entity.where,
+        fmt::format("{} {} {}", to_string(entity.kind), scene::in_quotes(entity.id), text)};
   }
 
   void check_sizes() {
@@ -248,7 +228,7 @@ class SceneWarnings {
     const std::size_t movable = entities_.size() - fixed.size();
     if (fixed.size() * movable > most_pairs) return;
     for (std::size_t e = 0; e < entities_.size(); ++e) {
-      if (!entities_[e].movable) continue;
+      if (!entities_[e].movable || entities_[e].flight) continue;
       Extent below = extents_[e];
       below.low.z() = -std::numeric_limits<double>::infinity();
       const auto holds = [&](const Extent& other) { return below.meets(other); };
@@ -264,7 +244,8 @@ class SceneWarnings {
     if (scene_.physics.gravity || scene_.physics.magnetism || scene_.physics.flat) return;
     if (entities_.size() > most_compared) return;
     for (std::size_t e = 0; e < entities_.size(); ++e) {
-      if (!entities_[e].movable || !(extents_[e].low.z() > deep)) continue;
+      if (!entities_[e].movable || entities_[e].flight) continue;
+      if (!(extents_[e].low.z() > deep)) continue;
       Extent below = extents_[e];
       below.low.z() -= deep;
       bool stands = is_in_a_plane(entities_[e]);

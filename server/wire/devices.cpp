@@ -265,9 +265,6 @@ void describe(const Run& run, std::size_t robot, v1::RobotDescription& descripti
   }
   description.set_positioning(layout.positioning.count > 0);
   description.set_battery(layout.batteries.count > 0);
-  for (const std::string& device : run.controllers[layout.controller].devices.to_come) {
-    description.add_devices_to_come(device);
-  }
 }
 
 bool fit_into_welcome(const Run& run, std::span<const std::size_t> robots) {

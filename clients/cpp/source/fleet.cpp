@@ -20,7 +20,6 @@ Fleet::Fleet(const v1::Welcome& welcome) : robots_(size(welcome.robots_size())) 
     robot.id_ = from.id();
     robot.controller_ = from.controller();
     robot.script_ = from.script();
-    robot.devices_to_come_.assign(from.devices_to_come().begin(), from.devices_to_come().end());
     for (const v1::Parameter& param : from.params()) {
       robot.params_.emplace_back(param.name(), param.value());
     }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstring>
+#include <tuple>
 
 #include "devices/shapes.h"
 #include "script/arguments.h"
@@ -71,7 +72,12 @@ void set_shaped(lua_State* state, const FieldShape& shape, const DeviceField& fi
     }
   }
   push_value(state, field, value, shape.factor);
-  lua_setfield(state, -2, dot == nullptr ? shape.name : dot + 1);
+  const char* const name = dot == nullptr ? shape.name : dot + 1;
+  if (*name >= '1' && *name <= '9') {
+    lua_rawseti(state, -2, *name - '0');
+  } else {
+    lua_setfield(state, -2, name);
+  }
   if (dot != nullptr) lua_pop(state, 1);
 }
 
@@ -103,14 +109,26 @@ int set_command(lua_State* state) {
   return 0;
 }
 
+/// Takes a function's arguments: numbers, or an array of as many.
+void check_numbers(lua_State* state, const FunctionShape& function, std::span<double> to) {
+  const int count = static_cast<int>(function.arguments);
+  if (count > 1 && lua_gettop(state) == 1 && lua_istable(state, 1)) {
+    for (int i = 1; i <= count; ++i) lua_geti(state, 1, i);
+    lua_remove(state, 1);
+  }
+  check_count(state, count, count, function.usage);
+  for (int i = 0; i < count; ++i) to[static_cast<std::size_t>(i)] = check_number(state, i + 1);
+}
+
 int call_shaped(lua_State* state) {
   const auto& function = upvalue<const FunctionShape>(state, 2);
-  const int count = function.takes_number ? 1 : 0;
-  check_count(state, count, count, function.usage);
-  const double argument = function.takes_number ? check_number(state, 1) : 0;
+  std::array<double, std::tuple_size_v<decltype(function.sets)>> arguments{};
+  check_numbers(state, function, arguments);
+  auto& device = upvalue<Device>(state);
   for (const SetCommand& set : function.sets) {
     if (set.command == nullptr) continue;
-    upvalue<Device>(state).set(set.command, set.constant + set.factor * argument);
+    const double before = set.adds ? device.commanded(set.command) : 0;
+    device.set(set.command, before + set.constant + set.factor * arguments[set.argument]);
   }
   return 0;
 }

@@ -3,6 +3,7 @@
 // follows from the description.
 
 #include <array>
+#include <cstddef>
 #include <span>
 #include <string_view>
 
@@ -11,22 +12,24 @@ namespace ziggurat::lua {
 /// A value under another name or in another unit.
 struct FieldShape {
   std::string_view field;  ///< of the description
-  const char* name;        ///< "a.b": field b of the table a
+  const char* name;        ///< "a.b": field b of the table a, "a.1": its first element
   double factor = 1;
 };
 
-/// A command that a function sets, to a constant plus a multiple of its argument.
+/// A command that a function sets: to a constant, plus a multiple of an argument.
 struct SetCommand {
   const char* command = nullptr;  ///< null: none
   double constant = 0, factor = 0;
+  std::size_t argument = 0;  ///< from 0
+  bool adds = false;         ///< to what it was set to before
 };
 
 /// A function of the device's table.
 struct FunctionShape {
   const char* name;
-  const char* usage;  ///< as messages show it
-  bool takes_number = false;
-  std::array<SetCommand, 2> sets{};
+  const char* usage;          ///< as messages show it
+  std::size_t arguments = 0;  ///< numbers; more than one may come as an array
+  std::array<SetCommand, 10> sets{};
 };
 
 struct Shape {

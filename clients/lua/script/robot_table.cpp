@@ -2,7 +2,6 @@
 
 #include "devices/described_devices.h"
 #include "devices/device_table.h"
-#include "devices/devices_to_come.h"
 #include "script/metric_function.h"
 #include "script/tables.h"
 
@@ -32,7 +31,6 @@ void push_robot(lua_State* state, Robot& robot) {
   push_params(state, robot.params());
   lua_setfield(state, -2, "params");
   set_metric_function(state, robot);
-  set_devices_to_come(state, robot);
   lua_newtable(state);
   for (const DeviceKind* kind : device_kinds()) {
     if (kind->is_present(robot)) add_devices(state, *kind, robot);

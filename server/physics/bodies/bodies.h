@@ -75,6 +75,12 @@ struct Turret {
   double angle = 0;      ///< in the robot, [-pi, pi] [rad]
 };
 
+/// A body that flies, upright, to a target.
+struct FlyingBody {
+  scene::Flight limits;
+  FlightTarget target;
+};
+
 struct Magnet {
   scene::Magnet scene;
   /// Radius of the ball about its centre that no magnet of another entity can enter, because
@@ -96,6 +102,7 @@ struct Body {
   std::vector<Magnet> magnets;
   std::optional<GroundMotion> ground;  ///< robots on wheels, and bodies on a plane
   std::optional<Turret> turret;
+  std::optional<FlyingBody> flight;
   bool is_grippable = false;  ///< grippers may hold it
   bool watched = false;       ///< contacts of one of its links are
 

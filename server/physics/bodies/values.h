@@ -5,11 +5,27 @@
 
 #include "math/pose.h"
 
+namespace ziggurat::math {
+class Archive;
+}
+
 namespace ziggurat::physics {
 
 /// A joint with a coordinate, as the world counts them.
 struct JointIndex {
   std::size_t value = 0;
+};
+
+/// Aim of a flying body.
+struct FlightTarget {
+  void archive(math::Archive& archive);
+
+  bool holds_position = true;                      ///< otherwise it flies at `velocity`
+  math::Vector3 position = math::Vector3::Zero();  ///< of the entity's origin, in W [m]
+  math::Vector3 velocity = math::Vector3::Zero();  ///< along its heading, to its left, up [m/s]
+  bool holds_heading = true;                       ///< otherwise it turns at `turn_rate`
+  double heading = 0;                              ///< about z of W [rad]
+  double turn_rate = 0;                            ///< [rad/s]
 };
 
 /// Contacts of a link since the last request.

@@ -1,6 +1,8 @@
 // Parts of robots on wheels.
 
 #include <cmath>
+#include <numbers>
+#include <string>
 
 #include "scene/robots/robots.h"
 
@@ -51,6 +53,15 @@ DevicePlace& add_place(Entity& entity, std::string_view name, const math::Vector
                        std::vector<double> settings) {
   return entity.devices.places.emplace_back(
       DevicePlace{name, {}, {position, math::Quaternion::Identity()}, std::move(settings)});
+}
+
+void add_led_ring(Entity& entity, unsigned count, double first, double radius, double height) {
+  auto& leds = entity.devices.leds;
+  for (unsigned i = 0; i < count; ++i) {
+    const double bearing = first + 2 * std::numbers::pi * i / count;
+    const math::Vector3 offset(radius * std::cos(bearing), radius * std::sin(bearing), height);
+    leds.push_back({"led_" + std::to_string(leds.size() + 1), {}, offset, Color{}, {}});
+  }
 }
 
 RangeAndBearing level_range_and_bearing(double height, double range, unsigned data_size) {

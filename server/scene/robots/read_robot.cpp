@@ -1,5 +1,7 @@
-// <foot-bot> and <e-puck>: what a scene may say of a robot that comes as it is.
+// <foot-bot>, <e-puck>, …: what a scene may say of a robot that comes as it is.
 
+#include <algorithm>
+#include <array>
 #include <numbers>
 
 #include "scene/draft.h"
@@ -33,48 +35,105 @@ double read_aperture(Element& element, const char* name, double usual) {
   return usual;
 }
 
+constexpr double usual_aperture = std::numbers::pi / 6;  // of perspective cameras [rad]
+
 void read_blob_cameras(Element& element, Entity& entity) {
-  constexpr double degree = std::numbers::pi / 180;
   foot_bot::BlobCameras cameras{};
   cameras.omnidirectional_aperture =
-      read_aperture(element, "omnidirectional_camera_aperture", 70 * degree);
+      read_aperture(element, "omnidirectional_camera_aperture", 7 * std::numbers::pi / 18);
   cameras.looks_ahead = element.optional("perspective_camera_front", boolean, true);
-  cameras.aperture = read_aperture(element, "perspective_camera_aperture", 30 * degree);
+  cameras.aperture = read_aperture(element, "perspective_camera_aperture", usual_aperture);
   cameras.focal_length = element.optional("perspective_camera_focal_length", positive, 0.035);
   cameras.range = element.optional("perspective_camera_range", positive, 2.0);
   foot_bot::add_blob_cameras(entity, cameras);
 }
 
+void read_foot_bot(Element& element, Entity& entity) {
+  read_blob_cameras(element, entity);
+  for (Radio& wifi : entity.devices.radios)
+    wifi.range = element.optional("wifi_range", positive, wifi.range);
+}
+
 /// The e-puck has no such camera.
-void ignore_blob_cameras(Element& element) {
+void ignore_blob_cameras(Element& element, Entity&) {
   element.optional("perspective_camera_aperture", half_angle);
   element.optional("perspective_camera_focal_length", positive);
   element.optional("perspective_camera_range", positive);
 }
 
+void read_flying_camera(Element& element, Entity& entity, double usual_range) {
+  flying::add_camera(entity, {read_aperture(element, "camera_aperture", usual_aperture),
+                              element.optional("camera_focal_length", positive, 0.035),
+                              element.optional("camera_range", positive, usual_range)});
+}
+
+void read_eye_bot_camera(Element& element, Entity& entity) {
+  element.without_effect("camera_front", boolean, "the camera looks down");
+  read_flying_camera(element, entity, 2);
+}
+
+void read_spiri_camera(Element& element, Entity& entity) {
+  read_flying_camera(element, entity, 10);
+}
+
+void read_kilobot(Element& element, Entity& entity) {
+  constexpr double usual_range = 0.1;  // [m]
+  kilobot::add_devices(entity, {element.optional("left_motor", positive, 1.0),
+                                element.optional("right_motor", positive, 1.0),
+                                element.optional("communication_range", positive, usual_range)});
+  // There is one medium of messages, unless the sensor names another one.
+  element.without_effect("communication_medium", identifier, "the sensor's medium counts");
+}
+
+void read_nothing(Element&, Entity&) {}
+
+struct Robot {
+  EntityKind kind;
+  void (*equip)(Entity& entity);
+  void (*read)(Element& element, Entity& entity);  ///< what only this robot's element may have
+};
+
+constexpr std::array<Robot, 6> robots{{
+    {EntityKind::foot_bot, foot_bot::equip, read_foot_bot},
+    {EntityKind::e_puck, e_puck::equip, ignore_blob_cameras},
+    {EntityKind::eye_bot, flying::equip_eye_bot, read_eye_bot_camera},
+    {EntityKind::spiri, flying::equip_spiri, read_spiri_camera},
+    {EntityKind::kilobot, kilobot::equip, read_kilobot},
+    {EntityKind::mini_quadrotor, flying::equip_mini_quadrotor, read_nothing},
+}};
+
+/// Range and bearing, of a robot that has it.
+void read_antenna(Draft& draft, Element& element, Devices& devices) {
+  if (!devices.range_and_bearing) return;
+  RangeAndBearing& antenna = *devices.range_and_bearing;
+  antenna.range = element.optional("rab_range", positive, antenna.range);
+  antenna.data_size =
+      element.optional("rab_data_size", Whole{0, most_data_bytes}, antenna.data_size);
+  devices.range_and_bearing_medium = first_medium(draft.scene, MediumKind::range_and_bearing);
+}
+
 }  // namespace
 
+bool is_robot(EntityKind kind) {
+  return std::ranges::find(robots, kind, &Robot::kind) != robots.end();
+}
+
 void read_robot(Draft& draft, Element& element, Entity& entity) {
-  entity.kind == EntityKind::foot_bot ? foot_bot::equip(entity) : e_puck::equip(entity);
+  const Robot& robot = *std::ranges::find(robots, entity.kind, &Robot::kind);
+  robot.equip(entity);
   entity.movable = element.optional("movable", boolean, true);
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
     entity.links[i].where = element.where();
     draft.anchors.emplace(entity.links[i].id, i);
   }
   Devices& devices = entity.devices;
-  RangeAndBearing& antenna = *devices.range_and_bearing;
-  antenna.range = element.optional("rab_range", positive, antenna.range);
-  antenna.data_size =
-      element.optional("rab_data_size", Whole{0, most_data_bytes}, antenna.data_size);
-  devices.range_and_bearing_medium = first_medium(draft.scene, MediumKind::range_and_bearing);
   devices.radio_medium = first_medium(draft.scene, MediumKind::radio);
-  for (Radio& wifi : devices.radios)
-    wifi.range = element.optional("wifi_range", positive, wifi.range);
   devices.led_medium = first_medium(draft.scene, MediumKind::led);
-  entity.kind == EntityKind::foot_bot ? read_blob_cameras(element, entity)
-                                      : ignore_blob_cameras(element);
+  read_antenna(draft, element, devices);
+  robot.read(element, entity);
   devices.battery = Battery{};  // which nothing discharges
   if (auto battery = element.child("battery")) devices.battery = read_battery(*battery);
+  if (!entity.traction) return;
   if (auto engine = element.child("dynamics2d")) read_steering_limits(*engine, *entity.traction);
 }
 

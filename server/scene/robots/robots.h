@@ -26,6 +26,32 @@ namespace e_puck {
 void equip(Entity& entity);
 }
 
+/// Robots that fly: a body without wheels, their ranges and their cameras.
+namespace flying {
+void equip_eye_bot(Entity& entity);
+void equip_spiri(Entity& entity);
+void equip_mini_quadrotor(Entity& entity);
+
+struct Camera {
+  double aperture = 0;                 ///< half-angle of the picture's diagonal [rad]
+  double focal_length = 0, range = 0;  ///< [m]
+};
+/// Adds the coloured-blob camera, after equipping one that has the anchor for it.
+void add_camera(Entity& entity, const Camera& camera);
+}  // namespace flying
+
+/// A kilobot: two motors, one LED, a sensor of ambient light, messages.
+namespace kilobot {
+void equip(Entity& entity);
+
+struct Settings {
+  double left_motor = 1, right_motor = 1;  ///< strength, relative to a usual one
+  double range = 0;                        ///< of its messages [m]
+};
+/// After equip().
+void add_devices(Entity& entity, const Settings& settings);
+}  // namespace kilobot
+
 /// A body that is an upright cylinder on the floor: the link `base`.
 Link wheeled_body(double radius, double height, double mass);
 
@@ -46,6 +72,10 @@ void add_outward_place(Entity& entity, std::string_view name, double bearing, do
 /// @param settings  DevicePlace::settings
 DevicePlace& add_place(Entity& entity, std::string_view name, const math::Vector3& position,
                        std::vector<double> settings = {});
+
+/// A ring of LEDs around the body's axis, counter-clockwise, numbered on from those it has.
+/// @param first  bearing of the first one [rad];  @param radius, height  [m]
+void add_led_ring(Entity& entity, unsigned count, double first, double radius, double height);
 
 /// A range-and-bearing device on the body's axis, level.
 /// @param height, range  [m];  @param data_size  [bytes]

@@ -180,6 +180,32 @@ TEST_F(Devices, LuaScannersHaveTheShapeOfTheDialect) {
   EXPECT_EQ(pointing.device_commands(1), 0.25);
 }
 
+TEST_F(Devices, LuaQuadrotorsTakeOrders) {
+  v1::DeviceKind& kind = add_kind(robot_, "quadrotor", {}, 1);
+  for (const char* name : {"move_mode", "x", "y", "z", "moves", "velocity_x", "velocity_y",
+                           "velocity_z", "turn_mode", "yaw", "turns", "yaw_rate"}) {
+    add_command(kind, name, -INFINITY, INFINITY);
+  }
+  EXPECT_RUNS(start(R"lua(
+    robot.quadrotor.set_absolute_position(1, 2, 3)
+    robot.quadrotor.set_absolute_yaw(90)
+    function step()
+      robot.quadrotor.set_relative_position({4, 5, 6})
+      robot.quadrotor.set_relative_position(4, 5, 6)
+      robot.quadrotor.set_rotational_speed(0.5)
+      local done, why = pcall(robot.quadrotor.set_linear_velocity, 1, 2)
+      assert(not done and why:find("set_linear_velocity(x, y, z)", 1, true), why)
+    end
+  )lua"));
+  const auto orders = [&] {
+    const v1::Command given = command();
+    return std::vector<double>(given.device_commands().begin(), given.device_commands().end());
+  };
+  EXPECT_EQ(orders(), std::vector<double>({1, 1, 2, 3, 0, 0, 0, 0, 1, 90 * M_PI / 180, 0, 0}));
+  EXPECT_RUNS(step());
+  EXPECT_EQ(orders(), std::vector<double>({2, 4, 5, 6, 2, 0, 0, 0, 3, 90 * M_PI / 180, 0, 0.5}));
+}
+
 TEST_F(Devices, LuaBlobCamerasAreSwitched) {
   v1::DeviceKind& kind =
       add_kind(robot_, "colored_blob_omnidirectional_camera", {"distance", "angle", "color"}, 1);

@@ -283,19 +283,6 @@ TEST_F(Devices, PositioningHasOneFormOfEachRotation) {
   }
 }
 
-TEST_F(Devices, ThatDoNotWorkYetAreEmptyTables) {
-  for (const char* device : {"quadrotor_speed"}) {
-    robot_.add_devices_to_come(device);
-  }
-  EXPECT_RUNS(start(R"lua(
-    function step()
-      for _ in pairs(robot.quadrotor) do error("it has a reading") end
-      assert(robot.ground == nil, "nothing enables it")
-    end
-  )lua"));
-  EXPECT_RUNS(step());
-}
-
 TEST_F(Devices, ImusRead) {
   robot_.add_imus()->set_id("front");
   robot_.add_imus()->set_id("rear");

@@ -166,15 +166,10 @@ constexpr Row controller_rows[] = {
     {"E36_two_strengths", Part::controllers,
      R"(<controllers><lua_controller id="c"><actuators><joints implementation="default"><joint id="j" mode="velocity" max_force="1" max_impulse="1"/></joints></actuators></lua_controller></controllers>)",
      "<joint> has more than one of max_force, max_torque and max_impulse; write one"},
-    {"Device_of_eye_bots", Part::controllers,
-     R"(<controllers><lua_controller id="c"><sensors><eyebot_proximity implementation="default"/></sensors></lua_controller></controllers>)",
-     "<eyebot_proximity> is a device of the eye-bot, which is not modelled here; remove it, or "
-     "write "
-     "<proximity>"},
-    {"Device_of_kilobots", Part::controllers,
-     R"(<controllers><lua_controller id="c"><sensors><kilobot_light implementation="rot_z_only"/></sensors></lua_controller></controllers>)",
-     "<kilobot_light> is a device of the kilobot, which is not modelled here; remove it, or write "
-     "<light>"},
+    {"Device_of_kheperas", Part::controllers,
+     R"(<controllers><lua_controller id="c"><sensors><kheperaiv_light implementation="rot_z_only"/></sensors></lua_controller></controllers>)",
+     "<kheperaiv_light> is a device of the kheperaiv, which is not modelled here; remove it, or "
+     "write <light>"},
     {"Device_of_drones", Part::controllers,
      R"(<controllers><lua_controller id="c"><actuators><drone_flight_system implementation="default"/></actuators></lua_controller></controllers>)",
      "<drone_flight_system> is a device of the drone, which is not modelled here; remove it"},

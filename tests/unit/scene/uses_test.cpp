@@ -207,6 +207,13 @@ TEST(Robots, ReportAllTheirFaults) {
   EXPECT_EQ(count_containing(found, "rab_range=\"-1\""), 1u);
   EXPECT_EQ(count_containing(found, "max_force=\"0\""), 1u);
   EXPECT_EQ(count_containing(found, "<foot-bot> lacks"), 1u);
+  text.arena =
+      arena_with(R"(<eye-bot id="e" camera_aperture="90"><body/></eye-bot>)"
+                 R"(<kilobot id="k" left_motor="0" communication_range="-1"><body/></kilobot>)");
+  const auto others = faults(text.read());
+  EXPECT_EQ(others.size(), 5u);
+  EXPECT_EQ(count_containing(others, "camera_aperture=\"90\" of <eye-bot> must be more"), 1u);
+  EXPECT_EQ(count_containing(others, "left_motor=\"0\" of <kilobot>"), 1u);
 }
 
 TEST(Robots, HaveOnlyTheirOwnDevices) {
@@ -224,6 +231,9 @@ TEST(Robots, HaveOnlyTheirOwnDevices) {
   EXPECT_EQ(lacks("wifi", "foot-bot"), 0u);
   EXPECT_EQ(lacks("wifi", "e-puck"), 1u);
   EXPECT_EQ(lacks("quadrotor_speed", "foot-bot"), 1u);
+  EXPECT_EQ(lacks("quadrotor_speed", "spiri"), 0u);
+  EXPECT_EQ(lacks("range_and_bearing", "mini-quadrotor"), 1u);
+  EXPECT_EQ(lacks("differential_steering", "eye-bot"), 1u);
   EXPECT_EQ(lacks("gripper", "foot-bot"), 0u);
   EXPECT_EQ(lacks("gripper", "e-puck"), 1u);
   EXPECT_EQ(lacks("epuck_wheels", "e-puck"), 0u);

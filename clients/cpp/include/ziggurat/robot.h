@@ -71,9 +71,6 @@ class Robot : public Sensors {
   std::span<Device> devices(std::string_view kind) noexcept;
   Device& device(std::string_view kind, std::string_view id);
 
-  /// Elements of devices that the scene gives it and that do not work yet, such as `light`.
-  const std::vector<std::string>& devices_to_come() const noexcept { return devices_to_come_; }
-
   /// Adds a line to the server's log, without a line feed at its end; sent with the answer to this
   /// tick. `log` goes to the server's standard output, `log_error` to its standard error.
   /// @throws std::length_error if the session logs more at one tick than a message can hold
@@ -130,7 +127,6 @@ class Robot : public Sensors {
   std::optional<RangeAndBearing> range_and_bearing_;
   std::optional<Wheels> wheels_;
   std::optional<Turret> turret_;
-  std::vector<std::string> devices_to_come_;
   std::vector<DeviceKind> device_kinds_;
   std::vector<Device> devices_;
   std::uint32_t position_ = 0;  // in the session

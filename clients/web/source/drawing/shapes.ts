@@ -1,7 +1,7 @@
 // The shapes of links as triangles: unit shapes that stand on the centre of their bottom, and hulls and
 // capsules in their own size.
 import * as three from "three";
-import { Kind, type Entity, type Hull, type Link, type World } from "../model/messages";
+import { isRobot, Kind, type Entity, type Hull, type Link, type World } from "../model/messages";
 import type { Quaternion, Vector } from "../model/pose";
 
 /** A piece of what is drawn: a shape that moves with a link. */
@@ -73,7 +73,7 @@ function partOf(link: Link, index: number): Part | null {
 
 const dark = 0x2b2d31, grey = 0x54585f;
 
-/** What makes foot-bots and e-pucks recognisable, by radius r and height h of their bodies. */
+/** What makes robots recognisable, by radius r and height h of their bodies. */
 function robotParts(entity: Entity, link: Link): Part[] {
   const { radius: r, height: h } = link.cylinder ?? { radius: 0, height: 0 };
   if (r === 0) return [];
@@ -87,6 +87,14 @@ function robotParts(entity: Entity, link: Link): Part[] {
       part("cylinder", [0, 0, 0.52 * h], [1.03 * r, 1.03 * r, 0.12 * h], 0xc9ccd1), // the ring of LEDs
       part("cylinder", [0, 0, h], [0.34 * r, 0.34 * r, 0.15 * h], dark), // the camera that looks up
       part("arrow", [0.66 * r, 0, h], [0.22 * r, 0.26 * r, 0.012 * h], 0xf2f3f5),
+    ];
+  }
+  if (entity.kind === Kind.kilobot) return [part("arrow", [0.5 * r, 0, h], [0.3 * r, 0.36 * r, 0.02 * h], dark)];
+  if (entity.kind !== Kind.ePuck && entity.kind !== Kind.piPuck) { // they fly
+    return [
+      ...sides.flatMap((x) => sides.map((y) =>
+        part("cylinder", [0.62 * x * r, 0.62 * y * r, h], [0.4 * r, 0.4 * r, 0.05 * h], grey))), // rotors
+      part("arrow", [0.3 * r, 0, h], [0.22 * r, 0.26 * r, 0.1 * h], 0xf2f3f5),
     ];
   }
   return [
@@ -107,9 +115,8 @@ export function partsOf(world: World): Part[] {
     if (part) parts.push(part);
   });
   for (const entity of world.entities) {
-    const isRobot = entity.kind === Kind.footBot || entity.kind === Kind.ePuck;
     const link = world.links[entity.referenceLink];
-    if (isRobot && !entity.removed && link) parts.push(...robotParts(entity, link));
+    if (isRobot(entity.kind) && !entity.removed && link) parts.push(...robotParts(entity, link));
   }
   return parts;
 }

@@ -3,7 +3,10 @@
 
 export type Floats = ArrayLike<number>;
 
-export enum Kind { unspecified, box, cylinder, sphere, prototype, footBot, ePuck, light }
+export enum Kind {
+  unspecified, box, cylinder, sphere, prototype, footBot, ePuck, light, eyeBot, spiri, miniQuadrotor,
+  kilobot, piPuck, builderbot,
+}
 
 export interface Entity {
   id: string; kind: Kind; movable: boolean; removed: boolean; model: string;
@@ -120,7 +123,13 @@ export interface Command {
   turretSpeeds: Floats; deviceCommands: Floats;
 }
 
+/** Whether it is a robot that comes as it is. */
+export function isRobot(kind: Kind): boolean {
+  return kind === Kind.footBot || kind === Kind.ePuck || kind > Kind.light;
+}
+
 /** Why an entity is a robot of its own look, and what to call it. */
 export function kindName(kind: Kind): string {
-  return ["?", "box", "cylinder", "sphere", "prototype", "foot-bot", "e-puck", "light"][kind] ?? "?";
+  return ["?", "box", "cylinder", "sphere", "prototype", "foot-bot", "e-puck", "light", "eye-bot", "spiri",
+    "mini-quadrotor", "kilobot", "pipuck", "builderbot"][kind] ?? "?";
 }

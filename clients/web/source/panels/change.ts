@@ -1,6 +1,6 @@
 // Spawns entities from the scene's models, robots with one of its controllers, or what XML describes.
 import type { App } from "../page/app";
-import { kindName, Kind, type World } from "../model/messages";
+import { isRobot, kindName, type World } from "../model/messages";
 import { fixed } from "../model/readings";
 import { make } from "./element";
 import type { Panel } from "./panel";
@@ -23,11 +23,11 @@ function choicesOf(world: World): Choice[] {
     label: `${model} (${kindName(kind)})`,
     xml: (id: string, body: string) => `<${kindName(kind)} id="${id}" model="${escape(model)}">${body}</${kindName(kind)}>`,
   }));
-  // Foot-bots and e-pucks need no model, but a controller: those with which the world has some.
+  // Foot-bots, e-pucks, … need no model, but a controller: those with which the world has some.
   const robots = new Map<string, Choice>();
   for (const { kind, robot } of world.entities) {
     const described = robot === undefined ? undefined : world.robots[robot]?.description;
-    if (!described || described.controller.length > mostName || (kind !== Kind.footBot && kind !== Kind.ePuck)) continue;
+    if (!described || described.controller.length > mostName || !isRobot(kind)) continue;
     const { controller, battery } = described;
     const label = `${kindName(kind)} with ${controller}`;
     const more = `${battery ? "<battery/>" : ""}<controller config="${escape(controller)}"/>`;
