@@ -24,7 +24,7 @@ struct RunAttributes {
 };
 
 struct ReadOptions {
-  bool lenient = false;  ///< unknown attributes (not elements) and what libraries do become notices
+  bool lenient = false;  ///< unknown attributes, plug-ins and what libraries do become notices
   std::optional<Clock> clock = {};               ///< instead of the scene's
   std::size_t max_size = std::size_t{64} << 20;  ///< of the scene with what it includes and with
                                                  ///< its models written out [bytes]

@@ -69,8 +69,9 @@ constexpr Option scene_file_options[] = {
     {"param", "NAME=VALUE", of_world | by_render | by_check, common, settings, Each{add_parameter},
      "the value of a parameter of the scene's <parameters>, instead of its own"},
     {"lenient", nullptr, of_scene, rare, settings, set_lenient,
-     "unknown attributes, libraries of <loop_functions> and floors that they draw are notices, "
-     "not faults"},
+     "notices, not faults, for unknown attributes, libraries in C++ (their robots stand still), "
+     "and "
+     "devices and robots that are not modelled, which are left out"},
     {"max-scene-size", "SIZE", of_scene, rare, settings, read_scene_size,
      "largest scene file, as 64M (the default)"},
 };
