@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "supervision/moves.h"
 #include "wire/messages.h"
@@ -44,6 +45,32 @@ class Directing::Names {
   const simulation::Simulation& world_;
   std::unordered_map<std::string, std::size_t> places_;  // looked up only
   bool is_read_ = false;
+};
+
+/// The floor with what will be painted on it at the next step.
+class Directing::Floor {
+ public:
+  explicit Floor(simulation::Simulation& world) : world_(world) {}
+
+  std::optional<wire::Fault> paint(const world::FloorPaint& region) {
+    auto& paints = world_.commands().floor_paints;
+    if (!painted_) {
+      painted_ = world_.state().floor;
+      for (const world::FloorPaint& earlier : paints) world::paint(*painted_, earlier);
+    }
+    if (world::paint(*painted_, region)) {
+      paints.push_back(region);
+      return std::nullopt;
+    }
+    return make_fault(ErrorCode::too_many, "paint_floor",
+                      fmt::format("The floor has {} painted regions; paint one that hides others "
+                                  "wholly, for example all of the arena, and they are forgotten.",
+                                  world::most_floor_paints));
+  }
+
+ private:
+  simulation::Simulation& world_;
+  std::optional<std::vector<world::FloorPaint>> painted_;  // none: nothing is painted yet
 };
 
 namespace {
@@ -111,20 +138,6 @@ void apply_show(const world::EntityLayout& entity, const wire::Show& show,
   copy(show.led_colors, entity.leds, commands.led_colors);
   copy(show.directional_led_colors, entity.directional_leds, commands.directional_led_colors);
   copy(show.tag_payloads, entity.tags, commands.tag_payloads);
-}
-
-/// Painted at the next step, with what others paint before it.
-std::optional<wire::Fault> paint(const world::FloorPaint& region,
-                                 simulation::Simulation& simulation) {
-  auto& paints = simulation.commands().floor_paints;
-  if (simulation.state().floor.size() + paints.size() < world::most_floor_paints) {
-    paints.push_back(region);
-    return std::nullopt;
-  }
-  return make_fault(ErrorCode::too_many, "paint_floor",
-                    fmt::format("The floor has {} painted regions; paint one that hides others "
-                                "wholly, for example all of the arena, and they are forgotten.",
-                                world::most_floor_paints));
 }
 
 const std::string& id_of(const wire::DirectorAct& act) {
@@ -233,14 +246,15 @@ std::optional<reports::Summary::Result> Directing::result() const {
   return std::nullopt;
 }
 
-std::optional<wire::Fault> Directing::apply(const wire::DirectorAct& act, Names& names) {
+std::optional<wire::Fault> Directing::apply(const wire::DirectorAct& act, Names& names,
+                                            Floor& floor) {
   simulation::Simulation& simulation = world_.simulation;
   if (is_spawn(act)) {
     auto fault = population_.spawn(std::get<wire::Request>(act).text);
     if (!fault) names.come();
     return fault;
   }
-  if (const auto* region = std::get_if<world::FloorPaint>(&act)) return paint(*region, simulation);
+  if (const auto* region = std::get_if<world::FloorPaint>(&act)) return floor.paint(*region);
   const std::string& id = id_of(act);
   const auto entity = names.find(id);
   if (!entity) return no_entity(fmt::format("{}.entity", name_of(act)), id);
@@ -265,10 +279,11 @@ std::optional<wire::Fault> Directing::apply(const wire::DirectorAct& act, Names&
 
 void Directing::act() {
   Names names(world_.simulation);
+  Floor floor(world_.simulation);
   bool has_changed = false;
   for (const network::Directed& each : directors_.directions()) {
     for (std::size_t i = 0; i < each.direction.acts.size(); ++i) {
-      auto fault = apply(each.direction.acts[i], names);
+      auto fault = apply(each.direction.acts[i], names, floor);
       has_changed = true;
       if (!fault) continue;
       note_left_out(each.director, fault->message);

@@ -32,8 +32,9 @@ class Directing {
 
  private:
   class Names;
+  class Floor;
   std::optional<wire::Fault> check(const wire::Direction& direction) const;
-  std::optional<wire::Fault> apply(const wire::DirectorAct& act, Names& names);
+  std::optional<wire::Fault> apply(const wire::DirectorAct& act, Names& names, Floor& floor);
   void note_left_out(const std::string& director, const std::string& why);
 
   World& world_;

@@ -153,6 +153,10 @@ class Acts(Directing):
             ("TOO_LARGE", lambda world: world.spawn(box("x", "7,7,0") + " " * (1 << 20))),
             ("UNKNOWN_ENTITY", lambda world: world.remove("")),
             ("UNKNOWN_ENTITY", lambda world: world.entities["b2"].push(force=(1, 0, 0), link="arm")),
+            ("BAD_VALUE", lambda world: world.paint_floor((0, 0), 0, 0)),
+            ("BAD_VALUE", lambda world: world.paint_floor((0, 0), (1, 2, 3), 0)),
+            ("BAD_VALUE", lambda world: world.paint_floor((0,), 1, 0)),
+            ("BAD_VALUE", lambda world: world.paint_floor((0, 0), 1, 0x1000000)),
             ("UNKNOWN_ENTITY", lambda world: (world.remove("b2"), world.move("b2", (0, 0, 3)))),
             ("UNKNOWN_ENTITY", lambda world: (world.spawn(box("n", "7,7,0")), world.remove("n"))),
             ("BAD_VALUE", lambda world: (world.spawn(box("n", "7,7,0")), world.spawn(box("n", "8,7,0")))),
@@ -170,6 +174,22 @@ class Acts(Directing):
             self.assertEqual(world.tick.number, 1)
             self.assertNotEqual(world.entities["b1"].position[:2], (9, 9))
             self.assertEqual(set(world.entities), {"b1", "b2", "wall"})
+            world.finish()
+        self.end()
+
+    def test_a_floor_with_too_many_regions_takes_one_that_hides_them(self):
+        self.begin()
+        with self.direct() as world:
+            next(world)
+            for i in range(9_999):
+                world.paint_floor((i, 0), 0.25, (255, 0, 0))
+            next(world)
+            world.paint_floor((-1, 0), (0.5, 0.5), 0x00FF00)
+            world.paint_floor((-2, 0), 0.25, 0)
+            next(world)
+            self.assertEqual([(each.code, each.field) for each in world.left_out], [("TOO_MANY", "acts[1].paint_floor")])
+            world.paint_floor((5_000, 0), (11_000, 1), 0xFFFFFF)
+            next(world)
             world.finish()
         self.end()
 
