@@ -5,7 +5,7 @@
 #include <numbers>
 #include <span>
 
-#include "scene/draft.h"
+#include "scene/enabling.h"
 #include "scene/memory.h"
 
 namespace ziggurat::scene {
@@ -16,15 +16,6 @@ OneOf<JointMode> joint_modes() {
           {"velocity", JointMode::velocity},
           {"disabled", JointMode::disabled}};
 }
-
-/// Arguments to read one device.
-struct Enabling {
-  Draft& draft;
-  Element& element;
-  ControllerDevices& devices;
-  ControllerUse& use;
-  DescribedUse* described = nullptr;  ///< of a device that describes itself
-};
 
 using Enable = void (*)(const Enabling&);
 
@@ -287,22 +278,6 @@ void enable_scanner(const Enabling& e) {
 
 void enable_nothing(const Enabling&) {}
 
-/// Its medium may be left out: it is the first one of LEDs then.
-void enable_kilobot_led(const Enabling& e) {
-  LedsUse& use = e.devices.leds.emplace();
-  if (e.element.has("medium")) use.medium = read_medium(e.draft, e.element, MediumKind::led);
-}
-
-/// Its medium may be left out: robots without one hear each other.
-void enable_kilobot_communication(const Enabling& e) {
-  if (e.element.has("medium")) {
-    e.described->medium = read_medium(e.draft, e.element, MediumKind::kilobot_communication);
-  }
-  e.described->noise = e.element.optional("noise_std_dev", non_negative, 0.0);
-  e.described->loss = e.element.optional("message_drop_prob", probability, 0.0);
-  e.element.without_effect("show_rays", boolean, "messages are not drawn");
-}
-
 // --- devices that are only checked so far -------------------------------------------------------
 
 void enable_plain(const Enabling& e) {
@@ -312,7 +287,10 @@ void enable_plain(const Enabling& e) {
 
 // --- the tables ---------------------------------------------------------------------------------
 
-constexpr std::array<DeviceRow, 17> actuator_rows{{
+constexpr std::string_view drive = "differential_drive", finders = "rangefinders",
+                           lift = "lift_system";
+
+constexpr std::array<DeviceRow, 24> actuator_rows{{
     {"joints", "default", "", enable_joint_actuators, false},
     {"radios", "default", "", enable_radios_actuator},
     {"leds", "default", "", enable_leds},
@@ -328,11 +306,18 @@ constexpr std::array<DeviceRow, 17> actuator_rows{{
     {"footbot_gripper", "default", "footbot_gripper devices", enable_plain},
     {"footbot_distance_scanner", "default", "", enable_nothing, true, "footbot_distance_scanner"},
     {"kilobot_differential_drive", "default", "", enable_nothing, true, "kilobot_motors"},
-    {"kilobot_led", "default", "", enable_kilobot_led},
+    {"kilobot_led", "default", "", enable_leds_of_robot},
     {"kilobot_communication", "default", "", enable_nothing, true, "kilobot_communication"},
+    {"pipuck_differential_drive", "default", "", enable_nothing, true, drive, drive},
+    {"pipuck_leds", "default", "", enable_leds_of_robot},
+    {"builderbot_differential_drive", "default", "", enable_nothing, true, drive, drive},
+    {"builderbot_leds", "default", "", enable_leds_of_robot},
+    {"builderbot_lift_system", "default", "", enable_nothing, true, lift, lift},
+    {"builderbot_electromagnet_system", "default", "", enable_magnets},
+    {"builderbot_nfc", "default", "", enable_radios_actuator},
 }};
 
-constexpr std::array<DeviceRow, 24> sensor_rows{{
+constexpr std::array<DeviceRow, 34> sensor_rows{{
     {"joints", "default", "", enable_joint_sensors, false},
     {"radios", "default", "", enable_radios_sensor},
     {"cameras", "default", "", enable_cameras, false},
@@ -359,6 +344,16 @@ constexpr std::array<DeviceRow, 24> sensor_rows{{
     {"kilobot_light", "rot_z_only", "", enable_rays_and_noise, true, "light", "light"},
     {"kilobot_communication", "default", "", enable_kilobot_communication, true,
      "kilobot_communication"},
+    {"pipuck_differential_drive", "default", "", enable_nothing, true, drive, drive},
+    {"pipuck_rangefinders", "default", "", enable_rays_and_noise, true, finders, finders},
+    {"pipuck_ground", "default", "", enable_rays_and_noise, true, "ground", "ground"},
+    {"pipuck_imu", "default", "", enable_imu_of_robot, false},
+    {"builderbot_differential_drive", "default", "", enable_nothing, true, drive, drive},
+    {"builderbot_rangefinders", "default", "", enable_rays_and_noise, true, finders, finders},
+    {"builderbot_lift_system", "default", "", enable_nothing, true, lift, lift},
+    {"builderbot_electromagnet_system", "default", "", enable_magnets},
+    {"builderbot_camera_system", "default", "", enable_builderbot_camera},
+    {"builderbot_nfc", "default", "", enable_radios_sensor},
     {"footbot_distance_scanner", "rot_z_only", "", enable_scanner, true,
      "footbot_distance_scanner"},
 }};

@@ -115,16 +115,26 @@ constexpr std::array<Component, 8> components{{
     {"battery", [](const Entity& e) { return e.devices.battery.has_value(); }, "battery"},
 }};
 
-constexpr std::array<Component, 8> robot_components{{
+template <EntityKind kind>
+bool is(const Entity& entity) {
+  return entity.kind == kind;
+}
+
+constexpr Component robot_components[] = {
     {"differential_steering", [](const Entity& e) { return e.axle_length.has_value(); }, ""},
     {"footbot_turret", [](const Entity& e) { return e.turret.has_value(); }, ""},
     {"footbot_turret_encoder", [](const Entity& e) { return e.turret.has_value(); }, ""},
-    {"gripper", [](const Entity& e) { return e.kind == EntityKind::foot_bot; }, ""},
-    {"footbot_proximity", [](const Entity& e) { return e.kind == EntityKind::foot_bot; }, ""},
-    {"eyebot_proximity", [](const Entity& e) { return e.kind == EntityKind::eye_bot; }, ""},
-    {"kilobot_led", [](const Entity& e) { return e.kind == EntityKind::kilobot; }, ""},
-    {"footbot_gripper", [](const Entity& e) { return e.kind == EntityKind::foot_bot; }, ""},
-}};
+    {"gripper", is<EntityKind::foot_bot>, ""},
+    {"footbot_gripper", is<EntityKind::foot_bot>, ""},
+    {"footbot_proximity", is<EntityKind::foot_bot>, ""},
+    {"eyebot_proximity", is<EntityKind::eye_bot>, ""},
+    {"kilobot_led", is<EntityKind::kilobot>, ""},
+    {"pipuck_leds", is<EntityKind::pi_puck>, ""},
+    {"builderbot_leds", is<EntityKind::builderbot>, ""},
+    {"builderbot_electromagnet_system", is<EntityKind::builderbot>, ""},
+    {"builderbot_camera_system", is<EntityKind::builderbot>, ""},
+    {"builderbot_nfc", is<EntityKind::builderbot>, ""},
+};
 
 /// Whether a built-in robot has a device that is not in the table `components`.
 bool comes_with(const Entity& entity, std::string_view device) {

@@ -88,6 +88,16 @@ constexpr FunctionShape motor_functions[] = {
     {"set_motors", "set_motors(left, right)", 2, {{{"left", 0, 1, 0}, {"right", 0, 1, 1}}}},
 };
 
+constexpr FunctionShape drive_functions[] = {
+    {"set_linear_velocity",
+     "set_linear_velocity(left, right)",
+     2,
+     {{{"left", 0, 1, 0}, {"right", 0, 1, 1}}}},
+};
+constexpr FunctionShape lift_functions[] = {
+    {"set_position", "set_position(height)", 1, {{{"position", 0, 1}}}},
+};
+
 constexpr Shape shapes[] = {
     {"footbot_light", "light"},
     {"eyebot_light", "light"},
@@ -105,6 +115,8 @@ constexpr Shape shapes[] = {
     {"quadrotor", "quadrotor", {}, quadrotor_functions},
     {"kilobot_differential_drive", "motors", {}, motor_functions},
     {"kilobot_communication", "communication", message, message_functions},
+    {"differential_drive", "differential_drive", {}, drive_functions},
+    {"lift_system", "lift_system", {}, lift_functions},
 };
 
 }  // namespace

@@ -222,6 +222,12 @@ TEST(Robots, HaveOnlyTheirOwnDevices) {
   EXPECT_EQ(lacks("quadrotor_speed", "spiri"), 0u);
   EXPECT_EQ(lacks("range_and_bearing", "mini-quadrotor"), 1u);
   EXPECT_EQ(lacks("differential_steering", "eye-bot"), 1u);
+  EXPECT_EQ(lacks("kilobot_led", "kilobot"), 0u);
+  EXPECT_EQ(lacks("kilobot_led", "e-puck"), 1u);
+  EXPECT_EQ(lacks("pipuck_differential_drive", "e-puck"), 1u);
+  EXPECT_EQ(lacks("pipuck_leds", "pipuck"), 0u);
+  EXPECT_EQ(lacks("builderbot_lift_system", "builderbot"), 0u);
+  EXPECT_EQ(lacks("builderbot_electromagnet_system", "block"), 1u);
   EXPECT_EQ(lacks("gripper", "foot-bot"), 0u);
 }
 
