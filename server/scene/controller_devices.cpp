@@ -11,82 +11,17 @@
 namespace ziggurat::scene {
 namespace {
 
-OneOf<JointMode> joint_modes() {
-  return {{"position", JointMode::position},
-          {"velocity", JointMode::velocity},
-          {"disabled", JointMode::disabled}};
-}
-
 using Enable = void (*)(const Enabling&);
 
 struct DeviceRow {
   std::string_view name;
-  std::string_view implementation;
-  std::string_view subject;  ///< of the notice that it has no effect yet; empty: it has
+  std::string_view implementation;  ///< "one|other": either
+  std::string_view subject;         ///< of the notice that it has no effect yet; empty: it has
   Enable enable;
   bool is_carried = true;        ///< an entity must carry it: controllers.cpp checks that
   std::string_view places = {};  ///< of a device that describes itself: DevicePlace::name
   std::string_view kind = {};    ///< likewise, if its kind has not the name of the element
 };
-
-// --- joints -------------------------------------------------------------------------------------
-
-/// @param key  what of a joint may be listed once, from its id and mode
-template <class Key, class Read>
-void read_joint_list(Element& element, Key key, Read read) {
-  constexpr std::string_view known[] = {"joint"};
-  Ids ids;
-  for (Element& joint : element.children()) {
-    if (joint.name() != "joint") {
-      joint.unknown_in("joints", known);
-      continue;
-    }
-    const std::string id = joint.required("id", identifier);
-    const JointMode mode = joint.required("mode", joint_modes(), JointMode::disabled);
-    if (!id.empty() && !ids.add(key(id, mode), joint.where())) {
-      joint.fault_at("id",
-                     fmt::format("is listed twice, first{}; list it once",
-                                 joint.report().place(ids.owner(key(id, mode)), joint.where())));
-    }
-    read(joint, id, mode);
-    joint.done();
-  }
-}
-
-/// The strength of a motor: an impulse per substep, or a force.
-void read_strength(Element& joint, JointActuator& actuator) {
-  const auto force = joint.optional("max_force", non_negative);
-  const auto torque = joint.optional("max_torque", non_negative);
-  actuator.is_torque = torque.has_value();
-  actuator.max_force = torque ? torque : force;
-  actuator.max_impulse = joint.optional("max_impulse", non_negative, 0.0);
-  constexpr std::array<std::string_view, 3> strengths{"max_force", "max_torque", "max_impulse"};
-  const auto given = std::ranges::count_if(
-      strengths, [&](std::string_view name) { return joint.has(name.data()); });
-  if (given == 0) missing_all(joint, strengths);
-  if (given > 1)
-    joint.fault("has more than one of max_force, max_torque and max_impulse; write one");
-}
-
-void enable_joint_actuators(const Enabling& e) {
-  const auto once = [](const std::string& id, JointMode) { return id; };
-  read_joint_list(e.element, once, [&](Element& joint, const std::string& id, JointMode mode) {
-    JointActuator actuator{id, mode, 0, joint.where()};
-    read_strength(joint, actuator);
-    if (!id.empty()) e.devices.joints.actuators.push_back(actuator);
-  });
-}
-
-/// A joint may have a sensor of its position and one of its velocity.
-void enable_joint_sensors(const Enabling& e) {
-  const auto once_in_each_mode = [](const std::string& id, JointMode mode) {
-    return mode == JointMode::velocity ? id + "\n" : id;  // no id has a line break
-  };
-  read_joint_list(e.element, once_in_each_mode,
-                  [&](Element& joint, const std::string& id, JointMode mode) {
-                    if (!id.empty()) e.devices.joints.sensors.push_back({id, mode, joint.where()});
-                  });
-}
 
 // --- devices modelled in Devices ----------------------------------------------------------------
 
@@ -341,12 +276,13 @@ constexpr std::array<DeviceRow, 34> sensor_rows{{
     {"footbot_base_ground", "rot_z_only", "", enable_rays_and_noise, true, "base_ground"},
     {"footbot_motor_ground", "rot_z_only", "", enable_rays_and_noise, true, "motor_ground"},
     {"footbot_turret_encoder", "default", "", enable_turret_encoder},
-    {"kilobot_light", "rot_z_only", "", enable_rays_and_noise, true, "light", "light"},
+    {"kilobot_light", "rot_z_only|default", "", enable_rays_and_noise, true, "light", "light"},
     {"kilobot_communication", "default", "", enable_kilobot_communication, true,
      "kilobot_communication"},
     {"pipuck_differential_drive", "default", "", enable_nothing, true, drive, drive},
-    {"pipuck_rangefinders", "default", "", enable_rays_and_noise, true, finders, finders},
-    {"pipuck_ground", "default", "", enable_rays_and_noise, true, "ground", "ground"},
+    {"pipuck_rangefinders", "default|rot_z_only", "", enable_rays_and_noise, true, finders,
+     finders},
+    {"pipuck_ground", "default|rot_z_only", "", enable_rays_and_noise, true, "ground", "ground"},
     {"pipuck_imu", "default", "", enable_imu_of_robot, false},
     {"builderbot_differential_drive", "default", "", enable_nothing, true, drive, drive},
     {"builderbot_rangefinders", "default", "", enable_rays_and_noise, true, finders, finders},
@@ -358,8 +294,18 @@ constexpr std::array<DeviceRow, 34> sensor_rows{{
      "footbot_distance_scanner"},
 }};
 
+/// Words for `implementation`: "one|other".
+Words implementations(const DeviceRow& row) {
+  std::vector<std::string_view> words;
+  for (std::string_view left = row.implementation; !left.empty();) {
+    words.push_back(left.substr(0, left.find('|')));
+    left.remove_prefix(std::min(left.size(), words.back().size() + 1));
+  }
+  return Words(std::move(words));
+}
+
 void read_device(const Enabling& e, const DeviceRow& row) {
-  e.element.required("implementation", Words{row.implementation});
+  e.element.required("implementation", implementations(row));
   if (!row.subject.empty()) {
     e.devices.to_come.emplace_back(row.name);
     e.draft.report.warn(

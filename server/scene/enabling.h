@@ -15,6 +15,10 @@ struct Enabling {
   DescribedUse* described = nullptr;  ///< of a device that describes itself
 };
 
+void enable_joint_actuators(const Enabling& enabling);
+/// A joint may have a sensor of its position and one of its velocity.
+void enable_joint_sensors(const Enabling& enabling);
+
 // Devices of robots that come as they are.
 
 /// LEDs whose medium may be left out: it is the first one of LEDs then.

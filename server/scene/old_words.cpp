@@ -20,6 +20,7 @@ constexpr std::string_view noise_of_wheels =
     "the actuator";
 constexpr std::string_view noise_of_place =
     "write pos_noise_range, angle_noise_range and axis_noise_range";
+constexpr std::string_view no_collisions = "messages never collide";
 constexpr std::string_view no_system = "a robot's computer is not modelled";
 constexpr std::string_view new_name = "that is its name here";
 constexpr std::string_view radios = "scripts use robot.radios";
@@ -59,6 +60,7 @@ constexpr auto words = std::to_array<OldWord>({
     {element, "devices", "simple_radios", "", "radios", new_name},
     {element, "actuators", "simple_radios", "", "radios", radios},
     {element, "sensors", "simple_radios", "", "radios", radios},
+    {attribute, "kilobot_communication", "ignore_channel_congestion", "", "", no_collisions},
     {element, "sensors", "pipuck_system", "", "", no_system},
     {element, "sensors", "builderbot_system", "", "", no_system},
     {element, "actuators", "pipuck_system", "", "", no_system},

@@ -231,5 +231,18 @@ TEST(Robots, HaveOnlyTheirOwnDevices) {
   EXPECT_EQ(lacks("gripper", "foot-bot"), 0u);
 }
 
+TEST(Robots, SomeDevicesHaveTwoImplementations) {
+  const auto told = [](const std::string& implementation) {
+    SceneText text =
+        with_controller("", R"(<kilobot_light implementation=")" + implementation + R"("/>)");
+    text.arena = arena_with(R"(<kilobot id="k"><body/><controller config="c"/></kilobot>)");
+    return faults(text.read());
+  };
+  EXPECT_TRUE(told("rot_z_only").empty());
+  EXPECT_TRUE(told("default").empty());
+  ASSERT_EQ(told("rot").size(), 1u);
+  EXPECT_NE(told("rot")[0].find("write one of: rot_z_only, default"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace ziggurat::scene
