@@ -38,6 +38,9 @@ std::unique_ptr<Kind> make_epuck_ground();
 std::unique_ptr<Kind> make_quadrotor();
 std::unique_ptr<Kind> make_kilobot_motors();
 std::unique_ptr<Kind> make_kilobot_communication();
+std::unique_ptr<Kind> make_differential_drive();
+std::unique_ptr<Kind> make_rangefinders();
+std::unique_ptr<Kind> make_lift_system();
 
 Devices::Devices() {
   constexpr std::array kinds{make_joints,
@@ -69,7 +72,10 @@ Devices::Devices() {
                              make_epuck_ground,
                              make_quadrotor,
                              make_kilobot_motors,
-                             make_kilobot_communication};
+                             make_kilobot_communication,
+                             make_differential_drive,
+                             make_rangefinders,
+                             make_lift_system};
   for (const auto make : kinds) kinds_.push_back(make());
 }
 

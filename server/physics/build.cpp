@@ -46,17 +46,11 @@ void add_frames(Body& body, const scene::Entity& entity, const std::vector<Pose>
   if (entity.turret) body.turret = Turret{.link = *entity.turret};
 }
 
-void make_single_part(Body& body, const scene::Entity& entity, const std::vector<Pose>& placed,
-                      const scene::Physics& physics) {
+void make_single_part(Body& body, const scene::Entity& entity, const std::vector<Pose>& placed) {
   const LinkBody shape = link_body(entity.links[0], entity.movable, placed[0]);
   body.parts.push_back({shape.moves, shape.mass, shape.inertia});
   body.links.push_back(shape);
   add_frames(body, entity, placed);
-  if (const auto traction = traction_of(entity, physics)) {
-    body.ground = GroundMotion{.limits = *traction};
-  }
-  if (entity.flight)
-    body.flight = FlyingBody{.limits = *entity.flight, .target = hover_at(entity.pose)};
 }
 
 void make_parts(Body& body, const scene::Entity& entity, const std::vector<Pose>& assembled,
@@ -72,7 +66,8 @@ void make_parts(Body& body, const scene::Entity& entity, const std::vector<Pose>
 }  // namespace
 
 bool is_single_part(const scene::Entity& entity) {
-  if (scene::is_single(entity.kind) || entity.traction || entity.flight) return true;
+  if (scene::is_single(entity.kind) || entity.flight) return true;
+  if (entity.traction) return entity.joints.empty();
   return entity.kind == scene::EntityKind::prototype && entity.links.size() == 1 &&
          entity.links[0].collides && entity.devices.magnets.empty();
 }
@@ -98,10 +93,15 @@ Body make_body(const scene::Entity& entity, const scene::Physics& physics, std::
   std::vector<Pose> placed;
   for (const Pose& pose : assembled) placed.push_back(entity.pose * pose);
   if (is_single_part(entity)) {
-    make_single_part(body, entity, placed, physics);
+    make_single_part(body, entity, placed);
   } else {
     make_parts(body, entity, assembled, placed, physics.magnetism.has_value());
   }
+  if (const auto traction = traction_of(entity, physics)) {
+    body.ground = GroundMotion{.limits = *traction};
+  }
+  if (entity.flight)
+    body.flight = FlyingBody{.limits = *entity.flight, .target = hover_at(entity.pose)};
   if (physics.magnetism) set_magnet_cores(body, entity);
   return body;
 }

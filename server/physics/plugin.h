@@ -1,6 +1,7 @@
 #pragma once
 // The plug-in layer: what acts on bodies besides joints and contacts, and what watches them.
-// Damping, magnetism, wheels and contact sensing are plug-ins. physics/plugins.cpp lists them.
+// Damping, magnetism, wheels, flight and contact sensing are plug-ins. physics/plugins.cpp lists
+// them.
 
 #include <compare>
 #include <cstdint>

@@ -5,96 +5,22 @@
 #include <numbers>
 #include <span>
 
-#include "scene/draft.h"
+#include "scene/enabling.h"
 #include "scene/memory.h"
 
 namespace ziggurat::scene {
 namespace {
 
-OneOf<JointMode> joint_modes() {
-  return {{"position", JointMode::position},
-          {"velocity", JointMode::velocity},
-          {"disabled", JointMode::disabled}};
-}
-
-/// Arguments to read one device.
-struct Enabling {
-  Draft& draft;
-  Element& element;
-  ControllerDevices& devices;
-  ControllerUse& use;
-  DescribedUse* described = nullptr;  ///< of a device that describes itself
-};
-
 using Enable = void (*)(const Enabling&);
 
 struct DeviceRow {
   std::string_view name;
-  std::string_view implementation;  ///< empty: any of those that the dialect has
+  std::string_view implementation;  ///< "one|other": either
   Enable enable;
   bool is_carried = true;        ///< an entity must carry it: controllers.cpp checks that
   std::string_view places = {};  ///< of a device that describes itself: DevicePlace::name
   std::string_view kind = {};    ///< likewise, if its kind has not the name of the element
 };
-
-// --- joints -------------------------------------------------------------------------------------
-
-/// @param key  what of a joint may be listed once, from its id and mode
-template <class Key, class Read>
-void read_joint_list(Element& element, Key key, Read read) {
-  constexpr std::string_view known[] = {"joint"};
-  Ids ids;
-  for (Element& joint : element.children()) {
-    if (joint.name() != "joint") {
-      joint.unknown_in("joints", known);
-      continue;
-    }
-    const std::string id = joint.required("id", identifier);
-    const JointMode mode = joint.required("mode", joint_modes(), JointMode::disabled);
-    if (!id.empty() && !ids.add(key(id, mode), joint.where())) {
-      joint.fault_at("id",
-                     fmt::format("is listed twice, first{}; list it once",
-                                 joint.report().place(ids.owner(key(id, mode)), joint.where())));
-    }
-    read(joint, id, mode);
-    joint.done();
-  }
-}
-
-/// The strength of a motor: an impulse per substep, or a force.
-void read_strength(Element& joint, JointActuator& actuator) {
-  const auto force = joint.optional("max_force", non_negative);
-  const auto torque = joint.optional("max_torque", non_negative);
-  actuator.is_torque = torque.has_value();
-  actuator.max_force = torque ? torque : force;
-  actuator.max_impulse = joint.optional("max_impulse", non_negative, 0.0);
-  constexpr std::array<std::string_view, 3> strengths{"max_force", "max_torque", "max_impulse"};
-  const auto given = std::ranges::count_if(
-      strengths, [&](std::string_view name) { return joint.has(name.data()); });
-  if (given == 0) missing_all(joint, strengths);
-  if (given > 1)
-    joint.fault("has more than one of max_force, max_torque and max_impulse; write one");
-}
-
-void enable_joint_actuators(const Enabling& e) {
-  const auto once = [](const std::string& id, JointMode) { return id; };
-  read_joint_list(e.element, once, [&](Element& joint, const std::string& id, JointMode mode) {
-    JointActuator actuator{id, mode, 0, joint.where()};
-    read_strength(joint, actuator);
-    if (!id.empty()) e.devices.joints.actuators.push_back(actuator);
-  });
-}
-
-/// A joint may have a sensor of its position and one of its velocity.
-void enable_joint_sensors(const Enabling& e) {
-  const auto once_in_each_mode = [](const std::string& id, JointMode mode) {
-    return mode == JointMode::velocity ? id + "\n" : id;  // no id has a line break
-  };
-  read_joint_list(e.element, once_in_each_mode,
-                  [&](Element& joint, const std::string& id, JointMode mode) {
-                    if (!id.empty()) e.devices.joints.sensors.push_back({id, mode, joint.where()});
-                  });
-}
 
 // --- devices modelled in Devices ----------------------------------------------------------------
 
@@ -310,23 +236,12 @@ void enable_gripper(const Enabling& e) {
 
 void enable_nothing(const Enabling&) {}
 
-/// Its medium may be left out: it is the first one of LEDs then.
-void enable_kilobot_led(const Enabling& e) {
-  LedsUse& use = e.devices.leds.emplace();
-  if (e.element.has("medium")) use.medium = read_medium(e.draft, e.element, MediumKind::led);
-}
-
-/// Its medium may be left out: robots without one hear each other.
-void enable_kilobot_communication(const Enabling& e) {
-  if (e.element.has("medium")) {
-    e.described->medium = read_medium(e.draft, e.element, MediumKind::kilobot_communication);
-  }
-  e.described->noise = e.element.optional("noise_std_dev", non_negative, 0.0);
-  e.described->loss = e.element.optional("message_drop_prob", probability, 0.0);
-  e.element.without_effect("show_rays", boolean, "messages are not drawn");
 }
 
 // --- the tables ---------------------------------------------------------------------------------
+
+constexpr std::string_view drive = "differential_drive", finders = "rangefinders",
+                           lift = "lift_system";
 
 constexpr auto actuator_rows = std::to_array<DeviceRow>({
     {"joints", "default", enable_joint_actuators, false},
@@ -344,12 +259,19 @@ constexpr auto actuator_rows = std::to_array<DeviceRow>({
     {"footbot_gripper", "default", enable_gripper, true, "gripper"},
     {"footbot_distance_scanner", "default", enable_nothing, true, "footbot_distance_scanner"},
     {"kilobot_differential_drive", "default", enable_nothing, true, "kilobot_motors"},
-    {"kilobot_led", "default", enable_kilobot_led},
+    {"kilobot_led", "default", enable_leds_of_robot},
     {"kilobot_communication", "default", enable_nothing, true, "kilobot_communication"},
+    {"pipuck_differential_drive", "default", enable_nothing, true, drive, drive},
+    {"pipuck_leds", "default", enable_leds_of_robot},
+    {"builderbot_differential_drive", "default", enable_nothing, true, drive, drive},
+    {"builderbot_leds", "default", enable_leds_of_robot},
+    {"builderbot_lift_system", "default", enable_nothing, true, lift, lift},
+    {"builderbot_electromagnet_system", "default", enable_magnets},
+    {"builderbot_nfc", "default", enable_radios_actuator},
     {"wifi", "default", enable_radios_actuator},
-    {"epuck_wheels", "", enable_epuck_wheels},
-    {"epuck_leds", "", enable_leds},
-    {"epuck_range_and_bearing", "", enable_range_and_bearing_actuator},
+    {"epuck_wheels", "default|rot_z_only|medium", enable_epuck_wheels},
+    {"epuck_leds", "default|rot_z_only|medium", enable_leds},
+    {"epuck_range_and_bearing", "default|rot_z_only|medium", enable_range_and_bearing_actuator},
 });
 
 constexpr auto sensor_rows = std::to_array<DeviceRow>({
@@ -376,22 +298,40 @@ constexpr auto sensor_rows = std::to_array<DeviceRow>({
     {"footbot_base_ground", "rot_z_only", enable_rays_and_noise, true, "base_ground"},
     {"footbot_motor_ground", "rot_z_only", enable_rays_and_noise, true, "motor_ground"},
     {"footbot_turret_encoder", "default", enable_turret_encoder},
-    {"kilobot_light", "rot_z_only", enable_rays_and_noise, true, "light", "light"},
+    {"kilobot_light", "rot_z_only|default", enable_rays_and_noise, true, "light", "light"},
     {"kilobot_communication", "default", enable_kilobot_communication, true,
      "kilobot_communication"},
+    {"pipuck_differential_drive", "default", enable_nothing, true, drive, drive},
+    {"pipuck_rangefinders", "default|rot_z_only", enable_rays_and_noise, true, finders, finders},
+    {"pipuck_ground", "default|rot_z_only", enable_rays_and_noise, true, "ground", "ground"},
+    {"pipuck_imu", "default", enable_imu_of_robot, false},
+    {"builderbot_differential_drive", "default", enable_nothing, true, drive, drive},
+    {"builderbot_rangefinders", "default", enable_rays_and_noise, true, finders, finders},
+    {"builderbot_lift_system", "default", enable_nothing, true, lift, lift},
+    {"builderbot_electromagnet_system", "default", enable_magnets},
+    {"builderbot_camera_system", "default", enable_builderbot_camera},
+    {"builderbot_nfc", "default", enable_radios_sensor},
     {"footbot_distance_scanner", "rot_z_only", enable_scanner, true, "footbot_distance_scanner"},
     {"wifi", "default", enable_radios_sensor},
-    {"epuck_wheels", "", enable_wheel_encoders},
-    {"epuck_proximity", "", enable_epuck_sensor, true, "infrared"},
-    {"epuck_light", "", enable_epuck_sensor, true, "infrared"},
-    {"epuck_ground", "", enable_epuck_sensor, true, "ground"},
-    {"epuck_range_and_bearing", "", enable_range_and_bearing_sensor},
+    {"epuck_wheels", "default|rot_z_only|medium", enable_wheel_encoders},
+    {"epuck_proximity", "default|rot_z_only|medium", enable_epuck_sensor, true, "infrared"},
+    {"epuck_light", "default|rot_z_only|medium", enable_epuck_sensor, true, "infrared"},
+    {"epuck_ground", "default|rot_z_only|medium", enable_epuck_sensor, true, "ground"},
+    {"epuck_range_and_bearing", "default|rot_z_only|medium", enable_range_and_bearing_sensor},
 });
 
+/// Words for `implementation`: "one|other".
+Words implementations(const DeviceRow& row) {
+  std::vector<std::string_view> words;
+  for (std::string_view left = row.implementation; !left.empty();) {
+    words.push_back(left.substr(0, left.find('|')));
+    left.remove_prefix(std::min(left.size(), words.back().size() + 1));
+  }
+  return Words(std::move(words));
+}
+
 void read_device(const Enabling& e, const DeviceRow& row) {
-  e.element.required("implementation", row.implementation.empty()
-                                           ? Words{"default", "rot_z_only", "medium"}
-                                           : Words{row.implementation});
+  e.element.required("implementation", implementations(row));
   if (row.is_carried) {
     e.use.devices.push_back({std::string(row.name), e.element.where(), row.places});
   }

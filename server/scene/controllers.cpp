@@ -127,20 +127,27 @@ constexpr std::array<Component, 8> components{{
     {"battery", [](const Entity& e) { return e.devices.battery.has_value(); }, "battery"},
 }};
 
-bool is_foot_bot(const Entity& entity) { return entity.kind == EntityKind::foot_bot; }
-bool is_e_puck(const Entity& entity) { return entity.kind == EntityKind::e_puck; }
+template <EntityKind kind>
+bool is(const Entity& entity) {
+  return entity.kind == kind;
+}
 
 constexpr auto robot_components = std::to_array<Component>({
-    {"wifi", is_foot_bot, ""},
     {"differential_steering", [](const Entity& e) { return e.axle_length.has_value(); }, ""},
     {"footbot_turret", [](const Entity& e) { return e.turret.has_value(); }, ""},
     {"footbot_turret_encoder", [](const Entity& e) { return e.turret.has_value(); }, ""},
-    {"footbot_proximity", is_foot_bot, ""},
-    {"epuck_wheels", is_e_puck, ""},
-    {"epuck_leds", is_e_puck, ""},
-    {"epuck_range_and_bearing", is_e_puck, ""},
-    {"eyebot_proximity", [](const Entity& e) { return e.kind == EntityKind::eye_bot; }, ""},
-    {"kilobot_led", [](const Entity& e) { return e.kind == EntityKind::kilobot; }, ""},
+    {"wifi", is<EntityKind::foot_bot>, ""},
+    {"footbot_proximity", is<EntityKind::foot_bot>, ""},
+    {"epuck_wheels", is<EntityKind::e_puck>, ""},
+    {"epuck_leds", is<EntityKind::e_puck>, ""},
+    {"epuck_range_and_bearing", is<EntityKind::e_puck>, ""},
+    {"eyebot_proximity", is<EntityKind::eye_bot>, ""},
+    {"kilobot_led", is<EntityKind::kilobot>, ""},
+    {"pipuck_leds", is<EntityKind::pi_puck>, ""},
+    {"builderbot_leds", is<EntityKind::builderbot>, ""},
+    {"builderbot_electromagnet_system", is<EntityKind::builderbot>, ""},
+    {"builderbot_camera_system", is<EntityKind::builderbot>, ""},
+    {"builderbot_nfc", is<EntityKind::builderbot>, ""},
 });
 
 /// Whether a built-in robot has a device that is not in the table `components`.

@@ -222,6 +222,9 @@ void order_joints(Report& report, Entity& entity);
 /// Reads <devices> of a prototype.
 void read_devices(Draft& draft, Element& element, Entity& entity);
 
+/// Reads a <block>, which comes as it is.
+void read_block(Draft& draft, Element& element, Entity& entity);
+
 /// Reads <battery>.
 Battery read_battery(Element& element);
 

@@ -14,7 +14,10 @@ namespace {
 constexpr Surface single_body_surface{0.5, 2e-4};
 constexpr Damping single_body_damping{0.0, 0.0};
 
-constexpr std::array<std::pair<std::string_view, EntityKind>, 11> kinds{{
+/// A prototype that comes as it is.
+constexpr std::string_view block_element = "block";
+
+constexpr std::array<std::pair<std::string_view, EntityKind>, 14> kinds{{
     {"box", EntityKind::box},
     {"cylinder", EntityKind::cylinder},
     {"sphere", EntityKind::sphere},
@@ -26,6 +29,9 @@ constexpr std::array<std::pair<std::string_view, EntityKind>, 11> kinds{{
     {"spiri", EntityKind::spiri},
     {"mini-quadrotor", EntityKind::mini_quadrotor},
     {"kilobot", EntityKind::kilobot},
+    {"pipuck", EntityKind::pi_puck},
+    {"builderbot", EntityKind::builderbot},
+    {block_element, EntityKind::prototype},
 }};
 
 }  // namespace
@@ -205,7 +211,8 @@ void read_body_and_devices(Draft& draft, Element& element, Entity& entity) {
       read_single_body(draft, element, entity);
       break;
     case EntityKind::prototype:
-      read_prototype(draft, element, entity);
+      element.name() == block_element ? read_block(draft, element, entity)
+                                      : read_prototype(draft, element, entity);
       break;
     case EntityKind::light:
       read_light(draft, element, entity);

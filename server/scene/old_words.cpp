@@ -20,6 +20,8 @@ constexpr std::string_view noise_of_wheels =
     "the actuator";
 constexpr std::string_view noise_of_place =
     "write pos_noise_range, angle_noise_range and axis_noise_range";
+constexpr std::string_view no_collisions = "messages never collide";
+constexpr std::string_view no_system = "a robot's computer is not modelled";
 constexpr std::string_view new_name = "that is its name here";
 constexpr std::string_view radios = "scripts use robot.radios";
 constexpr std::string_view one_solver = "there is one solver, which runs until it converges";
@@ -61,6 +63,13 @@ constexpr auto words = std::to_array<OldWord>({
     {element, "devices", "simple_radios", "", "radios", new_name},
     {element, "actuators", "simple_radios", "", "radios", radios},
     {element, "sensors", "simple_radios", "", "radios", radios},
+    {attribute, "kilobot_communication", "ignore_channel_congestion", "", "", no_collisions},
+    {element, "sensors", "pipuck_system", "", "", no_system},
+    {element, "sensors", "builderbot_system", "", "", no_system},
+    {element, "actuators", "pipuck_system", "", "", no_system},
+    {element, "actuators", "builderbot_system", "", "", no_system},
+    {element, "actuators", "builderbot_camera_system", "", "", "the sensor is enough"},
+    {element, "sensors", "pipuck_front_camera", "", "", "write <cameras> with a <camera>"},
     {element, "dynamics3d", "srocs", "", "", "write <magnetism/>, and <magnets>"},
     {element, "", "virtual_magnetism", "", "",
      "write <magnetism/> into <dynamics3d>, and <magnets>"},

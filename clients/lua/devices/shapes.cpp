@@ -97,6 +97,15 @@ constexpr FunctionShape footbot_gripper_functions[] = {
     {"lock_negative", "lock_negative()", 0, {{{"lock", 1}}}},
     {"unlock", "unlock()", 0, {{{"lock", 0}}}},
 };
+constexpr FunctionShape drive_functions[] = {
+    {"set_linear_velocity",
+     "set_linear_velocity(left, right)",
+     2,
+     {{{"left", 0, 1, 0}, {"right", 0, 1, 1}}}},
+};
+constexpr FunctionShape lift_functions[] = {
+    {"set_position", "set_position(height)", 1, {{{"position", 0, 1}}}},
+};
 
 constexpr Shape shapes[] = {
     {"footbot_light", "light"},
@@ -120,6 +129,8 @@ constexpr Shape shapes[] = {
     {"quadrotor", "quadrotor", {}, quadrotor_functions},
     {"kilobot_differential_drive", "motors", {}, motor_functions},
     {"kilobot_communication", "communication", message, message_functions},
+    {"differential_drive", "differential_drive", {}, drive_functions},
+    {"lift_system", "lift_system", {}, lift_functions},
 };
 
 }  // namespace

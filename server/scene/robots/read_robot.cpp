@@ -19,14 +19,6 @@ void read_steering_limits(Element engine, Traction& traction) {
   engine.done();
 }
 
-/// The first medium of a kind: where devices are that the scene does not give one.
-std::optional<std::size_t> first_medium(const Scene& scene, MediumKind kind) {
-  for (std::size_t i = 0; i < scene.media.size(); ++i) {
-    if (scene.media[i].kind == kind) return i;
-  }
-  return std::nullopt;
-}
-
 /// Half-angle of a camera, below 90 degrees.
 double read_aperture(Element& element, const char* name, double usual) {
   const double found = element.optional(name, half_angle, usual);
@@ -93,14 +85,30 @@ struct Robot {
   void (*read)(Element& element, Entity& entity);  ///< what only this robot's element may have
 };
 
-constexpr std::array<Robot, 6> robots{{
+constexpr std::array<Robot, 8> robots{{
     {EntityKind::foot_bot, foot_bot::equip, read_foot_bot},
     {EntityKind::e_puck, e_puck::equip, ignore_blob_cameras},
     {EntityKind::eye_bot, flying::equip_eye_bot, read_eye_bot_camera},
     {EntityKind::spiri, flying::equip_spiri, read_spiri_camera},
     {EntityKind::kilobot, kilobot::equip, read_kilobot},
+    {EntityKind::pi_puck, pi_puck::equip, ignore_blob_cameras},
+    {EntityKind::builderbot, builderbot::equip, read_nothing},
     {EntityKind::mini_quadrotor, flying::equip_mini_quadrotor, read_nothing},
 }};
+
+/// Puts devices on the first medium of their type. Where there is none nothing perceives them, and
+/// they are left out.
+void assign_media(Draft& draft, Element& element, Devices& devices) {
+  for (const char* name : {"led_medium", "nfc_medium", "tag_medium", "wifi_medium"}) {
+    element.without_effect(name, identifier, "the first medium of the type counts");
+  }
+  devices.led_medium = first_medium(draft.scene, MediumKind::led);
+  devices.radio_medium = first_medium(draft.scene, MediumKind::radio);
+  devices.tag_medium = first_medium(draft.scene, MediumKind::tag);
+  devices.directional_led_medium = first_medium(draft.scene, MediumKind::directional_led);
+  if (!devices.tag_medium) devices.tags.clear();
+  if (!devices.directional_led_medium) devices.directional_leds.clear();
+}
 
 /// Range and bearing, of a robot that has it.
 void read_antenna(Draft& draft, Element& element, Devices& devices) {
@@ -113,6 +121,23 @@ void read_antenna(Draft& draft, Element& element, Devices& devices) {
 }
 
 }  // namespace
+
+std::optional<std::size_t> first_medium(const Scene& scene, MediumKind kind) {
+  for (std::size_t i = 0; i < scene.media.size(); ++i) {
+    if (scene.media[i].kind == kind) return i;
+  }
+  return std::nullopt;
+}
+
+void read_block(Draft& draft, Element& element, Entity& entity) {
+  block::equip(entity);
+  entity.movable = element.optional("movable", boolean, true);
+  for (std::size_t i = 0; i < entity.links.size(); ++i) {
+    entity.links[i].where = element.where();
+    draft.anchors.emplace(entity.links[i].id, i);
+  }
+  assign_media(draft, element, entity.devices);
+}
 
 bool is_robot(EntityKind kind) {
   return std::ranges::find(robots, kind, &Robot::kind) != robots.end();
@@ -127,8 +152,7 @@ void read_robot(Draft& draft, Element& element, Entity& entity) {
     draft.anchors.emplace(entity.links[i].id, i);
   }
   Devices& devices = entity.devices;
-  devices.radio_medium = first_medium(draft.scene, MediumKind::radio);
-  devices.led_medium = first_medium(draft.scene, MediumKind::led);
+  assign_media(draft, element, devices);
   read_antenna(draft, element, devices);
   robot.read(element, entity);
   devices.battery = Battery{};  // which nothing discharges

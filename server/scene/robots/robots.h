@@ -52,6 +52,26 @@ struct Settings {
 void add_devices(Entity& entity, const Settings& settings);
 }  // namespace kilobot
 
+/// A pi-puck: an e-puck with rangefinders.
+namespace pi_puck {
+void equip(Entity& entity);
+}
+
+/// A builderbot: a body on two wheels, a lift with an end effector, rangefinders, magnets, a radio.
+namespace builderbot {
+void equip(Entity& entity);
+/// Its camera, without detectors.
+Camera camera();
+}  // namespace builderbot
+
+/// A block of the construction kit: a cube with magnets, tags, radios and LEDs.
+namespace block {
+void equip(Entity& entity);
+}
+
+/// The first medium of a kind: where devices are that the scene does not give one.
+std::optional<std::size_t> first_medium(const Scene& scene, MediumKind kind);
+
 /// A body that is an upright cylinder on the floor: the link `base`.
 Link wheeled_body(double radius, double height, double mass);
 

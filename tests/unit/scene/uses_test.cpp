@@ -234,10 +234,29 @@ TEST(Robots, HaveOnlyTheirOwnDevices) {
   EXPECT_EQ(lacks("quadrotor_speed", "spiri"), 0u);
   EXPECT_EQ(lacks("range_and_bearing", "mini-quadrotor"), 1u);
   EXPECT_EQ(lacks("differential_steering", "eye-bot"), 1u);
+  EXPECT_EQ(lacks("kilobot_led", "kilobot"), 0u);
+  EXPECT_EQ(lacks("kilobot_led", "e-puck"), 1u);
+  EXPECT_EQ(lacks("pipuck_differential_drive", "e-puck"), 1u);
+  EXPECT_EQ(lacks("pipuck_leds", "pipuck"), 0u);
+  EXPECT_EQ(lacks("builderbot_lift_system", "builderbot"), 0u);
+  EXPECT_EQ(lacks("builderbot_electromagnet_system", "block"), 1u);
   EXPECT_EQ(lacks("gripper", "foot-bot"), 0u);
   EXPECT_EQ(lacks("gripper", "e-puck"), 1u);
   EXPECT_EQ(lacks("epuck_wheels", "e-puck"), 0u);
   EXPECT_EQ(lacks("epuck_wheels", "foot-bot"), 1u);
+}
+
+TEST(Robots, SomeDevicesHaveTwoImplementations) {
+  const auto told = [](const std::string& implementation) {
+    SceneText text =
+        with_controller("", R"(<kilobot_light implementation=")" + implementation + R"("/>)");
+    text.arena = arena_with(R"(<kilobot id="k"><body/><controller config="c"/></kilobot>)");
+    return faults(text.read());
+  };
+  EXPECT_TRUE(told("rot_z_only").empty());
+  EXPECT_TRUE(told("default").empty());
+  ASSERT_EQ(told("rot").size(), 1u);
+  EXPECT_NE(told("rot")[0].find("write one of: rot_z_only, default"), std::string::npos);
 }
 
 }  // namespace

@@ -61,6 +61,10 @@ std::size_t allocations_of_steady_ticks(const SmallScene& scene) {
     for (std::size_t i = 0; i < world.layout().radios.size(); i += 2) {
       commands.radio_messages.add(i, message);
     }
+    for (std::size_t i = 0; i < commands.device_commands.size(); ++i) {
+      const bool switches = world.layout().device_commands[i]->name == std::string("enabled");
+      if (switches) commands.device_commands[i] = 1;
+    }
     if (tick == 20) before = ziggurat::testing::allocations();
     world.step();
   }
@@ -85,6 +89,42 @@ TEST(Tick, OfRobotsOnWheelsAllocatesNothing) {
               <footbot_proximity implementation="default"/>)",
            R"(<foot-bot id="a"><body position="0,0,0"/><controller config="c"/></foot-bot>
               <foot-bot id="b"><body position="1,0,0"/><controller config="c"/></foot-bot>)",
+           R"(<floor/><gravity g="9.8"/>)"}),
+      0U);
+}
+
+TEST(Tick, OfRobotsThatFlyAllocatesNothing) {
+  EXPECT_EQ(allocations_of_steady_ticks(
+                {R"(<quadrotor_position implementation="default"/>)",
+                 R"(<eyebot_proximity implementation="default"/>)",
+                 R"(<eye-bot id="a"><body position="0,0,1"/><controller config="c"/></eye-bot>
+              <eye-bot id="b"><body position="1,0,1"/><controller config="c"/></eye-bot>)",
+                 R"(<floor/><gravity g="9.8"/>)"}),
+            0U);
+}
+
+TEST(Tick, OfKilobotsThatSendAllocatesNothing) {
+  std::string arena;
+  for (const char* place : {"0,0,0", "0.05,0,0", "0,0.05,0", "0.05,0.05,0"}) {
+    arena += std::string("<kilobot id=\"k") + std::to_string(arena.size()) +
+             "\"><body position=\"" + place + "\"/><controller config=\"c\"/></kilobot>";
+  }
+  EXPECT_EQ(allocations_of_steady_ticks(
+                {R"(<kilobot_communication implementation="default"/>
+              <kilobot_differential_drive implementation="default"/>)",
+                 R"(<kilobot_communication implementation="default" noise_std_dev="0.002"/>)",
+                 arena, R"(<floor/><gravity g="9.8"/>)"}),
+            0U);
+}
+
+TEST(Tick, OfBuilderbotsAllocatesNothing) {
+  EXPECT_EQ(
+      allocations_of_steady_ticks(
+          {R"(<builderbot_differential_drive implementation="default"/>
+              <builderbot_lift_system implementation="default"/>)",
+           R"(<builderbot_rangefinders implementation="default"/>
+              <builderbot_lift_system implementation="default"/>)",
+           R"(<builderbot id="a"><body position="0,0,0"/><controller config="c"/></builderbot>)",
            R"(<floor/><gravity g="9.8"/>)"}),
       0U);
 }

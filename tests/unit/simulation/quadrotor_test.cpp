@@ -174,6 +174,21 @@ TEST(Quadrotor, RightsItselfAndStartsFromTheFloor) {
   EXPECT_NEAR(height(low), 1, 1e-5);
 }
 
+TEST(Quadrotor, ASnapshotGoesOnAsBefore) {
+  const scene::Scene scene = SmallScene{by_position, "", flyer("spiri"), ground}.read();
+  Simulation simulation(scene, {1});
+  move(simulation, relative, {1, 0, 0});
+  testing::run(simulation, 5);
+  const Snapshot snapshot = simulation.snapshot();
+  testing::run(simulation, 20);
+  const std::uint64_t expected = simulation.hash();
+  simulation.restore(scene, snapshot);
+  testing::run(simulation, 20);
+  EXPECT_EQ(simulation.hash(), expected);
+  testing::run(simulation, 150);
+  EXPECT_NEAR(place(simulation).x(), 1, 1e-5) << "the displacement is not taken again";
+}
+
 TEST(Quadrotor, StaysWhereADirectorPutsIt) {
   Simulation simulation = flying();
   testing::run(simulation, 5);

@@ -1,0 +1,63 @@
+// Differential drive of robots whose scripts give its speeds in metres per second.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "devices/described.h"
+#include "math/archive.h"
+
+namespace ziggurat::devices {
+namespace {
+
+/// Readings are the speeds at which the two wheels ran in the tick.
+constexpr world::DeviceKind differential_drive{.name = "differential_drive",
+                                               .readings = {{"left", "m/s"}, {"right", "m/s"}},
+                                               .commands = {{"left", "m/s"}, {"right", "m/s"}}};
+
+class DifferentialDrive final : public Described {
+ public:
+  DifferentialDrive() : Described(differential_drive) {}
+  std::unique_ptr<Kind> clone() const override {
+    return std::make_unique<DifferentialDrive>(*this);
+  }
+
+  void apply(Tick& tick) override {
+    for (std::size_t i = 0; i < robots().size(); ++i) {
+      const Robot& robot = robots()[i];
+      const std::size_t entity = tick.layout.robots[robot.index].entity;
+      const world::Range& commands = tick.layout.described[robot.devices.begin].commands;
+      if (commands.count == 0 || tick.state.is_absent(entity)) continue;
+      Speeds& speeds = speeds_[i];
+      speeds = {tick.commands.device_commands[commands.begin],
+                tick.commands.device_commands[commands.begin + 1]};
+      tick.physics.set_velocity(entity, (speeds[0] + speeds[1]) / 2,
+                                (speeds[1] - speeds[0]) / robot.places[0].settings[0]);
+    }
+  }
+
+  void archive(math::Archive& archive) override {
+    Described::archive(archive);
+    for (Speeds& speeds : speeds_) archive("speeds", speeds);
+  }
+
+ private:
+  using Speeds = std::array<double, 2>;  // speeds, left and right [m/s]
+
+  void add_robot(const Setting&) override { speeds_.push_back({}); }
+
+  void read(Tick& tick, Robot& robot) override {
+    const Speeds& speeds = speeds_[static_cast<std::size_t>(&robot - robots().data())];
+    const world::Range& readings = tick.layout.described[robot.devices.begin].readings;
+    for (std::size_t i = 0; i < speeds.size(); ++i)
+      tick.observations.device_readings[readings.begin + i] = speeds[i];
+  }
+
+  std::vector<Speeds> speeds_;  // of each robot
+};
+
+}  // namespace
+
+std::unique_ptr<Kind> make_differential_drive() { return std::make_unique<DifferentialDrive>(); }
+
+}  // namespace ziggurat::devices

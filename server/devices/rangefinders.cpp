@@ -1,0 +1,48 @@
+// Rangefinders: the distance to the nearest body along a ray.
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "devices/described.h"
+
+namespace ziggurat::devices {
+namespace {
+
+/// A reading is the range if there is nothing nearer.
+constexpr world::DeviceKind rangefinders{
+    .name = "rangefinders", .readings = {{"proximity", "m"}}, .properties = {{"range", "m"}}};
+
+class Rangefinders final : public Described {
+ public:
+  Rangefinders() : Described(rangefinders) {}
+  std::unique_ptr<Kind> clone() const override { return std::make_unique<Rangefinders>(*this); }
+
+  bool casts_rays() const override { return !robots().empty(); }
+
+ private:
+  std::vector<double> properties(const scene::DevicePlace& place) const override {
+    return {place.settings[0]};
+  }
+
+  void read(Tick& tick, Robot& robot) override {
+    const std::array own{tick.layout.robots[robot.index].entity};
+    for (std::size_t i = 0; i < robot.devices.count; ++i) {
+      const world::DescribedDevice& device = tick.layout.described[robot.devices.begin + i];
+      const double range = robot.places[i].settings[0];
+      const math::Pose eye = world::pose_of(tick.state, device.mount);
+      const math::Vector3 end = eye * math::Vector3(range, 0, 0);
+      const auto hit = tick.rays.cast({eye.position, end, own, true});
+      tick.show({world::Ray::Kind::device, robot.index, eye.position, end}, hit,
+                robot.use.show_rays);
+      tick.observations.device_readings[device.readings.begin] =
+          std::clamp(with_noise(robot, hit ? hit->distance : range), 0.0, range);
+    }
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Kind> make_rangefinders() { return std::make_unique<Rangefinders>(); }
+
+}  // namespace ziggurat::devices
