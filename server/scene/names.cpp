@@ -70,14 +70,9 @@ constexpr auto attribute_homes = std::to_array<Reason>({
 
 /// Beginnings of the names of their devices.
 constexpr auto foreign_robots = std::to_array<Reason>({
-    {"eyebot_", "eye-bot"},
-    {"kilobot_", "kilobot"},
     {"epuck_", "e-puck of another plug-in"},
     {"epuck2_", "e-puck2"},
-    {"pipuck_", "pi-puck"},
-    {"builderbot_", "builderbot"},
     {"drone_", "drone"},
-    {"spiri_", "spiri"},
     {"kheperaiv_", "kheperaiv"},
     {"crazyflie_", "crazyflie"},
     {"thymio_", "thymio"},
