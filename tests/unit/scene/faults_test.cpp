@@ -166,6 +166,9 @@ constexpr Row controller_rows[] = {
     {"E36_two_strengths", Part::controllers,
      R"(<controllers><lua_controller id="c"><actuators><joints implementation="default"><joint id="j" mode="velocity" max_force="1" max_impulse="1"/></joints></actuators></lua_controller></controllers>)",
      "<joint> has more than one of max_force, max_torque and max_impulse; write one"},
+    {"Misspelt_device_of_kilobots", Part::controllers,
+     R"(<controllers><lua_controller id="c"><sensors><kilobot_ligth implementation="default"/></sensors></lua_controller></controllers>)",
+     R"(unknown element <kilobot_ligth> in <sensors>; did you mean "kilobot_light"?)"},
     {"Device_of_kheperas", Part::controllers,
      R"(<controllers><lua_controller id="c"><sensors><kheperaiv_light implementation="rot_z_only"/></sensors></lua_controller></controllers>)",
      "<kheperaiv_light> is a device of the kheperaiv, which is not modelled here; remove it, or "
