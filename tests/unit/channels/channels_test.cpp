@@ -110,7 +110,8 @@ TEST(Channels, TheFloorIsAPictureAndWhatWasPaintedOnIt) {
   shown.simulation.commands().floor_paints = {{{1, 2}, {3, 4}, false, 0x123456},
                                               {{5, 6}, {7, 7}, true, 0xFF}};
   shown.simulation.step();
-  const auto& paints = shown.read<v1::Poses>("/poses").floor_paints();
+  const auto poses = shown.read<v1::Poses>("/poses");
+  const auto& paints = poses.floor_paints();
   EXPECT_EQ(std::vector<double>(paints.begin(), paints.end()),
             std::vector<double>({1, 2, 3, 4, 0, 0x123456, 5, 6, 7, 7, 1, 0xFF}));
 }

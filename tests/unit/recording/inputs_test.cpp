@@ -182,6 +182,24 @@ std::string bits_of(const std::vector<world::LinkState>& links) {
   return message.SerializeAsString();
 }
 
+TEST(Inputs, GiveBackWhatWasPaintedOnTheFloorAtThatTick) {
+  Example example;
+  example.commands.floor_paints = {{{1, 2}, {3, 4}, false, 0x123456}, {{-1, 0}, {2, 2}, true, 7}};
+  CommandPacker packer;
+  v1::Commands first, second;
+  packer.pack(example.commands, first);
+  world::Commands read = example.commands;
+  read.floor_paints.clear();
+  ASSERT_EQ(example.read(first, read), std::nullopt);
+  EXPECT_EQ(read.floor_paints, example.commands.floor_paints);
+  example.commands.floor_paints.clear();
+  packer.pack(example.commands, second);
+  ASSERT_EQ(example.read(second, read), std::nullopt);
+  EXPECT_TRUE(read.floor_paints.empty());
+  first.mutable_floor_paints(0)->mutable_values()->RemoveLast();
+  EXPECT_NE(example.fault_of(first).find("painted region"), std::string::npos);
+}
+
 TEST(ExactState, GivesBackLinksFromChanges) {
   StatePacker packer;
   world::State state;

@@ -58,6 +58,7 @@ TEST(Cost, AFieldTakesAHundredBytesOfMemory) {
       {"entities", [](auto& to) { to.mutable_request()->mutable_read()->add_entities(); }},
       {"acts", [](auto& to) { to.mutable_direction()->add_acts(); }},
       {"pushes", [](auto& to) { to.mutable_direction()->add_acts()->mutable_push(); }},
+      {"paints", [](auto& to) { to.mutable_direction()->add_acts()->mutable_paint_floor(); }},
       {"moves", [](auto& to) { to.mutable_direction()->add_acts()->mutable_move(); }},
       {"spawns", [](auto& to) { to.mutable_direction()->add_acts()->mutable_spawn(); }},
   };
