@@ -144,10 +144,11 @@ void check_programs(const scene::Scene& scene) {
 }
 
 unsigned threads_for(const Options& options, std::span<const scene::Entity> entities) {
-  constexpr std::ptrdiff_t few = 64;  // measured: docs/performance.md
+  constexpr unsigned bodies_of_a_thread = 32;  // measured: docs/performance.md
   if (options.threads > 0) return options.threads;
-  if (std::ranges::count(entities, true, &scene::Entity::movable) < few) return 1;
-  return std::clamp(std::thread::hardware_concurrency(), 1U, 256U);
+  const auto moving = std::ranges::count(entities, true, &scene::Entity::movable);
+  const unsigned most = std::min(std::thread::hardware_concurrency(), 256U);
+  return std::clamp(static_cast<unsigned>(moving) / bodies_of_a_thread, 1U, std::max(most, 1U));
 }
 
 wire::End end_message(const reports::Summary& summary) {

@@ -45,9 +45,9 @@ wire::Run description_of(const supervision::World& world, const std::vector<std:
 /// and command
 void check_programs(const scene::Scene& scene);
 
-/// Number of threads for the physics: what the options say, else that of the processors, if so many
-/// bodies move that a team gives more than it costs. Local controllers need none of them: they wait
-/// while the physics computes.
+/// Number of threads for the physics: what the options say, else as many as bodies that move are
+/// worth, up to the processors. Local controllers need none of them: they wait while the physics
+/// computes.
 unsigned threads_for(const Options& options, std::span<const scene::Entity> entities);
 
 /// Message to clients at the end of the run.

@@ -236,8 +236,6 @@ void enable_gripper(const Enabling& e) {
 
 void enable_nothing(const Enabling&) {}
 
-}
-
 // --- the tables ---------------------------------------------------------------------------------
 
 constexpr std::string_view drive = "differential_drive", finders = "rangefinders",

@@ -20,17 +20,17 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 /// A link with the subtree that it carries, all of whose joints are free. Angular parts come before
 /// linear ones.
 struct ArticulatedBody {
-  Matrix6 inertia;  ///< wrench over acceleration, about O
-  Vector6 wrench;   ///< that keeps the link's acceleration at zero
-  Vector6 bias;     ///< acceleration by velocities, relative to the parent
-  Vector6 acceleration;
+  Matrix6 inertia = Matrix6::Zero();       ///< wrench over acceleration, about O
+  Vector6 wrench = Vector6::Zero();        ///< that keeps the link's acceleration at zero
+  Vector6 bias = Vector6::Zero();          ///< acceleration by velocities, relative to the parent
+  Vector6 acceleration = Vector6::Zero();  ///< of the link
 };
 
 /// A dof of a joint, which divides an articulated body from its parent.
 struct ArticulatedDof {
-  Vector6 inertia;      ///< wrench on the body by the dof's unit acceleration
-  double mobility = 0;  ///< acceleration of the dof by a unit force; 0: prescribed
-  double force = 0;     ///< that accelerates it while the parent stands
+  Vector6 inertia = Vector6::Zero();  ///< wrench on the body by the dof's unit acceleration
+  double mobility = 0;                ///< acceleration of the dof by a unit force; 0: prescribed
+  double force = 0;                   ///< that accelerates it while the parent stands
 };
 
 /// Intermediate results of one tree, in memory that the next tree uses again: it stays in the

@@ -23,8 +23,8 @@ constexpr Option run_options[] = {
     {"seed", "N", of_world | by_render, common, settings, read_seed,
      "random seed; 0 draws one from the system and prints it"},
     {"threads", "N", of_world, common, scene, read_threads,
-     "N threads share the physics, with the same results for any number; default: all processors, "
-     "as local controllers wait meanwhile, or 1 if fewer than 64 bodies move"},
+     "N threads share the physics, with the same results for any number; default: one for 32 "
+     "moving bodies, up to the processors, as local controllers wait meanwhile"},
     {"real-time", "FACTOR", of_world | by_replay, common, settings, read_real_time,
      "pace to the wall clock, FACTOR times as fast (default 1)", "1"},
     {"settings", "FILE.toml", of_world | by_render, common, command_line, &Options::settings_file,
