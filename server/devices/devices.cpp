@@ -77,10 +77,18 @@ Devices::Devices() {
                              make_rangefinders,
                              make_lift_system};
   for (const auto make : kinds) kinds_.push_back(make());
+  list_substep_kinds();
 }
 
 Devices::Devices(const Devices& other) {
   for (const auto& kind : other.kinds_) kinds_.push_back(kind->clone());
+  list_substep_kinds();
+}
+
+void Devices::list_substep_kinds() {
+  for (const auto& kind : kinds_) {
+    if (kind->follows_substeps()) substep_kinds_.push_back(kind.get());
+  }
 }
 
 void Devices::lay_out(const Carrier& carrier, world::RobotLayout& robot,
@@ -101,7 +109,7 @@ void Devices::apply(Tick& tick) {
 }
 
 void Devices::after_substep(Tick& tick) {
-  for (const auto& kind : kinds_) kind->after_substep(tick);
+  for (Kind* const kind : substep_kinds_) kind->after_substep(tick);
 }
 
 void Devices::sense(Tick& tick) {

@@ -29,7 +29,10 @@ class Devices {
   bool needs_index() const;
 
  private:
+  void list_substep_kinds();
+
   std::vector<std::unique_ptr<Kind>> kinds_;
+  std::vector<Kind*> substep_kinds_;  ///< of them those that follow substeps
 };
 
 }  // namespace ziggurat::devices

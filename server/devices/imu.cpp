@@ -79,6 +79,7 @@ class Imus final : public Kind {
   // world (Titterton and Weston, Strapdown Inertial Navigation Technology, 2nd edition,
   // section 3.5). R is that in the middle of the substep, where the difference of two velocities
   // belongs.
+  bool follows_substeps() const override { return true; }
   void after_substep(Tick& tick) override {
     ++samples_;
     std::size_t read = tick.layout.entities.size();

@@ -36,8 +36,8 @@ class Kind {
   /// Before physics: what was commanded takes effect, at the poses of the last tick.
   virtual void apply(Tick& /*tick*/) {}
 
-  /// After each substep of the physics. Tick::state, rays and index are still those of the tick's
-  /// start; Tick::physics reads the state of an entity.
+  /// After each substep of the physics, of kinds that follow substeps. Tick::state, rays and index
+  /// are still those of the tick's start; Tick::physics reads the state of an entity.
   virtual void after_substep(Tick& /*tick*/) {}
 
   /// After physics, with rays and index at the new poses.
@@ -46,6 +46,7 @@ class Kind {
   /// Archives the state that the next tick reads beyond the world: charges, random streams.
   virtual void archive(math::Archive& /*archive*/) {}
 
+  virtual bool follows_substeps() const { return false; }
   virtual bool casts_rays() const { return false; }   ///< then Tick::rays has the current poses
   virtual bool needs_index() const { return false; }  ///< likewise Tick::index
 };

@@ -63,7 +63,7 @@ class Foreign(SceneTest):
         for sentence in (r":10:\d+: <footbot_landmarks_controller> is a library in C\+\+.*--controller fl=COMMAND",
                          r":18:\d+: unknown element <landmark_memory> in <sensors>",
                          r":26:\d+: <loop_functions> has no script.*<director",
-                         r":38:\d+: <thymio> is not supported; model it as a <prototype>"):
+                         r":38:\d+: <thymio> is not supported; write <e-puck>, or model it as a <prototype>"):
             self.assertRegex(outcome.err, sentence)
         outcome, places = self.places("--lenient", "--ticks", "60")
         self.assertEqual(len(places["fb1"]), 61)

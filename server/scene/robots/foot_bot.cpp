@@ -48,8 +48,6 @@ constexpr double gripper_radius = 0.01;  // of an upright cylinder about the tur
 constexpr double scanner_height = 0.123199866;  // [m]; its rays begin at the body's surface
 constexpr double omnidirectional_camera_height = 0.288699733;  // [m]
 
-constexpr double wifi_range = 10;  // [m]
-
 constexpr double range_and_bearing_height = 0.1;  // [m]
 constexpr double range_and_bearing_range = 3;     // [m]
 constexpr unsigned range_and_bearing_bytes = 10;
@@ -111,9 +109,12 @@ void equip(Entity& entity) {
         outward_sensor(bearing, proximity_height, body_radius, proximity_range));
     add_outward_place(entity, "light", bearing, proximity_height, body_radius);
   }
-  entity.devices.radios.push_back({"wifi", {}, {0, 0, range_and_bearing_height}, wifi_range, {}});
   entity.devices.range_and_bearing = level_range_and_bearing(
       range_and_bearing_height, range_and_bearing_range, range_and_bearing_bytes);
+}
+
+void add_wifi(Entity& entity, double range) {
+  entity.devices.radios.push_back({"wifi", {}, {0, 0, range_and_bearing_height}, range, {}});
 }
 
 }  // namespace ziggurat::scene::foot_bot

@@ -42,8 +42,8 @@ void read_blob_cameras(Element& element, Entity& entity) {
 
 void read_foot_bot(Element& element, Entity& entity) {
   read_blob_cameras(element, entity);
-  for (Radio& wifi : entity.devices.radios)
-    wifi.range = element.optional("wifi_range", positive, wifi.range);
+  constexpr double usual_range = 10;  // [m]
+  foot_bot::add_wifi(entity, element.optional("wifi_range", positive, usual_range));
 }
 
 /// The e-puck has no such camera.
@@ -106,6 +106,7 @@ void assign_media(Draft& draft, Element& element, Devices& devices) {
   devices.radio_medium = first_medium(draft.scene, MediumKind::radio);
   devices.tag_medium = first_medium(draft.scene, MediumKind::tag);
   devices.directional_led_medium = first_medium(draft.scene, MediumKind::directional_led);
+  if (!devices.radio_medium) devices.radios.clear();
   if (!devices.tag_medium) devices.tags.clear();
   if (!devices.directional_led_medium) devices.directional_leds.clear();
 }

@@ -19,6 +19,8 @@ struct BlobCameras {
 };
 /// After equip().
 void add_blob_cameras(Entity& entity, const BlobCameras& cameras);
+/// Adds its radio. @param range  [m]
+void add_wifi(Entity& entity, double range);
 }  // namespace foot_bot
 
 /// An e-puck: anchor `base`, two wheels, 10 LEDs, 8 proximity sensors, range and bearing.

@@ -161,12 +161,12 @@ TEST(DirectorScript, PlacesAreVectorsAndOrientationsQuaternions) {
       local turn = quaternion(1, vector3(0, 0, 1))
       world.move(box, box.position + vector3(0, 0, 1), turn * turn)
       world.move(box, -(box.position - 2 * box.position), {angle = 2, axis = {x = 0, y = 0, z = 1}})
-      log((box.orientation * box.orientation:inverse()).w)
+      log((box.orientation * box.orientation:inverse()).x, ' ', (turn * turn:inverse()).w)
     end
   )",
                                 0);
   ASSERT_EQ(directed.directions.size(), 1U) << directed.leave.message();
-  EXPECT_EQ(directed.log(), std::vector<std::string>{"1"});
+  EXPECT_EQ(directed.log(), std::vector<std::string>{"0 1"});
   const auto &first = directed.directions[0].acts(0).move(),
              &second = directed.directions[0].acts(1).move();
   for (int i = 0; i < 3; ++i) EXPECT_EQ(first.position(i), second.position(i) + (i == 2 ? 1 : 0));
