@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 namespace ziggurat::world {
 namespace {
@@ -44,10 +43,10 @@ bool paint(std::vector<FloorPaint>& floor, const FloorPaint& region) {
 }
 
 std::optional<Color> painted_color(const std::vector<FloorPaint>& floor, double x, double y) {
-  for (const FloorPaint& region : std::views::reverse(floor)) {
-    if (covers(region, {x, y})) return region.color;
-  }
-  return std::nullopt;
+  const auto top = std::find_if(floor.rbegin(), floor.rend(), [&](const FloorPaint& region) {
+    return covers(region, {x, y});
+  });
+  return top == floor.rend() ? std::nullopt : std::optional(top->color);
 }
 
 }  // namespace ziggurat::world
