@@ -351,8 +351,9 @@ DescribedUse* described_use(const DeviceRow& row, ControllerDevices& devices, bo
   return &*use;
 }
 
+/// @param others  rows of the other list
 void read_device_list(Draft& draft, Element& list, ControllerDevices& devices, ControllerUse& use,
-                      std::span<const DeviceRow> rows) {
+                      std::span<const DeviceRow> rows, std::span<const DeviceRow> others) {
   for (Element& element : last_of_each_name(list)) {
     Enabling enabling{draft, element, devices, use};
     bool known = false;
@@ -365,7 +366,10 @@ void read_device_list(Draft& draft, Element& list, ControllerDevices& devices, C
     if (known) continue;
     std::vector<std::string_view> names;
     for (const DeviceRow& row : rows) names.push_back(row.name);
-    element.unknown_in(list.name(), names);
+    const bool is_of_others =
+        std::ranges::find(others, element.name(), &DeviceRow::name) != others.end();
+    const std::string_view home = list.name() == "sensors" ? "actuators" : "sensors";
+    element.unknown_in(list.name(), names, is_of_others ? home : std::string_view());
   }
   list.done();
 }
@@ -391,11 +395,11 @@ std::vector<Element> last_of_each_name(Element& list) {
 }
 
 void read_actuators(Draft& draft, Element& list, ControllerDevices& devices, ControllerUse& use) {
-  read_device_list(draft, list, devices, use, actuator_rows);
+  read_device_list(draft, list, devices, use, actuator_rows, sensor_rows);
 }
 
 void read_sensors(Draft& draft, Element& list, ControllerDevices& devices, ControllerUse& use) {
-  read_device_list(draft, list, devices, use, sensor_rows);
+  read_device_list(draft, list, devices, use, sensor_rows, actuator_rows);
 }
 
 }  // namespace ziggurat::scene

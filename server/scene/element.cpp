@@ -251,7 +251,8 @@ void Element::done(std::string_view elsewhere, std::span<const std::string> name
   }
 }
 
-void Element::unknown_in(std::string_view parent, std::span<const std::string_view> known) const {
+void Element::unknown_in(std::string_view parent, std::span<const std::string_view> known,
+                         std::string_view home) const {
   if (const OldWord* old = old_element(parent, name())) {
     return report().notice(where(), notice_of(*old, parent));
   }
@@ -277,11 +278,12 @@ void Element::unknown_in(std::string_view parent, std::span<const std::string_vi
                     is_known ? fmt::format("remove it, or write <{}>", general) : "remove it"));
     return;
   }
-  const auto meant = nearest(name(), known);
-  if (const auto home = home_of(name()); home && *home != parent && !meant) {
-    report().fault(where(), fmt::format("<{}> can't stand in <{}>; write it into <{}>", name(),
-                                        parent, *home));
-    report().left_out(*home);
+  const auto meant = home.empty() ? nearest(name(), known) : std::nullopt;
+  if (home.empty()) home = home_of(name()).value_or("");
+  if (!home.empty() && home != parent && !meant) {
+    report().fault(
+        where(), fmt::format("<{}> can't stand in <{}>; write it into <{}>", name(), parent, home));
+    report().left_out(home);
     report().left_out(name());
     return;
   }

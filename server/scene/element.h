@@ -125,8 +125,9 @@ class Element {
   std::vector<std::string> asked() const;
 
   /// Reports this element as one that its parent can't hold.
-  /// @param known  what the parent may hold
-  void unknown_in(std::string_view parent, std::span<const std::string_view> known) const;
+  /// @param known  what the parent may hold;  @param home  where it can stand; empty: by its name
+  void unknown_in(std::string_view parent, std::span<const std::string_view> known,
+                  std::string_view home = {}) const;
 
   /// `attribute="value" of <element> <text>`.
   std::string sentence(const char* attribute, std::string_view text) const;

@@ -169,6 +169,9 @@ constexpr Row controller_rows[] = {
     {"Misspelt_device_of_kilobots", Part::controllers,
      R"(<controllers><lua_controller id="c"><sensors><kilobot_ligth implementation="default"/></sensors></lua_controller></controllers>)",
      R"(unknown element <kilobot_ligth> in <sensors>; did you mean "kilobot_light"?)"},
+    {"Actuator_among_sensors", Part::controllers,
+     R"(<controllers><lua_controller id="c"><sensors><quadrotor_speed implementation="default"/></sensors></lua_controller></controllers>)",
+     "<quadrotor_speed> can't stand in <sensors>; write it into <actuators>"},
     {"Device_of_kheperas", Part::controllers,
      R"(<controllers><lua_controller id="c"><sensors><kheperaiv_light implementation="rot_z_only"/></sensors></lua_controller></controllers>)",
      "<kheperaiv_light> is a device of the kheperaiv, which is not modelled here; remove it, or "
