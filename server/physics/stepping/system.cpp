@@ -131,7 +131,7 @@ void System::advance_islands(timing::Stopwatch* watch) {
     advance_block({0, islands_.size(), 0}, memories_.front(), is_measured);
   }
   if (is_measured) {
-    stages_ = {};
+    stages_ = timing::Stopwatch();
     for (IslandMemory& memory : memories_) stages_.add(memory.watch);
   }
   if (watch) watch->divide_like(stages_);
