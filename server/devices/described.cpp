@@ -86,6 +86,16 @@ void Described::start(Tick& tick) {
   started_ = robots_.size();
 }
 
+void Described::apply(Tick& tick) {
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    const std::size_t entity = tick.layout.robots[robots_[i].index].entity;
+    const world::Range& commands = tick.layout.described[robots_[i].devices.begin].commands;
+    if (commands.count == 0 || tick.state.is_absent(entity)) continue;
+    act(tick, i, entity,
+        std::span(tick.commands.device_commands).subspan(commands.begin, commands.count));
+  }
+}
+
 void Described::sense(Tick& tick) {
   for (Robot& robot : robots_) {
     if (!robot.use.sensor) continue;

@@ -18,6 +18,7 @@ class Described : public Kind {
                world::Layout& layout) const final;
   void add(const Setting& setting) final;
   void start(Tick& tick) final;
+  void apply(Tick& tick) override;
   void sense(Tick& tick) final;
   void archive(math::Archive& archive) override;
 
@@ -34,6 +35,11 @@ class Described : public Kind {
   /// @param kind  outlives the world
   explicit Described(const world::DeviceKind& kind) : kind_(kind) {}
 
+  /// Before physics, of each robot in the world whose controller has the actuator: what its first
+  /// device was commanded takes effect.
+  /// @param number  of the robot, into robots();  @param entity  its entity
+  virtual void act(Tick& /*tick*/, std::size_t /*number*/, std::size_t /*entity*/,
+                   std::span<const double> /*commands*/) {}
   /// After physics, of each robot in the world whose controller has the sensor: writes its
   /// readings, which are 0, or no rows, at tick 0.
   virtual void read(Tick& tick, Robot& robot) = 0;

@@ -31,7 +31,6 @@ std::unique_ptr<Kind> make_distance_scanner();
 std::unique_ptr<Kind> make_omnidirectional_camera();
 std::unique_ptr<Kind> make_perspective_camera();
 std::unique_ptr<Kind> make_gripper();
-std::unique_ptr<Kind> make_footbot_gripper();
 std::unique_ptr<Kind> make_epuck_proximity();
 std::unique_ptr<Kind> make_epuck_light();
 std::unique_ptr<Kind> make_epuck_ground();
@@ -66,7 +65,6 @@ Devices::Devices() {
                              make_omnidirectional_camera,
                              make_perspective_camera,
                              make_gripper,
-                             make_footbot_gripper,
                              make_epuck_proximity,
                              make_epuck_light,
                              make_epuck_ground,

@@ -22,20 +22,6 @@ class DifferentialDrive final : public Described {
     return std::make_unique<DifferentialDrive>(*this);
   }
 
-  void apply(Tick& tick) override {
-    for (std::size_t i = 0; i < robots().size(); ++i) {
-      const Robot& robot = robots()[i];
-      const std::size_t entity = tick.layout.robots[robot.index].entity;
-      const world::Range& commands = tick.layout.described[robot.devices.begin].commands;
-      if (commands.count == 0 || tick.state.is_absent(entity)) continue;
-      Speeds& speeds = speeds_[i];
-      speeds = {tick.commands.device_commands[commands.begin],
-                tick.commands.device_commands[commands.begin + 1]};
-      tick.physics.set_velocity(entity, (speeds[0] + speeds[1]) / 2,
-                                (speeds[1] - speeds[0]) / robot.places[0].settings[0]);
-    }
-  }
-
   void archive(math::Archive& archive) override {
     Described::archive(archive);
     for (Speeds& speeds : speeds_) archive("speeds", speeds);
@@ -45,6 +31,14 @@ class DifferentialDrive final : public Described {
   using Speeds = std::array<double, 2>;  // speeds, left and right [m/s]
 
   void add_robot(const Setting&) override { speeds_.push_back({}); }
+
+  void act(Tick& tick, std::size_t number, std::size_t entity,
+           std::span<const double> commands) override {
+    const double left = commands[0], right = commands[1];
+    speeds_[number] = {left, right};
+    tick.physics.set_velocity(entity, (left + right) / 2,
+                              (right - left) / robots()[number].places[0].settings[0]);
+  }
 
   void read(Tick& tick, Robot& robot) override {
     const Speeds& speeds = speeds_[static_cast<std::size_t>(&robot - robots().data())];

@@ -9,27 +9,10 @@ namespace {
 
 constexpr world::DeviceKind gripper{
     .name = "gripper", .readings = {{"gripped"}}, .commands = {{"lock", "", 0, 1}}};
-constexpr world::DeviceKind footbot_gripper{
-    .name = "footbot_gripper", .readings = {{"gripped"}}, .commands = {{"lock", "", 0, 1}}};
-
 class Grippers final : public Described {
  public:
-  explicit Grippers(const world::DeviceKind& kind) : Described(kind) {}
+  Grippers() : Described(gripper) {}
   std::unique_ptr<Kind> clone() const override { return std::make_unique<Grippers>(*this); }
-
-  /// A locked gripper holds what it touches first; one whose grip tore must be unlocked before.
-  void apply(Tick& tick) override {
-    for (const Robot& robot : robots()) {
-      const std::size_t entity = tick.layout.robots[robot.index].entity;
-      if (tick.state.is_absent(entity)) continue;
-      const world::DescribedDevice& device = tick.layout.described[robot.devices.begin];
-      if (tick.commands.device_commands[device.commands.begin] > 0.5) {
-        tick.physics.grip(entity, of(robot));
-      } else {
-        tick.physics.release(entity);
-      }
-    }
-  }
 
  private:
   static physics::Gripper of(const Robot& robot) {
@@ -38,6 +21,16 @@ class Grippers final : public Described {
             .radius = place.settings[0],
             .height = place.settings[1],
             .max_force = robot.use.strength};
+  }
+
+  /// A locked gripper holds what it touches first; one whose grip tore must be unlocked before.
+  void act(Tick& tick, std::size_t number, std::size_t entity,
+           std::span<const double> commands) override {
+    if (commands[0] > 0.5) {
+      tick.physics.grip(entity, of(robots()[number]));
+    } else {
+      tick.physics.release(entity);
+    }
   }
 
   void read(Tick& tick, Robot& robot) override {
@@ -49,7 +42,6 @@ class Grippers final : public Described {
 
 }  // namespace
 
-std::unique_ptr<Kind> make_gripper() { return std::make_unique<Grippers>(gripper); }
-std::unique_ptr<Kind> make_footbot_gripper() { return std::make_unique<Grippers>(footbot_gripper); }
+std::unique_ptr<Kind> make_gripper() { return std::make_unique<Grippers>(); }
 
 }  // namespace ziggurat::devices

@@ -30,21 +30,6 @@ class KilobotMotors final : public Described {
   KilobotMotors() : Described(kilobot_motors) {}
   std::unique_ptr<Kind> clone() const override { return std::make_unique<KilobotMotors>(*this); }
 
-  void apply(Tick& tick) override {
-    for (std::size_t i = 0; i < robots().size(); ++i) {
-      const Robot& robot = robots()[i];
-      const std::size_t entity = tick.layout.robots[robot.index].entity;
-      const world::Range& commands = tick.layout.described[robot.devices.begin].commands;
-      if (commands.count == 0 || tick.state.is_absent(entity)) continue;
-      const double left = tick.commands.device_commands[commands.begin];
-      const double right = tick.commands.device_commands[commands.begin + 1];
-      const bool runs = left > 0 || right > 0;
-      // While both stand, <differential_steering> may drive.
-      if (runs || ran_[i]) drive(tick.physics, entity, robot.places[0].settings, left, right);
-      ran_[i] = runs;
-    }
-  }
-
   void archive(math::Archive& archive) override {
     Described::archive(archive);
     for (std::uint8_t& ran : ran_) archive("ran", ran);
@@ -53,6 +38,16 @@ class KilobotMotors final : public Described {
  private:
   void add_robot(const Setting&) override { ran_.push_back(0); }
   void read(Tick&, Robot&) override {}
+
+  /// While both motors stand, <differential_steering> may drive.
+  void act(Tick& tick, std::size_t number, std::size_t entity,
+           std::span<const double> commands) override {
+    const double left = commands[0], right = commands[1];
+    const bool runs = left > 0 || right > 0;
+    if (runs || ran_[number])
+      drive(tick.physics, entity, robots()[number].places[0].settings, left, right);
+    ran_[number] = runs;
+  }
 
   std::vector<double> properties(const scene::DevicePlace& place) const override {
     const double left = place.settings[0], right = place.settings[1];

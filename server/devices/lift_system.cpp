@@ -17,14 +17,6 @@ class LiftSystem final : public Described {
   LiftSystem() : Described(lift_system) {}
   std::unique_ptr<Kind> clone() const override { return std::make_unique<LiftSystem>(*this); }
 
-  void apply(Tick& tick) override {
-    for (std::size_t i = 0; i < robots().size(); ++i) {
-      const world::Range& commands = tick.layout.described[robots()[i].devices.begin].commands;
-      if (commands.count == 0) continue;
-      tick.physics.set_target(joints_[i], tick.commands.device_commands[commands.begin]);
-    }
-  }
-
  private:
   /// Settings of a place: the joint's index in its entity, and the motor's force [N].
   void add_robot(const Setting& setting) override {
@@ -35,6 +27,11 @@ class LiftSystem final : public Described {
     if (!robot.use.actuator) return;
     setting.physics.add_motor(joints_.back(), scene::JointMode::position,
                               settings[1] * setting.substep);
+  }
+
+  void act(Tick& tick, std::size_t number, std::size_t /*entity*/,
+           std::span<const double> commands) override {
+    tick.physics.set_target(joints_[number], commands[0]);
   }
 
   void read(Tick& tick, Robot& robot) override {

@@ -1,5 +1,6 @@
 // Flight control: a robot that flies is told a place or a velocity, a heading or a turn rate.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -49,19 +50,6 @@ class Quadrotor final : public Described {
   Quadrotor() : Described(quadrotor) {}
   std::unique_ptr<Kind> clone() const override { return std::make_unique<Quadrotor>(*this); }
 
-  void apply(Tick& tick) override {
-    for (std::size_t i = 0; i < robots().size(); ++i) {
-      const std::size_t entity = tick.layout.robots[robots()[i].index].entity;
-      const world::Range& range = tick.layout.described[robots()[i].devices.begin].commands;
-      if (range.count == 0 || tick.state.is_absent(entity)) continue;
-      Orders now;
-      for (std::size_t k = 0; k < flight_commands; ++k)
-        now[k] = tick.commands.device_commands[range.begin + k];
-      steer(now, before_[i], tick.state.origins[entity], tick.physics.flight_target(entity));
-      before_[i] = now;
-    }
-  }
-
   void archive(math::Archive& archive) override {
     Described::archive(archive);
     for (Orders& orders : before_) archive("orders", orders);
@@ -72,6 +60,14 @@ class Quadrotor final : public Described {
 
   void add_robot(const Setting&) override { before_.emplace_back(); }
   void read(Tick&, Robot&) override {}
+
+  void act(Tick& tick, std::size_t number, std::size_t entity,
+           std::span<const double> commands) override {
+    Orders now;
+    std::ranges::copy(commands, now.begin());
+    steer(now, before_[number], tick.state.origins[entity], tick.physics.flight_target(entity));
+    before_[number] = now;
+  }
 
   static FlightMode mode(double command) { return static_cast<FlightMode>(std::lround(command)); }
 

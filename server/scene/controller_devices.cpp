@@ -254,7 +254,7 @@ constexpr auto actuator_rows = std::to_array<DeviceRow>({
     {"quadrotor_position", "default", enable_nothing, true, "quadrotor", "quadrotor"},
     {"quadrotor_speed", "default", enable_nothing, true, "quadrotor", "quadrotor"},
     {"footbot_turret", "default", enable_turret},
-    {"footbot_gripper", "default", enable_gripper, true, "gripper"},
+    {"footbot_gripper", "default", enable_gripper, true, "gripper", "gripper"},
     {"footbot_distance_scanner", "default", enable_nothing, true, "footbot_distance_scanner"},
     {"kilobot_differential_drive", "default", enable_nothing, true, "kilobot_motors"},
     {"kilobot_led", "default", enable_leds_of_robot},

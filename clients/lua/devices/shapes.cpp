@@ -90,9 +90,6 @@ constexpr FunctionShape motor_functions[] = {
 
 constexpr FunctionShape gripper_functions[] = {
     {"lock", "lock()", 0, {{{"lock", 1}}}},
-    {"unlock", "unlock()", 0, {{{"lock", 0}}}},
-};
-constexpr FunctionShape footbot_gripper_functions[] = {
     {"lock_positive", "lock_positive()", 0, {{{"lock", 1}}}},
     {"lock_negative", "lock_negative()", 0, {{{"lock", 1}}}},
     {"unlock", "unlock()", 0, {{{"lock", 0}}}},
@@ -125,7 +122,6 @@ constexpr Shape shapes[] = {
      switches},
     {"colored_blob_perspective_camera", "colored_blob_perspective_camera", {}, switches},
     {"gripper", "gripper", {}, gripper_functions},
-    {"footbot_gripper", "gripper", {}, footbot_gripper_functions},
     {"quadrotor", "quadrotor", {}, quadrotor_functions},
     {"kilobot_differential_drive", "motors", {}, motor_functions},
     {"kilobot_communication", "communication", message, message_functions},

@@ -84,7 +84,7 @@ local function plus(a, b) return a + b end
 local function minus(a, b) return a - b end
 local function negative(a) return -a end
 
--- What vectors have in common.
+-- Vectors have these in common.
 local function vector_kind(name, fields, meta)
   local self = kind(name, fields, meta)
   local check, map, dot = self.check, self.map, self.dot
@@ -153,7 +153,7 @@ function q.methods.inverse(a)
   return q.new(a.w, -a.x, -a.y, -a.z)
 end
 
--- Of the two quaternions of a rotation the one with w >= 0: an angle from 0 to pi.
+-- The quaternion with w >= 0 counts, of the two of a rotation: an angle from 0 to pi.
 function q.methods.toangleaxis(a)
   q.check(a)
   local sine = sqrt(a.x * a.x + a.y * a.y + a.z * a.z)

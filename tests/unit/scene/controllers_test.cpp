@@ -196,7 +196,7 @@ TEST(Controllers, EveryNameOfTheDialectIsKnown) {
   const ReadResult result = text.read();
   EXPECT_TRUE(result.ok()) << all_problems(result);
   const auto& described = result.scene.controllers.at(0).devices.described;
-  EXPECT_EQ(described.size(), 14u) << "scanner and quadrotor are one device each";
+  EXPECT_EQ(described.size(), 13u) << "scanner, quadrotor and gripper are one device each";
   const auto scanner =
       std::ranges::find(described, "footbot_distance_scanner", &DescribedUse::kind);
   ASSERT_NE(scanner, described.end());
