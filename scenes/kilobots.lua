@@ -14,7 +14,7 @@ local function say(number)
    if number > 0 then log(robot.id, " is ", number, " hops away") end
 end
 
--- What the distance will be in a second decides: a message comes every half second.
+-- The distance in a second decides: a message comes every half second.
 local function orbit(message)
    local soon = message.distance + 2 * (message.distance - (last_distance or message.distance))
    local turns_away = soon < tonumber(robot.params.distance)
