@@ -252,6 +252,16 @@ void GaussSeidel::pass() {
   }
 }
 
+double GaussSeidel::relative_change() const {
+  double change = 0, all = 0;
+  for (std::size_t i = 0; i < w_.size(); ++i) {
+    const double difference = w_[i] - w_before_[i];
+    change += difference * difference;
+    all += w_[i] * w_[i];
+  }
+  return all > 0 ? std::sqrt(change / all) : 0;
+}
+
 /// The step along the direction of the passes before, by the rule of Polak and Ribiere; lengths are
 /// those of w, the roots of twice the kinetic energy. Impulses may leave their bounds by it, until
 /// the next pass.

@@ -30,6 +30,10 @@ class GaussSeidel {
   /// Writes velocities and impulses.
   void finish(Problem& problem) const;
 
+  /// Change of the velocities by the last pass over the velocities, both as roots of twice the
+  /// kinetic energy.
+  double relative_change() const;
+
  private:
   /// A contact, servo or limit: its rows for both trees stand in rows_, one after the other.
   struct Rows {

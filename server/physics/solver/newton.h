@@ -6,8 +6,8 @@
 //   for larger islands at rest; for small ones with a line search, after a continuation or after
 //   passes;
 // - the interior point method, for larger islands with impacts;
-// - Gauss-Seidel passes alone, where a factorisation costs too much: heaps of hundreds, and those
-//   of some dozen bodies while something strikes.
+// - Gauss-Seidel passes alone, for heaps that move, and where a factorisation costs too much: heaps
+//   of hundreds.
 // All but the last factor one matrix along the contact graph.
 
 #include <algorithm>
@@ -52,11 +52,13 @@ struct SolverOptions {
   double most_factorisation_work = 1.2e7;   ///< multiplications of a factorisation; more: passes
   double most_impact_work = 2e5;  ///< the same for a heap that is struck, and for displacements of
                                   ///< heaps: their solution is gone in the next substep
-  std::size_t most_factored_trees = 300;        ///< of an island whose matrix is analysed
-  int most_passes = 60;                         ///< of islands that are not factored
+  std::size_t most_factored_trees = 300;  ///< of an island whose matrix is analysed
+  int most_passes = 60;         ///< of heaps that move, and of islands that are not factored
+  double moving_speed = 0.15;   ///< of a heap that moves, at a contact, over gravity_change
+  double moving_change = 0.01;  ///< by the last of its passes: of its velocities, over these
   int passes_before_augmented_lagrangian = 20;  ///< before patient steps
   int most_damped_steps = 60;           ///< steps of the augmented Lagrangian with a line search
-  int displacement_passes = 20;         ///< of a displacement on which Newton's method fails
+  int displacement_passes = 60;         ///< of a displacement on which Newton's method fails
   double displacement_residual = 1e-5;  ///< [m], [rad] of it; more: the augmented Lagrangian
   double rounding = 1e-7;               ///< relative residual that counts as rounding
   double relative_tolerance = 1e-9;     ///< of the largest speed or speed change in the island
@@ -67,6 +69,11 @@ struct SolverOptions {
       4;  ///< of that speed, over the initial speeds: redundant contacts may balance any impulses
   double absolute_tolerance = 1e-10;  ///< [m/s] or [rad/s]
 
+  /// Multiplications that a factorisation may take.
+  double most_work(bool is_struck) const {
+    return is_struck ? std::min(most_impact_work, most_factorisation_work)
+                     : most_factorisation_work;
+  }
   bool suits_newton(std::size_t trees, double work) const {
     return work <= newton_work * (trees <= few_trees ? few_trees_factor : 1);
   }
@@ -150,7 +157,8 @@ class VelocitySolver {
   double interior_point_direction(Problem& problem, double target, bool corrects);
   double complementarity_after(const Problem& problem, double step_length) const;
   void interior_point_step(Problem& problem, double step_length);
-  bool gauss_seidel(Problem& problem, SolverResult& outcome, int most);
+  bool heap_passes(Problem& problem, SolverResult& outcome, bool may_factor);
+  bool gauss_seidel(Problem& problem, SolverResult& outcome, int most, double change);
   bool augmented_lagrangian_after_gauss_seidel(Problem& problem, SolverResult& outcome);
   void polish(Problem& problem, SolverResult& outcome);
 

@@ -12,16 +12,18 @@ SolverResult VelocitySolver::solve(Problem& problem) {
   if (is_warm_start_solved(problem, outcome)) return outcome;
   const double work = analyse(problem);
   const bool suits_newton = options.suits_newton(problem.trees.size(), work);
-  const bool is_struck_heap =
-      !suits_newton && initial_.has_impact() && work > options.most_impact_work;
-  if (is_struck_heap || work > options.most_factorisation_work) {
-    problem.make_rigid();
-    gauss_seidel(problem, outcome, options.most_passes);
-    return outcome;
-  }
   if (suits_newton) {
     if (newton(problem, outcome, options.most_stalled_iterations)) return outcome;
     start_.restore(problem);
+  } else {
+    problem.make_rigid();
+  }
+  if (problem.trees.size() > options.few_trees || !suits_newton) {
+    const bool may_factor = suits_newton || work <= options.most_work(initial_.has_impact());
+    const bool suffices = heap_passes(problem, outcome, may_factor);
+    if (suffices || !may_factor) return outcome;
+  }
+  if (suits_newton) {
     continuation(problem, outcome);
     outcome.converged = damped_augmented_lagrangian(problem, outcome);
     if (!outcome.converged) {
@@ -34,9 +36,8 @@ SolverResult VelocitySolver::solve(Problem& problem) {
     }
     start_.restore(problem);
     problem.make_rigid();
-  } else {
-    problem.make_rigid();
-    if (augmented_lagrangian(problem, outcome)) return outcome;
+  } else if (augmented_lagrangian(problem, outcome)) {
+    return outcome;
   }
   start_.restore(problem);
   const bool found = interior_point(problem, outcome);
@@ -53,13 +54,32 @@ SolverResult VelocitySolver::solve(Problem& problem) {
   return outcome;
 }
 
-bool VelocitySolver::gauss_seidel(Problem& problem, SolverResult& outcome, int most) {
+/// Solves a heap by passes. While it moves, they end as soon as one changes little beside the
+/// motion: its solution is gone in the next substep. As it comes to rest, its motion vanishes, and
+/// errors would be seen as creeping.
+/// @param may_factor  another method can follow; then a heap almost at rest is left to it
+/// @return            whether they suffice; otherwise, if another method follows, nothing changed
+bool VelocitySolver::heap_passes(Problem& problem, SolverResult& outcome, bool may_factor) {
+  const bool moves = initial_.fastest_contact >= options.moving_speed * initial_.gravity_change;
+  if (may_factor && !moves) return false;
+  if (gauss_seidel(problem, outcome, options.most_passes, moves ? options.moving_change : 0))
+    return true;
+  if (may_factor) start_.restore(problem);
+  return false;
+}
+
+/// Passes until one changes little, or until the residual is small.
+/// @param change  of the velocities, over them; 0: the residual decides
+bool VelocitySolver::gauss_seidel(Problem& problem, SolverResult& outcome, int most,
+                                  double change) {
   constexpr int between = 10;  // passes between two evaluations of the residual
   gauss_seidel_.start(problem);
   for (int pass = 1; pass <= most; ++pass) {
     ++outcome.passes;
     gauss_seidel_.pass();
-    if (pass % between != 0 && pass < most) {
+    const bool is_steady = change > 0 && gauss_seidel_.relative_change() <= change;
+    const bool is_due = change == 0 && pass % between == 0;
+    if (!is_steady && !is_due && pass < most) {
       gauss_seidel_.accelerate();
       continue;
     }
@@ -67,7 +87,8 @@ bool VelocitySolver::gauss_seidel(Problem& problem, SolverResult& outcome, int m
     double scale = 0;
     compute_constraint_velocities(problem);
     outcome.residual = current_residual(problem, scale);
-    outcome.converged = outcome.residual <= options.tolerance_of_regularised(initial_, scale);
+    const double tolerance = options.tolerance_of_regularised(initial_, scale);
+    outcome.converged = is_steady || outcome.residual <= tolerance;
     if (outcome.converged) return true;
     gauss_seidel_.accelerate();
   }
@@ -128,9 +149,10 @@ void VelocitySolver::solve_displacement(Problem& problem) {
   const bool suits_newton = options.suits_newton(problem.trees.size(), work);
   if (!suits_newton || !newton(problem, outcome, options.most_iterations)) {
     if (suits_newton) start_.restore(problem);
-    gauss_seidel(problem, outcome, options.displacement_passes);
+    const bool suffices =
+        gauss_seidel(problem, outcome, options.displacement_passes, options.moving_change);
     const bool may_factor = suits_newton || work <= options.most_impact_work;
-    if (may_factor && outcome.residual > options.displacement_residual)
+    if (may_factor && !suffices && outcome.residual > options.displacement_residual)
       damped_augmented_lagrangian(problem, outcome);
   }
   bound_rotation(problem);
