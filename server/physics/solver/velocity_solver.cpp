@@ -78,8 +78,8 @@ bool VelocitySolver::gauss_seidel(Problem& problem, SolverResult& outcome, int m
     ++outcome.passes;
     gauss_seidel_.pass();
     const bool is_steady = change > 0 && gauss_seidel_.relative_change() <= change;
-    const bool is_due = change == 0 && pass % between == 0;
-    if (!is_steady && !is_due && pass < most) {
+    const bool is_evaluated = change == 0 && pass % between == 0;
+    if (!is_steady && !is_evaluated && pass < most) {
       gauss_seidel_.accelerate();
       continue;
     }
