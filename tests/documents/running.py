@@ -1,6 +1,6 @@
 """Runs code blocks of documents as their readers would: in a folder of their own, with an installed Ziggurat.
 
-The folder is a copy of the checkout with `build` linked in, so that paths from the project's folder are right, and has the
+The folder is a copy of the checkout, with what no command changes linked in, so that paths from the project's folder are right, and has the
 files of folders/all and folders/PAGE, which the page's commands take for granted.
 """
 
@@ -21,8 +21,8 @@ from waiting import HANG  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
 BUILD = pathlib.Path(os.environ.get("ZIGGURAT_BUILD", ROOT / "build/release"))
-COPIED = ("bench", "clients", "docs", "scenes", "tests", "tools", "README.md", "LICENSE", "quickstart")
-LEFT_OUT = shutil.ignore_patterns("node_modules", "recorded", "corpus", "__pycache__")
+COPIED = ("clients/json", "clients/python/examples", "docs", "scenes")  # what commands may write beside
+LINKED = ("bench", "tests", "tools")
 INTERRUPTED = (0, 130, -signal.SIGINT)
 
 
@@ -38,8 +38,9 @@ class Folder:
         self.work = self.top / "work"
         self.work.mkdir()
         for name in COPIED:
-            copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy
-            copy(ROOT / name, self.work / name, **({"ignore": LEFT_OUT} if (ROOT / name).is_dir() else {}))
+            shutil.copytree(ROOT / name, self.work / name)
+        for name in LINKED:
+            (self.work / name).symlink_to(ROOT / name)
         (self.work / "build").mkdir()
         (self.work / "build/release").symlink_to(BUILD)
         for given in ("all", name_of(page)):
