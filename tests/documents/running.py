@@ -58,7 +58,8 @@ class Folder:
         return dict(
             {name: value for name, value in os.environ.items() if not name.startswith(("ZIGGURAT", "PYTHON"))},
             PATH=f"{prefix}/bin:/usr/bin:{os.environ['PATH']}", HOME=str(home), XDG_RUNTIME_DIR=str(runtime),
-            PKG_CONFIG_PATH=f"{prefix}/lib/pkgconfig", CMAKE_PREFIX_PATH=str(prefix), LUA_CPATH=f"{prefix}/lib/lua/5.3/?.so;;",
+            PKG_CONFIG_PATH=f"{prefix}/lib/pkgconfig", CMAKE_PREFIX_PATH=str(prefix),
+            LD_LIBRARY_PATH=f"{prefix}/lib", LUA_CPATH=f"{prefix}/lib/lua/5.3/?.so;;",
             PYTHONPATH=f"{prefix}/lib/{python}/dist-packages:{prefix}/lib/python3/dist-packages",
             PYTHONDONTWRITEBYTECODE="1", CCACHE_DISABLE="1")
 

@@ -26,7 +26,8 @@ run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR}
     -DCMAKE_MAKE_PROGRAM=${BUILD_PROGRAM} -DCMAKE_PREFIX_PATH=${prefix}
     -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_FLAGS=${flags})
 run(${CMAKE_COMMAND} --build ${WORK}/build)
-run(${WORK}/build/somebodys_robot)
+run(${WORK}/build/somebodys_robot_client)
+run(${WORK}/build/somebodys_robot_client_static)
 
 file(GLOB_RECURSE description ${prefix}/*/ziggurat.pc)
 cmake_path(GET description PARENT_PATH folder)
@@ -34,6 +35,7 @@ set(ENV{PKG_CONFIG_PATH} ${folder})
 execute_process(COMMAND pkg-config --cflags --libs ziggurat OUTPUT_VARIABLE needed
                 COMMAND_ERROR_IS_FATAL ANY)
 separate_arguments(needed UNIX_COMMAND "${needed}")
+list(APPEND needed -Wl,-rpath,${prefix}/${LIBRARIES})
 run(${COMPILER} -std=c++20 ${flags} ${SOURCE}/main.cpp -o ${WORK}/by_pkg_config ${needed})
 run(${WORK}/by_pkg_config)
 
