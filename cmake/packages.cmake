@@ -1,4 +1,4 @@
-# Everything comes from Debian 12 packages; README.md names each with its reason.
+# Everything comes from Debian 12 packages; docs/packages.md names each with its reason.
 find_package(PkgConfig REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)

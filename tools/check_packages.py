@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compares the package lists, which quickstart installs, with README.md, which gives the reasons.
+"""Compares the package lists, which quickstart installs, with docs/packages.md, which gives the reasons.
 
 usage: check_packages.py     exit code 1 if a package is in one of them only
 """
@@ -20,19 +20,19 @@ def listed(name):
 
 def main():
     in_lists = {package for name in LISTS for package in listed(name)}
-    table = re.search(r"^\| Package.*?\n\n", (ROOT / "README.md").read_text(), re.M | re.S)
+    table = re.search(r"^\| Package.*?\n\n", (ROOT / "docs/packages.md").read_text(), re.M | re.S)
     if not table:
-        print("README.md: there is no table that begins with '| Package'")
+        print("docs/packages.md: there is no table that begins with '| Package'")
         return 1
     rows = [line.split("|")[1] for line in table.group(0).splitlines()[2:] if line.strip()]
-    in_readme = {package for row in rows for package in re.findall(r"`([^`]+)`", row)}
-    for package in sorted(in_lists - in_readme):
-        print(f"README.md: {package} is installed, and no reason is given")
-    for package in sorted(in_readme - in_lists):
-        print(f"README.md: {package} is named, and nothing installs it")
-    if in_lists == in_readme:
+    in_document = {package for row in rows for package in re.findall(r"`([^`]+)`", row)}
+    for package in sorted(in_lists - in_document):
+        print(f"docs/packages.md: {package} is installed, and no reason is given")
+    for package in sorted(in_document - in_lists):
+        print(f"docs/packages.md: {package} is named, and nothing installs it")
+    if in_lists == in_document:
         print(f"{len(in_lists)} packages: each is installed and has its reason")
-    return 0 if in_lists == in_readme else 1
+    return 0 if in_lists == in_document else 1
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ licence and results of benchmarks are left out.
 
 Comments of the C++ sources below COMMENTED begin with the field's noun, or with a verb. No
 sentence of theirs has more than 25 words; text in parentheses does not count, and a blank line ends a sentence.
+In README.md and docs/ none has more than 30; code counts as one word, a list of it too, and a cell of a table is text of its own.
 """
 
 import os
@@ -43,6 +44,7 @@ PATTERN = re.compile("(?<![A-Za-z0-9-])(?:" + "|".join(f"(?P<w{i}>{word})" for i
 
 COMMENTED = ("clients/", "protocol/", "server/", "tests/")
 LONGEST_SENTENCE = 25  # words
+LONGEST_OF_DOCUMENTS = 30
 COMMENT = re.compile(r"(?P<code>.*?)//[/!]?<?(?P<text> .*)?$")
 VAGUE = re.compile(r"\W*(What|Of|Those|That|How|Where|Whose)\b")
 END = re.compile(r"(?<=[.;:?])\s+|\s{2,}|\s@\w+\s+|\s- ")  # of a sentence
@@ -110,9 +112,42 @@ def check_comments(name, text):
     return found
 
 
+def paragraphs(text):
+    """Yields (line number, text) of each paragraph, item and cell of a document; blocks of code are left out."""
+    number, words, is_code = 0, [], False
+    for at, line in enumerate([*text.splitlines(), ""], 1):
+        is_fence = line.lstrip().startswith("```")
+        is_code ^= is_fence
+        begins = not line.strip() or is_fence or re.match(r"\s*([-*|#]|\d+\.|<!--)", line)
+        if begins and words:
+            yield number, " ".join(words)
+            words = []
+        if line.startswith("|"):
+            yield from ((at, cell) for cell in re.split(r"(?<!\\)\|", line))
+        elif line.strip() and not is_code and not is_fence and not line.lstrip().startswith("<!--"):
+            number = number if words else at
+            words.append(line.strip())
+
+
+def check_sentences(name, text):
+    """All long sentences of a document, as file:line: text."""
+    if name != "README.md" and not (name.startswith("docs/") and name.endswith(".md")):
+        return []
+    found = []
+    for number, paragraph in paragraphs(text):
+        plain = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", re.sub(r"`[^`]*`", "code", paragraph))
+        plain = re.sub(r"code(, code)+", "code", plain)
+        for sentence in END.split(re.sub(r"\([^()]*\)", "", plain)):
+            if len(sentence.split()) > LONGEST_OF_DOCUMENTS:
+                found.append(f"{name}:{number}: a sentence of {len(sentence.split())} words; write at most "
+                             f"{LONGEST_OF_DOCUMENTS}: '{sentence.strip()[:60]} …'")
+    return found
+
+
 def main():
     all_texts = list(texts(named_root(__doc__)))
-    found = [fault for name, text in all_texts for fault in check_text(name, text) + check_comments(name, text)]
+    found = [fault for name, text in all_texts for fault in check_text(name, text) + check_comments(name, text)
+             + check_sentences(name, text)]
     print("\n".join(found) or f"{len(all_texts)} texts: no word of the list")
     return 1 if found else 0
 

@@ -1,4 +1,4 @@
-# find_package(ziggurat) -> ziggurat::client. The library is static: what it uses comes along.
+# find_package(ziggurat) -> ziggurat::client, the shared library, and ziggurat::client_static, which takes what it uses along.
 include(CMakeFindDependencyMacro)
 find_dependency(Protobuf)
 find_dependency(PkgConfig)

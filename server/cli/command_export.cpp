@@ -47,7 +47,8 @@ std::string to_jsonl(const Order& order) {
   return fmt::format("{} messages", messages);
 }
 std::string to_html(const Order& order) {
-  const auto size = export_html(run::page_folder() + "/player.html", order.file.path(), order.out);
+  const auto size =
+      export_html(run::shared_folder("web") + "/player.html", order.file.path(), order.out);
   return fmt::format("{} kB, opens in any browser", (size + 999) / 1000);
 }
 

@@ -6,6 +6,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/installed_scenes.h"
 #include "magnetism/closed_forms.h"
 #include "magnetism/field.h"
 #include "outputs/output_file.h"
@@ -246,7 +247,7 @@ int execute_magnetism(const Arguments& arguments) {
         "the arguments are not understood; write: ziggurat magnetism plot SCENE");
   }
   reports::Console console;
-  const std::string& scene = parsed.positional[1];
+  const std::string scene = scene_path(parsed.positional[1]);
   const auto read = scene::read_file(scene);
   if (!read.ok()) throw scene::SceneError(read.problems);
   const std::string path =

@@ -110,7 +110,7 @@ table of what came out (docs/experiments.md).
       --timeout 60 --record failed --out results/ -- --lua-processes 2
       what stands behind -- is for each 'ziggurat run'; {run} in it is the number of the run
   ziggurat sweep results results/ --by gain
-      means with confidence intervals (Student's t)
+      means with confidence intervals (Student's t), 95 % unless --confidence 0.99 says otherwise
   ziggurat sweep plot results/ --x gain --y time_to_aggregate
       the same as a picture
 

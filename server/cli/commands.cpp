@@ -31,6 +31,8 @@ constexpr Command table[] = {
     {"export", "write a recording as CSV, JSON lines or a page", help_export, execute_export},
     {"magnetism", "plot force and torque between two magnets of a scene", help_magnetism,
      execute_magnetism},
+    {"scenes", "list the scenes that come with the program", help_scenes, execute_scenes},
+    {"new", "make a folder with a scene, a controller and a test", help_new, execute_new},
     {"info", "tell what a recording has, and whether it is whole", help_info, execute_info},
     {"keygen", "make a pair of keys that protect connections", help_keygen, execute_keygen},
     {"top", "show which controllers a run waits for", help_top, execute_top},

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <utility>
 
+#include "cli/installed_scenes.h"
 #include "cli/settings_file.h"
 #include "text/numbers.h"
 
@@ -14,6 +15,8 @@ namespace {
 
 namespace po = boost::program_options;
 
+/// Commands whose other arguments are scenes; those of the rest are recordings.
+constexpr unsigned of_scenes = run::by_run | run::by_serve | run::by_check | run::by_render;
 constexpr unsigned width = 96;  // of the help [characters]
 
 bool is_of(const run::Option& option, run::Commands command) {
@@ -181,6 +184,9 @@ run::Options parse_options(const Arguments& arguments, run::Commands command) {
   const GivenOptions given = read_given(arguments, command);
   run::Options options;
   options.scenes = given.own.positional;
+  if ((command & of_scenes) != 0) {
+    for (std::string& scene : options.scenes) scene = scene_path(scene);
+  }
   for (const run::OptionGroup& group : run::option_groups()) {
     for (const run::Option& option : group.options) {
       if (!is_of(option, command)) continue;

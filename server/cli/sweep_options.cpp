@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cli/arguments.h"
+#include "cli/installed_scenes.h"
 #include "cli/options.h"
 #include "run/build.h"
 #include "sweep/experiment_file.h"
@@ -306,7 +307,7 @@ SweepOptions parse_sweep(const Arguments& arguments) {
     }
     file = sweep::read_experiment(word);
   } else {
-    file.experiment.scene = fs::absolute(word).lexically_normal().string();
+    file.experiment.scene = fs::absolute(scene_path(word)).lexically_normal().string();
   }
   SweepOptions options;
   options.definition.experiment = std::move(file.experiment);

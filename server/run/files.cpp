@@ -121,10 +121,10 @@ std::vector<std::string> exceptions_of(const Options& options,
   return arguments;
 }
 
-std::string page_folder() {
+std::string shared_folder(const char* name) {
   std::error_code error;
   const auto program = fs::read_symlink("/proc/self/exe", error);
-  return (program.parent_path().parent_path() / "share/ziggurat/web").string();
+  return (program.parent_path().parent_path() / "share/ziggurat" / name).string();
 }
 
 }  // namespace ziggurat::run

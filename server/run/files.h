@@ -34,8 +34,8 @@ void check_outputs(const Options& options, const scene::Scene& scene,
 std::vector<std::string> exceptions_of(const Options& options,
                                        const std::vector<std::string>& fixed);
 
-/// Folder of the page's files, beside the program: installed, or built. It is missing if the page
-/// was not built.
-std::string page_folder();
+/// Folder of files that come with the program: share/ziggurat/NAME beside its folder, in a build or
+/// below a prefix. "web", the page's, is missing if the page was not built.
+std::string shared_folder(const char* name);
 
 }  // namespace ziggurat::run

@@ -27,7 +27,7 @@ view::Settings settings_of(const Options& options, const LiveView::Run& run) {
   if (!options.view->empty()) settings.address = http::to_address("--view", *options.view);
   settings.insecure = options.insecure;
   settings.token = options.view_token;
-  settings.folder = page_folder();
+  settings.folder = shared_folder("web");
   settings.version = version;
   settings.scene = run.world.path;
   settings.parameters = {{"real_time_factor", run.schedule.factor().value_or(0)},

@@ -14,7 +14,9 @@ bool wants_report_card(const Options& options) {
 const std::string& only_scene(const Options& options) {
   if (options.scenes.empty() || options.scenes.front().empty())
     throw text::UsageError(
-        "no scene is given; write the path of a scene file, as in: ziggurat run vehicle.argos");
+        "no scene is given; write the path of a scene file or a name that 'ziggurat scenes' lists, "
+        "as in: "
+        "ziggurat run vehicle");
   if (options.scenes.size() > 1) {
     throw text::UsageError(fmt::format(
         "only one scene is allowed, which is '{}'; remove '{}', or write the option that "

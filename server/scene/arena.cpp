@@ -62,7 +62,7 @@ void read_floor(Draft& draft, Element element, bool is_last) {
                         "<floor source=\"loop_functions\"> is white: no library is loaded that "
                         "would colour it");
   }
-  element.optional("pixels_per_meter", positive);
+  element.optional("pixels_per_meter", In{"1/m", positive});
   take_entity_id(draft, element, id);
   element.done();
 }

@@ -38,12 +38,13 @@ Camera read_camera(Draft& draft, Element& element) {
   camera.pose = {element.required("position", position),
                  element.required("orientation", orientation)};
   doubt_angles(element, "orientation");
-  const auto reach = element.required("range", positive_range, {1.0, 1.0});
+  const auto reach = element.required("range", In{"m", positive_range}, {1.0, 1.0});
   camera.near = reach.first;
   camera.far = reach.second;
-  camera.focal_length = element.required("focal_length", positive_vector2, math::Vector2::Ones());
-  camera.principal_point = element.required("principal_point", vector2);
-  camera.resolution = element.required("resolution", resolution, {1, 1});
+  camera.focal_length =
+      element.required("focal_length", In{"px", positive_vector2}, math::Vector2::Ones());
+  camera.principal_point = element.required("principal_point", In{"px", vector2});
+  camera.resolution = element.required("resolution", In{"px", resolution}, {1, 1});
   camera.image = element.optional("image", boolean, false);
   if (camera.image && std::ranges::max(camera.resolution) > most_picture_pixels) {
     element.fault_at("resolution", fmt::format("is too large for image=\"true\"; write at most "

@@ -83,20 +83,21 @@ void enable_cameras(const Enabling& e) {
   use.cameras = read_cameras(e.draft, e.element, e.use);
 }
 
-NoiseRange read_noise(Element& element, const char* name, double unit = 1) {
-  const auto [min, max] = element.optional(name, range, {0.0, 0.0});
-  return {min * unit, max * unit};
+/// @param in_si  factor to the SI unit
+NoiseRange read_noise(Element& element, const char* name, std::string_view unit, double in_si = 1) {
+  const auto [min, max] = element.optional(name, In{unit, range}, {0.0, 0.0});
+  return {min * in_si, max * in_si};
 }
 
 void enable_positioning(const Enabling& e) {
   PositioningUse& use = e.devices.positioning.emplace();
-  use.position = read_noise(e.element, "pos_noise_range");
-  use.angle = read_noise(e.element, "angle_noise_range", std::numbers::pi / 180);
-  use.axis = read_noise(e.element, "axis_noise_range");
+  use.position = read_noise(e.element, "pos_noise_range", "m");
+  use.angle = read_noise(e.element, "angle_noise_range", "°", std::numbers::pi / 180);
+  use.axis = read_noise(e.element, "axis_noise_range", "");
 }
 
 void enable_battery(const Enabling& e) {
-  e.devices.battery.emplace().charge = read_noise(e.element, "noise_range");
+  e.devices.battery.emplace().charge = read_noise(e.element, "noise_range", "");
 }
 
 void enable_range_and_bearing_actuator(const Enabling& e) {
@@ -107,7 +108,7 @@ void enable_range_and_bearing_sensor(const Enabling& e) {
   RangeAndBearingUse& use = use_of(e.devices.range_and_bearing);
   use.sensor = true;
   use.medium = read_medium(e.draft, e.element, MediumKind::range_and_bearing);
-  use.noise = e.element.optional("noise_std_dev", non_negative, 0.0);
+  use.noise = e.element.optional("noise_std_dev", In{"m", non_negative}, 0.0);
   use.loss = e.element.optional("packet_drop_prob", probability, 0.0);
   use.show_rays = e.element.optional("show_rays", boolean, false);
 }
@@ -143,11 +144,13 @@ void read_mounted(const Enabling& e, std::string_view name, std::vector<Device>&
 void enable_imus(const Enabling& e) {
   read_mounted(e, "imu", e.devices.imus, [](Element& element, Imu& imu) {
     imu.pose = read_pose(element);
-    imu.acceleration_noise = element.optional("acceleration_noise", non_negative, 0.0);
-    imu.acceleration_bias_walk = element.optional("acceleration_bias_walk", non_negative, 0.0);
-    imu.angular_velocity_noise = element.optional("angular_velocity_noise", non_negative, 0.0);
+    imu.acceleration_noise = element.optional("acceleration_noise", In{"m/s²", non_negative}, 0.0);
+    imu.acceleration_bias_walk =
+        element.optional("acceleration_bias_walk", In{"m/s²/√s", non_negative}, 0.0);
+    imu.angular_velocity_noise =
+        element.optional("angular_velocity_noise", In{"rad/s", non_negative}, 0.0);
     imu.angular_velocity_bias_walk =
-        element.optional("angular_velocity_bias_walk", non_negative, 0.0);
+        element.optional("angular_velocity_bias_walk", In{"rad/s/√s", non_negative}, 0.0);
   });
 }
 
@@ -168,9 +171,10 @@ std::array<double, 2> read_sides(Element& element, std::array<const char*, 3> na
 /// @param deviation  usual one of the factor: of a wheel's speed
 void read_wheels(const Enabling& e, double deviation) {
   const auto bias_mean =
-      read_sides(e.element, {"bias_avg", "bias_avg_left", "bias_avg_right"}, number, 0);
-  const auto bias_deviation = read_sides(
-      e.element, {"bias_stddev", "bias_stddev_left", "bias_stddev_right"}, non_negative, 0);
+      read_sides(e.element, {"bias_avg", "bias_avg_left", "bias_avg_right"}, In{"m/s", number}, 0);
+  const auto bias_deviation =
+      read_sides(e.element, {"bias_stddev", "bias_stddev_left", "bias_stddev_right"},
+                 In{"m/s", non_negative}, 0);
   const auto factor_mean =
       read_sides(e.element, {"factor_avg", "factor_avg_left", "factor_avg_right"}, number, 1);
   const auto factor_deviation =
@@ -193,8 +197,8 @@ void enable_epuck_wheels(const Enabling& e) {
 void enable_wheel_encoders(const Enabling& e) {
   WheelsUse& use = use_of(e.devices.wheels);
   use.sensor = true;
-  use.velocity_noise = read_noise(e.element, "vel_noise_range", 0.01);
-  use.distance_noise = read_noise(e.element, "dist_noise_range", 0.01);
+  use.velocity_noise = read_noise(e.element, "vel_noise_range", "cm/s", 0.01);
+  use.distance_noise = read_noise(e.element, "dist_noise_range", "cm", 0.01);
 }
 
 void enable_turret(const Enabling& e) { use_of(e.devices.turret).actuator = true; }
@@ -231,7 +235,7 @@ void enable_scanner(const Enabling& e) {
 void enable_gripper(const Enabling& e) {
   constexpr double usual = 10'000;
   e.described->sensor = true;
-  e.described->strength = e.element.optional("max_force", positive, usual);
+  e.described->strength = e.element.optional("max_force", In{"N", positive}, usual);
 }
 
 void enable_nothing(const Enabling&) {}
@@ -337,6 +341,12 @@ void read_device(const Enabling& e, const DeviceRow& row) {
   e.element.done();
 }
 
+std::vector<std::string_view> names_of(std::span<const DeviceRow> rows) {
+  std::vector<std::string_view> names;
+  for (const DeviceRow& row : rows) names.push_back(row.name);
+  return names;
+}
+
 /// The use of a device that describes itself: all elements of its kind share one.
 DescribedUse* described_use(const DeviceRow& row, ControllerDevices& devices, bool is_sensor) {
   if (row.places.empty()) return nullptr;
@@ -364,12 +374,10 @@ void read_device_list(Draft& draft, Element& list, ControllerDevices& devices, C
       read_device(enabling, row);
     }
     if (known) continue;
-    std::vector<std::string_view> names;
-    for (const DeviceRow& row : rows) names.push_back(row.name);
     const bool is_of_others =
         std::ranges::find(others, element.name(), &DeviceRow::name) != others.end();
     const std::string_view home = list.name() == "sensors" ? "actuators" : "sensors";
-    element.unknown_in(list.name(), names, is_of_others ? home : std::string_view());
+    element.unknown_in(list.name(), names_of(rows), is_of_others ? home : std::string_view());
   }
   list.done();
 }
@@ -393,6 +401,9 @@ std::vector<Element> last_of_each_name(Element& list) {
   }
   return result;
 }
+
+std::vector<std::string_view> actuator_names() { return names_of(actuator_rows); }
+std::vector<std::string_view> sensor_names() { return names_of(sensor_rows); }
 
 void read_actuators(Draft& draft, Element& list, ControllerDevices& devices, ControllerUse& use) {
   read_device_list(draft, list, devices, use, actuator_rows, sensor_rows);

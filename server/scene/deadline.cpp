@@ -2,6 +2,8 @@
 
 #include "scene/deadline.h"
 
+#include <fmt/ranges.h>
+
 #include <array>
 
 #include "scene/draft.h"
@@ -11,10 +13,14 @@ namespace {
 
 constexpr std::array<std::string_view, 5> actions{"wait", "hold", "zero", "drop", "stop"};
 
-Value<DeadlineAction> read_action(std::string_view text) {
-  if (const auto action = deadline_action(text)) return *action;
-  return Wrong{"is no deadline action; " + advice(text, actions)};
-}
+struct ActionReader {
+  Value<DeadlineAction> operator()(std::string_view text) const {
+    if (const auto action = deadline_action(text)) return *action;
+    return Wrong{"is no deadline action; " + advice(text, actions)};
+  }
+  /// All of them.
+  std::string words() const { return fmt::format("{}", fmt::join(actions, "|")); }
+};
 
 }  // namespace
 
@@ -35,8 +41,8 @@ std::string to_text(const DeadlinePolicy& policy) {
 
 std::optional<DeadlinePolicy> read_deadline(Element& element,
                                             const std::optional<DeadlinePolicy>& usual) {
-  const auto action = element.optional("deadline", read_action);
-  const auto deadline_ms = element.optional("deadline_ms", positive_count);
+  const auto action = element.optional("deadline", ActionReader());
+  const auto deadline_ms = element.optional("deadline_ms", In{"ms", positive_count});
   const auto miss_budget = element.optional("miss_budget", count);
   const bool is_wait = action == DeadlineAction::wait;
   if (is_wait || !element.has("deadline")) {

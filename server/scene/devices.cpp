@@ -78,24 +78,23 @@ void read_radios(Draft& draft, Element& container, Entity& entity) {
       !container.has("medium") &&
       std::ranges::any_of(written, [](const Element& radio) { return radio.has("medium"); });
   if (!each) medium = read_medium(draft, container, MediumKind::radio);
-  entity.devices.radios =
-      read_container<Radio>(container, "radio", [&](Element& element, std::string id) {
-        if (each) {
-          const auto own = read_medium(draft, element, MediumKind::radio);
-          if (medium && own && own != medium) {
-            element.fault_at(
-                "medium",
-                "is another than that of the radios before; those of an entity share one");
-          }
-          if (own) medium = own;
-        }
-        const Anchor anchor = read_anchor(draft, element);
-        element.without_effect("orientation", orientation, "radios reach equally far all around");
-        element.without_effect("duplex_mode", text,
-                               "a radio that sends in a tick receives nothing in it");
-        const math::Vector3 at = element.required("position", position);
-        return Radio{std::move(id), anchor, at, element.required("range", positive, 1.0), {}};
-      });
+  entity.devices
+      .radios = read_container<Radio>(container, "radio", [&](Element& element, std::string id) {
+    if (each) {
+      const auto own = read_medium(draft, element, MediumKind::radio);
+      if (medium && own && own != medium) {
+        element.fault_at("medium",
+                         "is another than that of the radios before; those of an entity share one");
+      }
+      if (own) medium = own;
+    }
+    const Anchor anchor = read_anchor(draft, element);
+    element.without_effect("orientation", orientation, "radios reach equally far all around");
+    element.without_effect("duplex_mode", text,
+                           "a radio that sends in a tick receives nothing in it");
+    const math::Vector3 at = element.required("position", position);
+    return Radio{std::move(id), anchor, at, element.required("range", In{"m", positive}, 1.0), {}};
+  });
 }
 
 MagnetShape read_magnet_shape(Element& element) {
@@ -120,9 +119,9 @@ Magnet read_magnet(Draft& draft, Element& element, std::string id) {
   magnet.offset = element.required("offset", position);
   if (element.has("shape")) magnet.shape = read_magnet_shape(element);
   constexpr std::array<std::string_view, 3> strengths{"passive_field", "moment", "remanence"};
-  const auto passive_field = element.optional("passive_field", vector3);
-  const auto moment = element.optional("moment", vector3);
-  const auto remanence = element.optional("remanence", vector3);
+  const auto passive_field = element.optional("passive_field", In{"the dialect's", vector3});
+  const auto moment = element.optional("moment", In{"A·m²", vector3});
+  const auto remanence = element.optional("remanence", In{"T", vector3});
   const auto given = std::ranges::count_if(
       strengths, [&](std::string_view name) { return element.has(name.data()); });
   if (given == 0) missing_all(element, strengths);
@@ -138,7 +137,8 @@ Magnet read_magnet(Draft& draft, Element& element, std::string id) {
   magnet.passive_field = passive_field.value_or(math::Vector3::Zero());
   magnet.moment = moment.value_or(math::Vector3::Zero());
   magnet.remanence = remanence.value_or(math::Vector3::Zero());
-  magnet.active_field = element.optional("active_field", vector3, math::Vector3::Zero());
+  magnet.active_field =
+      element.optional("active_field", In{"the dialect's", vector3}, math::Vector3::Zero());
   return magnet;
 }
 
@@ -254,7 +254,7 @@ void read_range_and_bearing(Draft& draft, Element& element, Entity& entity) {
       read_medium(draft, element, MediumKind::range_and_bearing);
   const Anchor anchor = read_anchor(draft, element);
   const math::Pose pose = read_pose(element);
-  const double reach = element.optional("range", positive, 3.0);
+  const double reach = element.optional("range", In{"m", positive}, 3.0);
   const unsigned bytes = element.optional("data_size", Whole{0, most_data_bytes}, 10u);
   element.done();
   entity.devices.range_and_bearing = RangeAndBearing{anchor, pose, reach, bytes, element.where()};

@@ -107,13 +107,14 @@ ReadBudget budget_for(std::size_t max_size) {
 }
 
 Document::Document(std::string text, std::size_t file, bool lenient, ReadBudget& budget,
-                   Report& report, const Parameters* parameters)
+                   Report& report, const Parameters* parameters, Vocabulary* vocabulary)
     : source_(std::move(text)),
       file_(file),
       lenient_(lenient),
       budget_(budget),
       report_(report),
-      parameters_(parameters) {
+      parameters_(parameters),
+      vocabulary_(vocabulary) {
   line_starts_.push_back(0);
   for (std::size_t i = 0; i < source_.size(); ++i) {
     if (ends_line(source_, i)) line_starts_.push_back(i + 1);

@@ -17,6 +17,8 @@
 
 namespace ziggurat::scene {
 
+struct Vocabulary;
+
 /// Budget that a scene and its includes may still use.
 struct ReadBudget {
   std::size_t bytes = 0;
@@ -37,8 +39,9 @@ class Document {
   /// from it; must
   ///     outlive this
   /// @param parameters  what ${name} stands for; must outlive this; null: none
+  /// @param vocabulary  records what elements are asked for; must outlive this; null: not recorded
   Document(std::string text, std::size_t file, bool lenient, ReadBudget& budget, Report& report,
-           const Parameters* parameters = nullptr);
+           const Parameters* parameters = nullptr, Vocabulary* vocabulary = nullptr);
   Document(const Document&) = delete;
   Document& operator=(const Document&) = delete;
 
@@ -67,6 +70,7 @@ class Document {
 
   bool lenient() const { return lenient_; }
   Report& report() const { return report_; }
+  Vocabulary* vocabulary() const { return vocabulary_; }
 
  private:
   void parse();
@@ -83,6 +87,7 @@ class Document {
   ReadBudget& budget_;
   Report& report_;
   const Parameters* parameters_;
+  Vocabulary* vocabulary_;
   std::vector<std::size_t> line_starts_;
   pugi::xml_document tree_;
   pugi::xml_node root_;

@@ -109,8 +109,9 @@ struct Draft {
 
   Document& add_document(std::string text, const std::string& name) {
     scene.files.push_back(name);
-    Document& document = documents.emplace_back(std::move(text), scene.files.size() - 1,
-                                                options.lenient, budget, report, &parameters);
+    Document& document =
+        documents.emplace_back(std::move(text), scene.files.size() - 1, options.lenient, budget,
+                               report, &parameters, options.vocabulary);
     const auto& settings = options.variation.settings;
     for (std::size_t i = 0; i < settings.size(); ++i) {
       std::size_t* const count = std::get_if<0>(&set[i]);
@@ -154,6 +155,9 @@ void read_arena(Draft& draft, Element& root);
 /// Reads <actuators> and <sensors>.
 void read_actuators(Draft& draft, Element& list, ControllerDevices& devices, ControllerUse& use);
 void read_sensors(Draft& draft, Element& list, ControllerDevices& devices, ControllerUse& use);
+/// The names of all devices that <actuators> and <sensors> may have.
+std::vector<std::string_view> actuator_names();
+std::vector<std::string_view> sensor_names();
 std::vector<Camera> read_cameras(Draft& draft, Element& sensor, ControllerUse& use);
 
 /// The last child of each name, in order of the names; earlier ones are reported as notices.
@@ -273,6 +277,8 @@ Anchor read_anchor(Draft& draft, Element& element);
 /// `origin`, then the links of the entity being read.
 std::vector<std::string> anchor_names(const Draft& draft);
 
+/// The names of all kinds of media.
+std::span<const std::string_view> media_names();
 /// The dialect's name of a kind of medium.
 std::string_view to_string(MediumKind kind);
 

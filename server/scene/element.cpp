@@ -222,6 +222,7 @@ void Element::done(std::string_view elsewhere, std::span<const std::string> name
     return !elsewhere.empty() && (names.empty() || std::ranges::find(names, name) != names.end());
   };
   check_repeated_attributes(*document_, node_);
+  if (Vocabulary* vocabulary = document_->vocabulary()) element_at(*vocabulary, path());
   for (const pugi::xml_attribute attribute : node_.attributes()) {
     if (any_attribute_) break;
     const std::string_view name = attribute.name();
@@ -318,6 +319,14 @@ void missing(const Element& element, const char* attribute, std::string_view exa
 void missing_all(const Element& element, std::span<const std::string_view> attributes) {
   element.fault(fmt::format("lacks the attribute {}; write one", fmt::join(attributes, " or ")),
                 {attributes.begin(), attributes.end()});
+}
+
+std::string Element::path() const {
+  std::string path(node_.parent().parent() ? name() : std::string_view());
+  for (pugi::xml_node up = node_.parent(); up.parent().parent(); up = up.parent()) {
+    path = fmt::format("{}/{}", up.name(), path);
+  }
+  return path;
 }
 
 std::size_t Element::size() const {

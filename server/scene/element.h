@@ -20,6 +20,7 @@
 #include "scene/names.h"
 #include "scene/report.h"
 #include "scene/values.h"
+#include "scene/vocabulary.h"
 
 namespace ziggurat::scene {
 
@@ -73,6 +74,7 @@ class Element {
   /// The attribute's value, or nothing if it is missing or wrong; a wrong one is a fault.
   template <class Read>
   std::optional<ValueOf<Read>> optional(const char* attribute, Read read) {
+    tell<Read>(attribute, read, Need::optional);
     const std::optional<std::string> text = take(attribute);
     if (!text) return std::nullopt;
     auto value = read(std::string_view(*text));
@@ -86,6 +88,7 @@ class Element {
   /// The same with a default.
   template <class Read>
   ValueOf<Read> optional(const char* attribute, Read read, ValueOf<Read> fallback) {
+    tell<Read>(attribute, read, Need::optional, &fallback);
     return optional(attribute, read).value_or(std::move(fallback));
   }
 
@@ -97,10 +100,20 @@ class Element {
   /// Checks an attribute that has no effect here, and reports that.
   template <class Read>
   void without_effect(const char* attribute, Read read, std::string_view why) {
-    if (!has(attribute)) return;
+    if (!has(attribute)) return tell<Read>(attribute, read, Need::without_effect);
     optional(attribute, read);
     report().notice(where(attribute),
                     fmt::format("{} of <{}> has no effect here: {}", attribute, name(), why));
+  }
+
+  /// Records what an attribute may be, if somebody wants to know.
+  /// @param usual  its default; null: none
+  template <class Read>
+  void tell(const char* attribute, const Read& read, Need need,
+            const ValueOf<Read>* usual = nullptr) const {
+    if (Vocabulary* vocabulary = document_->vocabulary()) {
+      add(element_at(*vocabulary, path()), attribute, asked_for(read, need, usual));
+    }
   }
 
   /// All attributes, trimmed, whatever their names: for <params>.
@@ -144,6 +157,8 @@ class Element {
 
  private:
   std::optional<std::string> take(const char* attribute);
+  /// Names from the root's children to this one, `arena/box`; empty: the root.
+  std::string path() const;
 
   Document* document_;
   pugi::xml_node node_;
@@ -165,6 +180,7 @@ void missing_all(const Element& element, std::span<const std::string_view> attri
 /// The attribute's value; a missing or wrong one is a fault, and nothing.
 template <class Read>
 std::optional<Element::ValueOf<Read>> needed(Element& element, const char* attribute, Read read) {
+  element.tell(attribute, read, Need::required);
   if (!element.has(attribute)) missing(element, attribute, example_of(read));
   return element.optional(attribute, read);
 }

@@ -18,13 +18,13 @@ constexpr std::array<std::string_view, 3> engine_names{"dynamics3d", "dynamics2d
 
 void read_floor(Draft& draft, Element floor) {
   Floor& out = draft.scene.physics.floor.emplace();
-  out.height = floor.optional("height", non_negative, 0.0);
+  out.height = floor.optional("height", In{"m", non_negative}, 0.0);
   out.surface = read_surface(draft, floor, Surface{});
   floor.done();
 }
 
 void read_gravity(Draft& draft, Element gravity) {
-  const double g = gravity.optional("g", number, usual_gravity);
+  const double g = gravity.optional("g", In{"m/s²", number}, usual_gravity);
   draft.scene.physics.gravity = g;
   if (std::abs(g) > strong_gravity) {
     draft.report.warn(
@@ -46,7 +46,7 @@ void read_gravity(Draft& draft, Element gravity) {
 void read_magnetism(Draft& draft, Element magnetism) {
   Magnetism& out = draft.scene.physics.magnetism.emplace();
   out.force_constant = magnetism.optional("force_constant", non_negative, out.force_constant);
-  out.max_distance = magnetism.optional("max_distance", positive);
+  out.max_distance = magnetism.optional("max_distance", In{"m", positive});
   out.adaptive =
       magnetism.optional("precision", OneOf<bool>{{"dipole", false}, {"adaptive", true}}, false);
   out.tolerance = magnetism.optional("tolerance", positive, out.tolerance);
@@ -70,8 +70,8 @@ void read_dynamics3d(Draft& draft, Element& engine) {
   physics.had_second_core = solver.empty() ? physics.clock == Clock::beta50 : solver == "sweeps";
   physics.max_substep = engine.optional("max_substep", duration);
   draft.defaults.friction = engine.optional("friction", non_negative);
-  draft.defaults.rolling_friction = engine.optional("rolling_friction", non_negative);
-  draft.defaults.spinning_friction = engine.optional("spinning_friction", non_negative);
+  draft.defaults.rolling_friction = engine.optional("rolling_friction", In{"m", non_negative});
+  draft.defaults.spinning_friction = engine.optional("spinning_friction", In{"m", non_negative});
   draft.defaults.restitution = engine.optional("restitution", non_negative);
   draft.defaults.linear_damping = engine.optional("linear_damping", non_negative);
   draft.defaults.angular_damping = engine.optional("angular_damping", non_negative);
@@ -83,13 +83,14 @@ void read_dynamics3d(Draft& draft, Element& engine) {
 
 /// Reads the force and torque with which the ground of a <dynamics2d> brakes.
 void read_ground(Element friction, Plane& plane) {
-  plane.box.max_force = friction.optional("box_linear_friction", non_negative, plane.box.max_force);
+  plane.box.max_force =
+      friction.optional("box_linear_friction", In{"N", non_negative}, plane.box.max_force);
   plane.box.max_torque =
-      friction.optional("box_angular_friction", non_negative, plane.box.max_torque);
-  plane.cylinder.max_force =
-      friction.optional("cylinder_linear_friction", non_negative, plane.cylinder.max_force);
-  plane.cylinder.max_torque =
-      friction.optional("cylinder_angular_friction", non_negative, plane.cylinder.max_torque);
+      friction.optional("box_angular_friction", In{"N·m", non_negative}, plane.box.max_torque);
+  plane.cylinder.max_force = friction.optional("cylinder_linear_friction", In{"N", non_negative},
+                                               plane.cylinder.max_force);
+  plane.cylinder.max_torque = friction.optional("cylinder_angular_friction",
+                                                In{"N·m", non_negative}, plane.cylinder.max_torque);
   friction.done();
 }
 
@@ -102,7 +103,7 @@ void note_one_world(Draft& draft, const Element& engine) {
 void read_dynamics2d(Draft& draft, Element& engine) {
   note_one_world(draft, engine);
   Plane plane;
-  plane.elevation = engine.optional("elevation", number, 0.0);
+  plane.elevation = engine.optional("elevation", In{"m", number}, 0.0);
   if (auto friction = engine.child("friction")) read_ground(*friction, plane);
   engine.child_without_effect("spatial_hash", "bodies are found by their place anyway");
   engine.child_without_effect("boundaries", "the world is one and unbounded");
@@ -128,9 +129,9 @@ Surface read_surface(Draft& draft, Element& element, const Surface& usual) {
   const auto& d = draft.defaults;
   Surface out{
       element.optional("friction", non_negative, d.friction.value_or(usual.friction)),
-      element.optional("rolling_friction", non_negative,
+      element.optional("rolling_friction", In{"m", non_negative},
                        d.rolling_friction.value_or(usual.rolling_friction)),
-      element.optional("spinning_friction", non_negative,
+      element.optional("spinning_friction", In{"m", non_negative},
                        d.spinning_friction.value_or(usual.spinning_friction)),
       element.optional("restitution", non_negative, d.restitution.value_or(usual.restitution))};
   if (out.restitution > 1) element.fault_at("restitution", "is over 1; write a number from 0 to 1");

@@ -14,7 +14,7 @@ constexpr double longest = 9e9;  // [s]: nanoseconds fit 64 bits
 
 void read_experiment(Element experiment, Experiment& out) {
   out.ticks_per_second = experiment.required("ticks_per_second", Whole{1, most_per_second}, 1);
-  out.length = experiment.optional("length", non_negative, 0.0);
+  out.length = experiment.optional("length", In{"s", non_negative}, 0.0);
   out.random_seed = experiment.optional("random_seed", seed, 0);
   out.real_time = experiment.optional("real_time", boolean, false);
   if (out.length > longest || out.length * out.ticks_per_second > most_ticks) {

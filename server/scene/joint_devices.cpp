@@ -38,11 +38,11 @@ void read_joint_list(Element& element, Key key, Read read) {
 
 /// The strength of a motor: an impulse per substep, or a force.
 void read_strength(Element& joint, JointActuator& actuator) {
-  const auto force = joint.optional("max_force", non_negative);
-  const auto torque = joint.optional("max_torque", non_negative);
+  const auto force = joint.optional("max_force", In{"N", non_negative});
+  const auto torque = joint.optional("max_torque", In{"N·m", non_negative});
   actuator.is_torque = torque.has_value();
   actuator.max_force = torque ? torque : force;
-  actuator.max_impulse = joint.optional("max_impulse", non_negative, 0.0);
+  actuator.max_impulse = joint.optional("max_impulse", In{"N·s or N·m·s", non_negative}, 0.0);
   constexpr std::array<std::string_view, 3> strengths{"max_force", "max_torque", "max_impulse"};
   const auto given = std::ranges::count_if(
       strengths, [&](std::string_view name) { return joint.has(name.data()); });

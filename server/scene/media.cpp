@@ -33,6 +33,8 @@ void read_medium_element(Draft& draft, Element& element, MediumKind kind) {
 
 }  // namespace
 
+std::span<const std::string_view> media_names() { return medium_names; }
+
 std::string_view to_string(MediumKind kind) { return medium_names[static_cast<std::size_t>(kind)]; }
 
 void read_media(Draft& draft, Element& root) {

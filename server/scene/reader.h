@@ -16,6 +16,8 @@
 
 namespace ziggurat::scene {
 
+struct Vocabulary;
+
 /// Attributes that <run> may have: options of the program, which this module does not know.
 struct RunAttributes {
   std::vector<std::string> names;
@@ -30,7 +32,8 @@ struct ReadOptions {
                                                  ///< its models written out [bytes]
   Variation variation = {};
   RunAttributes run = {};
-  OpenFile open = open_file;  ///< every file that is read, the scene's and those it includes
+  Vocabulary* vocabulary = nullptr;  ///< records what elements are asked for; null: not recorded
+  OpenFile open = open_file;         ///< every file that is read, the scene's and those it includes
 };
 
 struct ReadResult {

@@ -90,6 +90,14 @@ class OneOf {
     return Wrong{"is not one of the words known here; write one of: " + words(", ")};
   }
 
+  /// The word with a meaning; empty: none.
+  std::string_view word_of(const T& meaning) const {
+    for (const auto& [word, known] : words_) {
+      if (known == meaning) return word;
+    }
+    return {};
+  }
+
   /// All of them.
   std::string words(std::string_view between = "|") const {
     std::string list;
@@ -109,6 +117,16 @@ struct Whole {
   unsigned least = 0, most = 0;
   Value<unsigned> operator()(std::string_view text) const;
 };
+
+/// Reads as another reader, and names the unit for the reference.
+template <class T>
+struct In {
+  std::string_view unit;
+  Value<T> (*read)(std::string_view);
+  Value<T> operator()(std::string_view text) const { return read(text); }
+};
+template <class T>
+In(std::string_view, Value<T> (*)(std::string_view)) -> In<T>;
 
 /// Accepts exactly these words and keeps the text.
 class Words {

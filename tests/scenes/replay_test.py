@@ -20,7 +20,7 @@ from websocket import PAUSE, RawViewer, STEP
 
 class Replay(Recorded):
     def test_every_scene_gives_the_same_hashes(self):
-        scenes = [each for each in sorted((ROOT / "scenes").rglob("*.argos")) if each.parent.name != "models"]
+        scenes = [each for each in sorted((ROOT / "scenes").rglob("*.argos")) if each.parent.name != "models" and not each.is_symlink()]
         self.assertGreater(len(scenes), 10)
         for scene in scenes:
             with self.subTest(scene.name):

@@ -56,6 +56,15 @@ class CheckWords(unittest.TestCase):
         short = f"/// {' '.join(words)}: {' '.join(words)} ({' '.join(words)}).\n/// @param a  {' '.join(words)}\n"
         self.assertEqual(self.run_on("server/math/a.h", short)[0], 0)
 
+    def test_finds_a_long_sentence_of_a_document(self):
+        words = " ".join(["word"] * 16)
+        code, out = self.run_on("docs/a.md", f"# A title\n\n{words}\n{words}.\n")
+        self.assertEqual(code, 1, out)
+        self.assertIn("docs/a.md:3: a sentence of 32 words", out)
+        short = f"{words}. {words}:\n\n- {words}\n- {words} ({words})\n\n| {words} | {words} |\n\n```sh\n{words} {words}\n```\n"
+        self.assertEqual(self.run_on("docs/a.md", short)[0], 0)
+        self.assertEqual(self.run_on("bench/a.md", f"{words} {words}\n")[0], 0, "elsewhere it is not checked")
+
     def test_leaves_other_comments_alone(self):
         text = '/// Position of a link.\nint a = 0;  ///< of the link [m]\nauto url = "http://What";\n'
         self.assertEqual(self.run_on("server/physics/a.h", text)[0], 0)

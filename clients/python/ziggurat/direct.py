@@ -9,11 +9,12 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Sequence, Tuple, Union, cast
 
 from . import protocol_pb2 as v1
 from .curve import Curve
 from .devices import Color, Quaternion, Vector
+from .devices.device import quaternion, vector
 from .devices.led import color_of
 from .errors import ProtocolError
 from .joining import Deadline, take_token
@@ -76,25 +77,25 @@ class Entity:
         if self._world.entities.get(self.id) is not self:
             raise ValueError(f"entity {self.id!r} is not in the world any more; look it up again")
         begin = self._begin[kind] * width
-        return getattr(self._world.state, field)[begin:begin + count * width]
+        return cast(Sequence[Any], getattr(self._world.state, field)[begin:begin + count * width])
 
     @property
     def position(self) -> Vector:
         """Of its origin in the world [m]."""
-        return tuple(self._values("poses", "poses", "entities", 1, 7)[:3])
+        return vector(self._values("poses", "poses", "entities", 1, 7)[:3])
 
     @property
     def orientation(self) -> Quaternion:
-        return tuple(self._values("poses", "poses", "entities", 1, 7)[3:])
+        return quaternion(self._values("poses", "poses", "entities", 1, 7)[3:])
 
     @property
     def links(self) -> Dict[str, LinkMotion]:
         """By id; a single body has one, ""."""
         ids = self._given.links
         v = self._values("links", "links", "links", len(ids), 13)
-        return {link: LinkMotion(*(tuple(v[13 * i + a:13 * i + b])
-                                   for a, b in ((0, 3), (3, 7), (7, 10), (10, 13))))
-                for i, link in enumerate(ids)}
+        return {link: LinkMotion(vector(v[i:i + 3]), quaternion(v[i + 3:i + 7]), vector(v[i + 7:i + 10]),
+                                 vector(v[i + 10:i + 13]))
+                for i, link in zip(range(0, len(v), 13), ids)}
 
     @property
     def joints(self) -> Dict[str, JointMotion]:
@@ -121,7 +122,7 @@ class Entity:
         """Fields in the frames of their anchors, in the scene's unit, by id."""
         ids = [each.id for each in self._given.magnets]
         v = self._values("magnets", "magnets", "magnets", len(ids), 3)
-        return {magnet: tuple(v[3 * i:3 * i + 3]) for i, magnet in enumerate(ids)}
+        return {magnet: vector(v[3 * i:3 * i + 3]) for i, magnet in enumerate(ids)}
 
     # What is asked for is done before the next tick, in the order of asking.
 
@@ -160,7 +161,7 @@ class Entity:
 def _packed(color: Any) -> int:
     if isinstance(color, int):
         return color
-    red, green, blue = color
+    red, green, blue = map(int, color)
     return red << 16 | green << 8 | blue
 
 
@@ -218,7 +219,7 @@ class World(Session):
 
     @property
     def id(self) -> str:
-        return self.welcome.director.id
+        return str(self.welcome.director.id)
 
     @property
     def params(self) -> Dict[str, str]:
@@ -233,8 +234,8 @@ class World(Session):
 
         def name_of(place: int) -> Optional[Tuple[str, str]]:
             return names[place] if place >= 0 else None if place == _FLOOR else ("", "")
-        return [Contact(names[links[2 * i]], name_of(links[2 * i + 1]), tuple(v[9 * i:9 * i + 3]),
-                        tuple(v[9 * i + 3:9 * i + 6]), tuple(v[9 * i + 6:9 * i + 9]))
+        return [Contact(names[links[2 * i]], name_of(links[2 * i + 1]), vector(v[9 * i:9 * i + 3]),
+                        vector(v[9 * i + 3:9 * i + 6]), vector(v[9 * i + 6:9 * i + 9]))
                 for i in range(len(links) // 2)]
 
     @property
@@ -337,6 +338,7 @@ class World(Session):
 
     def _answer(self) -> None:
         direction = self._direction
+        assert self._owes is not None  # __next__() asks
         direction.tick = self._owes
         if self._epoch is not None:
             direction.epoch = self._epoch

@@ -12,7 +12,7 @@ LONGEST_TEXT = 4096  # of a server, in exceptions and endings [characters]
 
 def name_of(enum: Any, number: int) -> str:
     """A later version of the protocol may have more values: their number."""
-    return enum.Name(number) if number in enum.values() else str(number)
+    return str(enum.Name(number) if number in enum.values() else number)
 
 
 def printable(text: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from itertools import accumulate
 from operator import mul
-from typing import Any, Callable, Dict, Generic, List, Optional, Sequence, Set, Tuple, TypeVar
+from typing import Any, Callable, Dict, Generic, List, Optional, Sequence, Set, Tuple, TypeVar, cast
 
 from . import protocol_pb2 as v1
 from .metrics import Metrics
@@ -26,7 +26,7 @@ class Exchange:
         self.messages: List[Tuple[int, bytes]] = []
         self.log: List[v1.LogLine] = []
         self.metrics = Metrics()
-        self._places: Counter = Counter()
+        self._places: Counter[str] = Counter()
         self._initial: Dict[str, List[Any]] = {}
         self._new: Set[str] = set()  # fields that were set after the last command
         self._used: Set[str] = set()  # fields that were ever set
@@ -93,32 +93,34 @@ class Exchange:
     def heard(self) -> Dict[int, List[bytes]]:
         """By radio."""
         if "heard" not in self._sorted:
-            heard = self._sorted["heard"] = {}
+            heard: Dict[int, List[bytes]] = {}
+            self._sorted["heard"] = heard
             for message in self.seen.radio_messages:
                 heard.setdefault(message.radio, []).append(message.payload)
-        return self._sorted["heard"]
+        return cast(Dict[int, List[bytes]], self._sorted["heard"])
 
     @property
     def packets(self) -> Dict[int, List[Any]]:
         """By robot."""
         if "packets" not in self._sorted:
-            packets = self._sorted["packets"] = {}
+            packets: Dict[int, List[Any]] = {}
+            self._sorted["packets"] = packets
             for packet in self.seen.range_and_bearing:
                 packets.setdefault(packet.robot, []).append(packet)
-        return self._sorted["packets"]
+        return cast(Dict[int, List[Any]], self._sorted["packets"])
 
     def begins(self, kind: str) -> List[int]:
         """Each camera's first reading of this detector, and the end."""
         if kind not in self._sorted:
             self._sorted[kind] = [0, *accumulate(getattr(self.seen, kind + "_counts"))]
-        return self._sorted[kind]
+        return cast(List[int], self._sorted[kind])
 
     @property
     def row_begins(self) -> List[int]:
         """Of each device that reads rows, its first value of device_row_values, and their end."""
         if "rows" not in self._sorted:
             self._sorted["rows"] = [0, *accumulate(map(mul, self.seen.device_rows, self.row_widths))]
-        return self._sorted["rows"]
+        return cast(List[int], self._sorted["rows"])
 
     def command(self, tick: int) -> v1.ClientMessage:
         """A command with the values that were set after the last one."""

@@ -6,7 +6,7 @@ import os
 import pathlib
 import socket
 import stat
-from typing import Mapping
+from typing import List, Mapping
 
 
 def find_server(environment: Mapping[str, str] = os.environ) -> str:
@@ -22,7 +22,7 @@ def find_server(environment: Mapping[str, str] = os.environ) -> str:
     folders = [pathlib.Path(f"/tmp/ziggurat-{os.geteuid()}")]
     if runtime.startswith("/"):
         folders.insert(0, pathlib.Path(runtime, "ziggurat"))
-    found = []
+    found: List[str] = []
     for folder in folders:
         if not found and _is_private(folder):
             found = sorted(f"ipc://{path}" for path in folder.iterdir() if _is_alive(path))

@@ -15,6 +15,7 @@ from .robot import Robot
 from .server import Server
 from .session import Session
 from .supervisor import Supervisor
+from .ticks import Ending, Tick
 
 Observe = Callable[[Robot], Any]
 Act = Callable[[Robot, Any], None]
@@ -108,6 +109,7 @@ class World:
     def _open(self, seed: Optional[int]) -> None:
         """A new server, or a session at the endpoint, up to its first observation."""
         if self._scene is None:
+            assert self._endpoint is not None  # one of both is given
             self.session = connect(self._endpoint, self._robots, can_restore=True, name=self._name)
         else:
             seeds = [] if seed is None else ["--seed", str(world_seed(seed))]
@@ -125,13 +127,25 @@ class World:
         except BaseException:
             self.close()
             raise
-        self.seed, self._fresh_tick, self._begin_seed = self.session.seed, self.session.tick.number, None
+        self.seed, self._fresh_tick, self._begin_seed = self.session.seed, self.tick.number, None
+
+    @property
+    def tick(self) -> Tick:
+        """The session's last one: there is one after _open()."""
+        assert self.session.tick is not None
+        return self.session.tick
+
+    @property
+    def _ending(self) -> Ending:
+        """Of the session, which has no other tick."""
+        assert self.session.ending is not None
+        return self.session.ending
 
     def goes_on(self) -> bool:
         """To the tick whose command was sent, or is sent now. False: the run was finished instead, by a director."""
         if next(self.session, None) is not None:
             return True
-        if self.session.ending.reason == "finished":
+        if self._ending.reason == "finished":
             return False
         raise self._early_end()
 
@@ -141,13 +155,13 @@ class World:
             raise self._early_end()
 
     def _early_end(self) -> RuntimeError:
-        ending = self.session.ending
+        ending = self._ending
         return RuntimeError(f"the run ended at tick {ending.tick}: {ending.reason} {ending.message}")
 
     def begin(self, seed: Optional[int] = None) -> None:
         """An episode at tick 0: of this seed, or of the next one of the stream that the last given seed began."""
         is_given = seed is not None
-        if is_given:
+        if seed is not None:
             seed = operator.index(seed)
             self._stream = random.Random(seed)
         elif self._stream is None:
@@ -157,7 +171,7 @@ class World:
             seed = 1 + self._stream.getrandbits(52)
         if is_given and seed == self._begin_seed and self.session.ending is None and self._restored_begin():
             return
-        if self.session.tick.number != self._fresh_tick or world_seed(seed) != self.session.seed:
+        if self.tick.number != self._fresh_tick or world_seed(seed) != self.session.seed:
             self._reset(seed)
         self.seed, self._fresh_tick = seed, None
         if self._randomize is not None:
@@ -180,6 +194,7 @@ class World:
     def _change(self) -> None:
         """By the program's function. What it changed is sensed at the next tick."""
         import numpy
+        assert self._randomize is not None
         self._randomize(self.supervisor, numpy.random.default_rng(self.seed))
         self.advance()
 

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import difflib
-from typing import Any, Dict, Generic, Iterable, Iterator, Sequence, Tuple, TypeVar, Union
+from typing import Any, Dict, Generic, Iterable, Iterator, Protocol, Sequence, Tuple, TypeVar, Union
 
-T = TypeVar("T")
+class WithId(Protocol):
+    id: str
 
 
-class Named(Sequence, Generic[T]):
+T = TypeVar("T", bound=WithId)
+
+
+class Named(Sequence[T]):
     """A list with access by position or by id."""
 
     __slots__ = ("_things", "_kind", "_owner", "_by_id")

@@ -52,7 +52,7 @@ class ParallelEnv:
                  terminated: Callable[[Robot], bool] = lambda robot: False,
                  max_ticks: Optional[int] = None, randomize: Optional[Randomize] = None,
                  command: str = "ziggurat", arguments: Sequence[str] = (),
-                 observation_spaces: Optional[Dict] = None, action_spaces: Optional[Dict] = None):
+                 observation_spaces: Optional[Dict[str, Any]] = None, action_spaces: Optional[Dict[str, Any]] = None):
         if (scene is None) == (endpoint is None):
             raise ValueError("give either a scene or an endpoint")
         self._observe, self._act = observe, act
@@ -60,7 +60,7 @@ class ParallelEnv:
         self._max_ticks = max_ticks
         self.observation_spaces = dict(observation_spaces or {})
         self.action_spaces = dict(action_spaces or {})
-        self._options = {"scene": None if scene is None else str(scene), "endpoint": endpoint, "robots": robots,
+        self._options: Dict[str, Any] = {"scene": None if scene is None else str(scene), "endpoint": endpoint, "robots": robots,
                          "randomize": randomize, "command": command, "arguments": arguments, "name": "parallel_env"}
         self._world: Optional[World] = None
         self.agents: List[str] = []
@@ -78,7 +78,7 @@ class ParallelEnv:
 
     def _robot(self, agent: str) -> Robot:
         self._opened()
-        return self.session.robots[agent]
+        return self.session.robot(agent)
 
     def observation_space(self, agent: str) -> Any:
         if agent not in self.observation_spaces:
@@ -99,7 +99,7 @@ class ParallelEnv:
         return self._world.session
 
     def reset(self, seed: Optional[int] = None,
-              options: Optional[Dict] = None) -> Tuple[Dict[str, Any], Dict[str, Dict]]:
+              options: Optional[Dict[str, Any]] = None) -> Tuple[Dict[str, Any], Dict[str, Dict[str, Any]]]:
         """A new episode: observations and infos by agent. Its seed is the one that is given. Without, it is the next of
         the stream of seeds that the last given one began; if none was given yet, that of the scene or server.
 
@@ -123,12 +123,12 @@ class ParallelEnv:
         self._opened().restore(snapshot.name)
         self.agents = list(snapshot.agents)
 
-    def step(self, actions: Dict[str, Any]) -> Tuple[Dict, Dict, Dict, Dict, Dict]:
+    def step(self, actions: Dict[str, Any]) -> Tuple[Dict[str, Any], Dict[str, Any], Dict[str, Any], Dict[str, Any], Dict[str, Any]]:
         """One tick: observations, rewards, terminations, truncations and infos by agent."""
         for agent, action in actions.items():
             self._act(self.session.robots[agent], action)
         is_over = next(self.session, None) is None
-        tick = self.session.tick.number - self._opened().first_tick
+        tick = self._opened().tick.number - self._opened().first_tick
         is_over = is_over or (self._max_ticks is not None and tick >= self._max_ticks)
         robots = [self.session.robots[agent] for agent in self.agents]
         observations, infos = self._observations(), self._infos()
@@ -141,8 +141,8 @@ class ParallelEnv:
     def _observations(self) -> Dict[str, Any]:
         return {agent: self._observe(self.session.robots[agent]) for agent in self.agents}
 
-    def _infos(self) -> Dict[str, Dict]:
-        return {agent: {"tick": self.session.tick.number} for agent in self.agents}
+    def _infos(self) -> Dict[str, Dict[str, Any]]:
+        return {agent: {"tick": self._opened().tick.number} for agent in self.agents}
 
     def render(self) -> None:
         """Does nothing: there are no pictures."""

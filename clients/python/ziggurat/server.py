@@ -38,6 +38,7 @@ class Server:
 
     def __init__(self, scene: str, *, command: str = "ziggurat", arguments: Sequence[str] = ()):
         # Nothing is written: the server ends when the other end is closed, as by the end of this program.
+        self._end_for_program: Optional[int]
         end_for_server, self._end_for_program = os.pipe()
         try:
             self.process = subprocess.Popen(
@@ -61,9 +62,10 @@ class Server:
             self._end_for_program = None
 
     def _read_endpoint(self) -> str:
+        assert self.process.stdout is not None  # a pipe
         line = self.process.stdout.readline()
         try:
-            return json.loads(line)["endpoint"]
+            return str(json.loads(line)["endpoint"])
         except (ValueError, KeyError):
             _, errors = self.process.communicate()
             self._release()

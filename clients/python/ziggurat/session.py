@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 import weakref
-from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Union
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Union, cast
 
 from . import driven
 from . import protocol_pb2 as v1
@@ -102,25 +102,25 @@ class Session:
     @property
     def id_of_one(self) -> str:
         """Of its robots, or of its director."""
-        return self.welcome.robots[0].id if self.welcome.robots else self.welcome.director.id
+        return str(self.welcome.robots[0].id if self.welcome.robots else self.welcome.director.id)
 
     @property
     def token(self) -> bytes:
         """For `resume`."""
-        return self.welcome.session_token
+        return bytes(self.welcome.session_token)
 
     @property
     def tick_seconds(self) -> float:
         """Simulated time of a tick [s]."""
-        return self.welcome.tick_ns * 1e-9
+        return float(self.welcome.tick_ns * 1e-9)
 
     @property
     def seed(self) -> int:
         """The run's: of its start, or of its last reset."""
-        return self.welcome.seed
+        return int(self.welcome.seed)
 
     def robot(self, id: str) -> Robot:
-        return self.robots[id]
+        return cast(Robot, self.robots[id])
 
     def __iter__(self) -> Iterator[Tick]:
         return self
@@ -253,7 +253,8 @@ class Session:
             except (ConnectionLost, Refused) as error:
                 connection.close(linger=0)
                 is_refused = isinstance(error, Refused)
-                if time.monotonic() < end and not self._has_ended() and (not is_refused or error.retryable):
+                may_retry = error.retryable if isinstance(error, Refused) else True
+                if time.monotonic() < end and not self._has_ended() and may_retry:
                     pause = _BETWEEN_HELLOS if is_refused else _BETWEEN_ATTEMPTS
                     continue
                 self._end()
@@ -287,7 +288,7 @@ class Session:
     def _repeats_answer(self, observation: v1.Observation) -> bool:
         """The first observation of a resumed session may be the one that was answered before: it is not a tick
         again, and the answer may have been lost. The server takes it or ignores it."""
-        if not self._is_resumed:
+        if not self._is_resumed or self.tick is None:
             return False
         self._is_resumed = False
         is_other = (self._epoch is not None and observation.HasField("epoch")
@@ -347,6 +348,7 @@ class Session:
         return self.tick
 
     def _answer(self) -> None:
+        assert self._owes is not None  # __next__() asks
         message = self._exchange.command(self._owes)
         if self._epoch is not None:
             message.command.epoch = self._epoch

@@ -24,7 +24,7 @@ class Box:
     def seed(self, seed: Optional[int] = None) -> None:
         self._random = numpy.random.default_rng(seed)
 
-    def sample(self) -> numpy.ndarray:
+    def sample(self) -> numpy.ndarray[Any, Any]:
         """Uniform between the limits; where one of them is infinite, normal with the deviation 1."""
         bounded = numpy.isfinite(self.low) & numpy.isfinite(self.high)
         low, high = numpy.where(bounded, self.low, 0), numpy.where(bounded, self.high, 1)

@@ -9,6 +9,7 @@ from . import protocol_pb2 as v1
 from .connection import Connection, Wait
 from .curve import Curve
 from .devices import Color, Quaternion, Vector
+from .devices.device import quaternion, vector
 from .devices.led import color_of
 from .driven import driven_here
 from .errors import ConnectionLost, Malformed, ProtocolError, name_of, printable
@@ -150,53 +151,57 @@ class Supervisor:
         """Tick, sessions and robots: for which sessions the world waits, and how long."""
         return _status(self._ask(status=v1.StatusRequest()).status)
 
+    def _tick_of(self, **request: Any) -> int:
+        """Asks, and returns the tick at which it was done."""
+        return int(self._ask(**request).tick)
+
     def pause(self) -> int:
         """Stops the world after the current tick; returns that tick. ProtocolError with OUT_OF_STATE if the world waits for
         an answer of this thread itself, to a tick of its session: pause from another thread or program."""
-        return self._ask(pause=v1.PauseRequest(), held_up=driven_here(self._connection.endpoint)).tick
+        return self._tick_of(pause=v1.PauseRequest(), held_up=driven_here(self._connection.endpoint))
 
     def resume(self) -> int:
         """Continues a paused world."""
-        return self._ask(resume=v1.ResumeRequest()).tick
+        return self._tick_of(resume=v1.ResumeRequest())
 
     def step(self, ticks: int = 1) -> int:
         """Runs this many ticks of a paused world; returns the tick at which it stopped. As pause(), not of a thread that
         drives a session itself."""
-        return self._ask(step=v1.StepRequest(ticks=ticks), held_up=driven_here(self._connection.endpoint)).tick
+        return self._tick_of(step=v1.StepRequest(ticks=ticks), held_up=driven_here(self._connection.endpoint))
 
     def reset(self, seed: Optional[int] = None) -> int:
         """Builds the world again, with the same seed if none is given."""
-        return self._ask(reset=v1.ResetRequest(seed=seed)).tick
+        return self._tick_of(reset=v1.ResetRequest(seed=seed))
 
     def snapshot(self, name: str) -> int:
         """Keeps the world under a name: 1 to 64 letters, digits, `-`, `_` and `.`."""
-        return self._ask(snapshot=v1.SnapshotRequest(name=name)).tick
+        return self._tick_of(snapshot=v1.SnapshotRequest(name=name))
 
     def restore(self, name: str) -> int:
         """Back to a snapshot; the tick that the world is at then. Refused while clients have robots
         that can't go back (can_restore of connect)."""
-        return self._ask(restore=v1.RestoreRequest(name=name)).tick
+        return self._tick_of(restore=v1.RestoreRequest(name=name))
 
     def spawn(self, xml: str) -> int:
         """Adds an element, written as in <arena>."""
-        return self._ask(spawn=v1.SpawnRequest(xml=xml)).tick
+        return self._tick_of(spawn=v1.SpawnRequest(xml=xml))
 
     def remove(self, entity: str) -> int:
-        return self._ask(remove=v1.RemoveRequest(entity=entity)).tick
+        return self._tick_of(remove=v1.RemoveRequest(entity=entity))
 
     def move(self, entity: str, position: Sequence[float], orientation: Sequence[float] = (), *,
              may_overlap: bool = False) -> int:
         """The entity is at rest with its origin at `position` [m]; orientation w, x, y, z. Where others are that is
         refused, unless it may overlap them: they are pushed apart."""
-        return self._ask(move=v1.MoveRequest(entity=entity, position=position, orientation=orientation,
-                                             may_overlap=may_overlap)).tick
+        return self._tick_of(move=v1.MoveRequest(entity=entity, position=position, orientation=orientation,
+                                             may_overlap=may_overlap))
 
     def set_joint(self, entity: str, joint: str, position: float, velocity: float = 0.0) -> int:
         """A revolute or prismatic joint is put to a position [m, rad] from the assembled pose, within its limits, and a
         velocity [m/s, rad/s]. What hangs on it follows; other joints and the root of the entity stay, and motors keep
         their targets."""
-        return self._ask(set_joint=v1.SetJointRequest(entity=entity, joint=joint, position=position,
-                                                      velocity=velocity)).tick
+        return self._tick_of(set_joint=v1.SetJointRequest(entity=entity, joint=joint, position=position,
+                                                      velocity=velocity))
 
     def overlapped(self, what: str, position: Sequence[float],
                    orientation: Sequence[float] = ()) -> Optional[str]:
@@ -218,7 +223,7 @@ class Supervisor:
 
     def shutdown(self, reason: str = "") -> int:
         """Ends the run, as Ctrl-C does. With a reason that was planned: the run's exit code is 0."""
-        return self._ask(shutdown=v1.ShutdownRequest(reason=reason or None)).tick
+        return self._tick_of(shutdown=v1.ShutdownRequest(reason=reason or None))
 
     def close(self) -> None:
         if not self._connection.closed:
@@ -252,7 +257,7 @@ def _session(given: v1.SessionStatus) -> SessionStatus:
 
 def _entity(given: v1.States.Entity) -> EntityState:
     links: List[LinkState] = [
-        LinkState(link.id, tuple(link.position), tuple(link.orientation), tuple(link.velocity),
-                  tuple(link.angular_velocity)) for link in given.links]
-    return EntityState(given.id, tuple(given.position), tuple(given.orientation), tuple(links),
+        LinkState(link.id, vector(link.position), quaternion(link.orientation), vector(link.velocity),
+                  vector(link.angular_velocity)) for link in given.links]
+    return EntityState(given.id, vector(given.position), quaternion(given.orientation), tuple(links),
                        tuple(map(color_of, given.led_colors)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import socket
-from typing import Optional
+from typing import Any, Mapping, Optional
 
 import zmq
 import zmq.utils.monitor
@@ -90,7 +90,7 @@ class Transport:
 
     @property
     def closed(self) -> bool:
-        return self._socket.closed
+        return bool(self._socket.closed)
 
     @property
     def has_more(self) -> bool:
@@ -122,7 +122,7 @@ class Transport:
                 return why
         return None
 
-    def _why_lost(self, event: dict) -> Optional[str]:
+    def _why_lost(self, event: Mapping[str, Any]) -> Optional[str]:
         """Why the connection is lost after this event of its monitor; None if it is not."""
         if event["event"] == zmq.EVENT_CONNECTED:
             self.is_accepted = True

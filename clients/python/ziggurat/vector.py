@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import operator
 from dataclasses import dataclass
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union, cast
 
 try:
     import numpy
@@ -18,6 +18,9 @@ from .robot import Robot
 from .session import Session
 from .spaces import Box
 from .supervisor import Supervisor
+
+Array = numpy.ndarray[Any, Any]
+
 
 @dataclass(frozen=True)
 class VectorSnapshot:
@@ -111,7 +114,7 @@ class VectorEnv:
         return [world.supervisor for world in self._worlds]
 
     def reset(self, *, seed: Union[None, int, Sequence[int]] = None,
-              options: Optional[Dict] = None) -> Tuple[numpy.ndarray, Dict]:
+              options: Optional[Dict[str, Any]] = None) -> Tuple[Array, Dict[str, Any]]:
         """New episodes of all worlds: observations and infos.
 
         seed     of these episodes: one for each world, or that of the first one, which counts up. Without, each world has
@@ -138,10 +141,11 @@ class VectorEnv:
     def _seeds(self, seed: Union[int, Sequence[int]]) -> List[int]:
         """By world. Takes numpy's integers, too."""
         if numpy.ndim(seed) == 0:
-            return [operator.index(seed) + number for number in range(self.num_envs)]
-        if len(seed) != self.num_envs:
-            raise ValueError(f"there are {len(seed)} seeds for {self.num_envs} worlds")
-        return [operator.index(each) for each in seed]
+            return [operator.index(cast(int, seed)) + number for number in range(self.num_envs)]
+        seeds = cast(Sequence[int], seed)
+        if len(seeds) != self.num_envs:
+            raise ValueError(f"there are {len(seeds)} seeds for {self.num_envs} worlds")
+        return [operator.index(each) for each in seeds]
 
     def snapshot(self) -> VectorSnapshot:
         """All worlds as they are, to go back to: what follows is what followed then, bit for bit, with the same
@@ -149,7 +153,7 @@ class VectorEnv:
         kept = [world.snapshot() for world in self._worlds]
         return VectorSnapshot(tuple(name for name, _ in kept), tuple(tick for _, tick in kept))
 
-    def step(self, actions: Any) -> Tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray, numpy.ndarray, Dict]:
+    def step(self, actions: Any) -> Tuple[Array, Array, Array, Array, Dict[str, Any]]:
         """One tick of all worlds: observations, rewards, terminations, truncations and infos.
 
         Where an episode is over, its world has begun the next one (autoreset); infos["final_observation"]
@@ -168,7 +172,7 @@ class VectorEnv:
                 self._act(robot, action)
             world.session.answer()
 
-    def step_wait(self) -> Tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray, numpy.ndarray, Dict]:
+    def step_wait(self) -> Tuple[Array, Array, Array, Array, Dict[str, Any]]:
         shape = (self.num_envs, len(self.agents))
         rewards, terminations = numpy.zeros(shape), numpy.zeros(shape, bool)
         truncations = numpy.zeros(shape, bool)
@@ -178,7 +182,7 @@ class VectorEnv:
             robots = world.agents
             rewards[number] = [self._reward(robot) for robot in robots]
             terminations[number] = [self._terminated(robot) for robot in robots]
-            tick = world.session.tick.number - world.first_tick
+            tick = world.tick.number - world.first_tick
             truncations[number] = not goes_on or (self._max_ticks is not None and tick >= self._max_ticks)
         over = terminations.all(axis=1) | truncations.all(axis=1)
         infos = {}
@@ -196,12 +200,12 @@ class VectorEnv:
         for place, robot in enumerate(self._worlds[number].agents):
             self._observations[number, place] = self._observe(robot)
 
-    def _shaped(self, array: numpy.ndarray) -> numpy.ndarray:
+    def _shaped(self, array: Array) -> Array:
         """Without the axis of robots if there is one of them."""
         return array if self._inner else array[:, 0]
 
     def _infos(self) -> Dict[str, Any]:
-        return {"tick": numpy.array([world.session.tick.number for world in self._worlds])}
+        return {"tick": numpy.array([world.tick.number for world in self._worlds])}
 
     def close(self) -> None:
         for world in self._worlds:

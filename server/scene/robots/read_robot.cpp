@@ -12,8 +12,9 @@ namespace {
 
 void read_steering_limits(Element engine, Traction& traction) {
   if (auto steering = engine.child("differential_steering")) {
-    traction.max_force = steering->optional("max_force", positive, traction.max_force);
-    traction.max_torque = steering->optional("max_torque", positive, traction.max_torque);
+    traction.max_force = steering->optional("max_force", In{"N", positive}, traction.max_force);
+    traction.max_torque =
+        steering->optional("max_torque", In{"N·m", positive}, traction.max_torque);
     steering->done();
   }
   engine.done();
@@ -35,28 +36,29 @@ void read_blob_cameras(Element& element, Entity& entity) {
       read_aperture(element, "omnidirectional_camera_aperture", 7 * std::numbers::pi / 18);
   cameras.looks_ahead = element.optional("perspective_camera_front", boolean, true);
   cameras.aperture = read_aperture(element, "perspective_camera_aperture", usual_aperture);
-  cameras.focal_length = element.optional("perspective_camera_focal_length", positive, 0.035);
-  cameras.range = element.optional("perspective_camera_range", positive, 2.0);
+  cameras.focal_length =
+      element.optional("perspective_camera_focal_length", In{"m", positive}, 0.035);
+  cameras.range = element.optional("perspective_camera_range", In{"m", positive}, 2.0);
   foot_bot::add_blob_cameras(entity, cameras);
 }
 
 void read_foot_bot(Element& element, Entity& entity) {
   read_blob_cameras(element, entity);
   constexpr double usual_range = 10;  // [m]
-  foot_bot::add_wifi(entity, element.optional("wifi_range", positive, usual_range));
+  foot_bot::add_wifi(entity, element.optional("wifi_range", In{"m", positive}, usual_range));
 }
 
 /// The e-puck has no such camera.
 void ignore_blob_cameras(Element& element, Entity&) {
   element.optional("perspective_camera_aperture", half_angle);
-  element.optional("perspective_camera_focal_length", positive);
-  element.optional("perspective_camera_range", positive);
+  element.optional("perspective_camera_focal_length", In{"m", positive});
+  element.optional("perspective_camera_range", In{"m", positive});
 }
 
 void read_flying_camera(Element& element, Entity& entity, double usual_range) {
   flying::add_camera(entity, {read_aperture(element, "camera_aperture", usual_aperture),
-                              element.optional("camera_focal_length", positive, 0.035),
-                              element.optional("camera_range", positive, usual_range)});
+                              element.optional("camera_focal_length", In{"m", positive}, 0.035),
+                              element.optional("camera_range", In{"m", positive}, usual_range)});
 }
 
 void read_eye_bot_camera(Element& element, Entity& entity) {
@@ -70,9 +72,10 @@ void read_spiri_camera(Element& element, Entity& entity) {
 
 void read_kilobot(Element& element, Entity& entity) {
   constexpr double usual_range = 0.1;  // [m]
-  kilobot::add_devices(entity, {element.optional("left_motor", positive, 1.0),
-                                element.optional("right_motor", positive, 1.0),
-                                element.optional("communication_range", positive, usual_range)});
+  kilobot::add_devices(entity,
+                       {element.optional("left_motor", positive, 1.0),
+                        element.optional("right_motor", positive, 1.0),
+                        element.optional("communication_range", In{"m", positive}, usual_range)});
   // There is one medium of messages, unless the sensor names another one.
   element.without_effect("communication_medium", identifier, "the sensor's medium counts");
 }
@@ -115,7 +118,7 @@ void assign_media(Draft& draft, Element& element, Devices& devices) {
 void read_antenna(Draft& draft, Element& element, Devices& devices) {
   if (!devices.range_and_bearing) return;
   RangeAndBearing& antenna = *devices.range_and_bearing;
-  antenna.range = element.optional("rab_range", positive, antenna.range);
+  antenna.range = element.optional("rab_range", In{"m", positive}, antenna.range);
   antenna.data_size =
       element.optional("rab_data_size", Whole{0, most_data_bytes}, antenna.data_size);
   devices.range_and_bearing_medium = first_medium(draft.scene, MediumKind::range_and_bearing);

@@ -15,7 +15,7 @@ void enable_kilobot_communication(const Enabling& e) {
   if (e.element.has("medium")) {
     e.described->medium = read_medium(e.draft, e.element, MediumKind::kilobot_communication);
   }
-  e.described->noise = e.element.optional("noise_std_dev", non_negative, 0.0);
+  e.described->noise = e.element.optional("noise_std_dev", In{"m", non_negative}, 0.0);
   e.described->loss = e.element.optional("message_drop_prob", probability, 0.0);
   e.element.without_effect("show_rays", boolean, "messages are not drawn");
 }

@@ -70,6 +70,7 @@ std::vector<std::filesystem::path> scenes() {
   std::vector<std::filesystem::path> found;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(checkout() / "scenes")) {
     const bool is_part = entry.path().parent_path().filename() == "models";  // of other scenes
+    if (entry.is_symlink()) continue;                                        // a second name
     if (entry.path().extension() == ".argos" && !is_part) found.push_back(entry.path());
   }
   std::ranges::sort(found);

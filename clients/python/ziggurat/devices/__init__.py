@@ -18,4 +18,9 @@ from .tag import MAX_PAYLOAD, Tag
 from .turret import Turret
 from .wheels import Wheels
 
-__all__ = [name for name in dir() if name[0].isupper()]  # without the modules
+__all__ = [
+    "Battery", "Camera", "Color", "ContactSensor", "DescribedDevice", "Device", "DeviceCommand", "DeviceField",
+    "DevicesByKind", "Imu", "Joint", "Led", "LedReading", "MAX_MESSAGE", "MAX_PAYLOAD", "Magnet", "OFF",
+    "Packet", "Pose", "ProximitySensor", "Quaternion", "Radio", "RangeAndBearing", "Sensors", "Tag",
+    "TagReading", "Turret", "Vector", "Wheels",
+]

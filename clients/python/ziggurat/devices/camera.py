@@ -75,8 +75,8 @@ class Camera(Device):
     def tags(self) -> List[TagReading]:
         found = self._found("tag", self._tags)
         seen = self._exchange.seen
-        return [TagReading(seen.tag_payloads[i], tuple(seen.tag_centers[2 * i:2 * i + 2]),
-                           tuple(tuple(seen.tag_corners[j:j + 2])
+        return [TagReading(seen.tag_payloads[i], (seen.tag_centers[2 * i], seen.tag_centers[2 * i + 1]),
+                           tuple((seen.tag_corners[j], seen.tag_corners[j + 1])
                                  for j in range(8 * i, 8 * i + 8, 2)))
                 for i in found]
 
@@ -86,7 +86,7 @@ class Camera(Device):
         if self._image < 0:
             raise AttributeError(f"camera {self.id!r} takes no pictures")
         images = self._exchange.seen.camera_images
-        return images[self._image] if images else b""
+        return bytes(images[self._image]) if images else b""
 
     def image_array(self) -> Any:
         """The image as a numpy array of height, width, 3; needs numpy. None at tick 0."""

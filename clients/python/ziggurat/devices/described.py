@@ -7,7 +7,7 @@ from typing import Dict, Iterator, List, Mapping, NamedTuple, Sequence, Tuple
 from .. import protocol_pb2 as v1
 from ..exchange import Exchange
 from ..named import Named
-from .device import Device, Quaternion, Vector, finite
+from .device import Device, Quaternion, Vector, finite, quaternion, vector
 
 __all__ = ["DeviceCommand", "DescribedDevice", "DevicesByKind", "DeviceField"]
 
@@ -54,8 +54,8 @@ class DescribedDevice(Device):
         super().__init__(exchange, given.id)
         self.kind: str = kind.name  # of its element in the scene
         self.anchor: str = given.anchor  # id of a link, or "origin"
-        self.position: Vector = tuple(given.position)  # in the anchor's frame [m]
-        self.orientation: Quaternion = tuple(given.orientation)  # in the anchor's frame
+        self.position: Vector = vector(given.position)  # in the anchor's frame [m]
+        self.orientation: Quaternion = quaternion(given.orientation)  # in the anchor's frame
         self._kind = kind
         self._properties: Tuple[float, ...] = tuple(given.properties)
         self._place = exchange.places("device_rows", 1) if kind.has_rows \
@@ -118,7 +118,7 @@ class DescribedDevice(Device):
 
     def commanded(self, name: str) -> float:
         """The last value set; before that, the initial one."""
-        return self._exchange.values["device_commands"][self._commands[self._field(name)]]
+        return float(self._exchange.values["device_commands"][self._commands[self._field(name)]])
 
     def _field(self, name: str) -> int:
         if name not in self._kind.commands:

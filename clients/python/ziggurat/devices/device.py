@@ -3,12 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import Tuple
+from typing import Iterable, Tuple, cast
 
 from ..exchange import Exchange
 
 Vector = Tuple[float, float, float]
 Quaternion = Tuple[float, float, float, float]  # w, x, y, z
+
+
+def vector(values: Iterable[float]) -> Vector:
+    """Three numbers of a message."""
+    return cast(Vector, tuple(values))
+
+
+def quaternion(values: Iterable[float]) -> Quaternion:
+    """Four numbers of a message."""
+    return cast(Quaternion, tuple(values))
 
 
 def finite(value: float, what: str) -> float:

@@ -54,14 +54,14 @@ class Joint(Device):
 
     def _read(self, place: int) -> float:
         readings = self._exchange.seen.joint_readings
-        return readings[place] if readings else 0.0
+        return float(readings[place]) if readings else 0.0
 
     @property
     def target(self) -> float:
         """[m], [rad], [m/s] or [rad/s], by actuator_mode. Stays until changed."""
         if self._actuator < 0:
             raise AttributeError(f"joint {self.id!r} has no motor")
-        return self._exchange.values["joint_targets"][self._actuator]
+        return float(self._exchange.values["joint_targets"][self._actuator])
 
     @target.setter
     def target(self, value: float) -> None:

@@ -15,7 +15,7 @@ class Magnet(Device):
     @property
     def current(self) -> float:
         """A multiple of the magnet's active field."""
-        return self._exchange.values["magnet_currents"][self._place]
+        return float(self._exchange.values["magnet_currents"][self._place])
 
     @current.setter
     def current(self, value: float) -> None:

@@ -9,7 +9,7 @@ from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 from .. import protocol_pb2 as v1
 from ..exchange import Exchange, Readings
 from ..named import Listed
-from .device import Device, Quaternion, Vector
+from .device import Device, Quaternion, Vector, quaternion, vector
 
 __all__ = ["Battery", "ContactSensor", "Imu", "Pose", "ProximitySensor", "Sensors"]
 
@@ -52,13 +52,13 @@ class Imu(Device):
     def __init__(self, exchange: Exchange, given: v1.ImuDescription):
         super().__init__(exchange, given.id)
         self.anchor: str = given.anchor  # id of a link, or "origin"
-        self.position: Vector = tuple(given.position)  # in the anchor's frame [m]
-        self.orientation: Quaternion = tuple(given.orientation)  # in the anchor's frame
+        self.position: Vector = vector(given.position)  # in the anchor's frame [m]
+        self.orientation: Quaternion = quaternion(given.orientation)  # in the anchor's frame
         self._place = 6 * exchange.place("imus")
 
     def _read(self, first: int) -> Vector:
         first += self._place
-        return tuple(self._exchange.seen.imus[first:first + 3]) or (0.0, 0.0, 0.0)
+        return vector(self._exchange.seen.imus[first:first + 3] or (0.0, 0.0, 0.0))
 
     @property
     def acceleration(self) -> Vector:
@@ -92,7 +92,7 @@ class ContactSensor(Device):
     @property
     def force(self) -> Vector:
         """The sum of the forces of all contacts on the link, in its frame [N]."""
-        return tuple(self._read(1, 4))
+        return vector(self._read(1, 4))
 
     @property
     def strength(self) -> float:
@@ -105,9 +105,9 @@ class Sensors:
 
     _names = ("pose", "battery", "imus", "contact_sensors", "proximity_sensors")  # for messages
 
-    pose = Readings("positioning", 7, lambda values: Pose(tuple(values[:3]), tuple(values[3:])),
-                    lambda given: given.positioning)
-    battery = Readings("batteries", 2, Battery._make, lambda given: given.battery)
+    pose = Readings("positioning", 7, lambda values: Pose(vector(values[:3]), quaternion(values[3:])),
+                    lambda given: bool(given.positioning))
+    battery = Readings("batteries", 2, Battery._make, lambda given: bool(given.battery))
     imus = Listed[Imu]("IMU")
     contact_sensors = Listed[ContactSensor]("contact sensor")
 
@@ -117,7 +117,7 @@ class Sensors:
         self._places = {readings.field: readings.place(exchange, given)
                         for readings in vars(Sensors).values() if isinstance(readings, Readings)}
         self.proximity_sensors: Sequence[ProximitySensor] = tuple(
-            ProximitySensor(sensor.anchor, tuple(sensor.position), tuple(sensor.direction),
+            ProximitySensor(sensor.anchor, vector(sensor.position), vector(sensor.direction),
                             sensor.range, sensor.angle if sensor.HasField("angle") else None)
             for sensor in given.proximity_sensors)
         self._keep("imus", [Imu(exchange, imu) for imu in given.imus])

@@ -18,7 +18,7 @@ class Tag(Device):
 
     @property
     def payload(self) -> bytes:
-        return self._exchange.values["tag_payloads"][self._place]
+        return bytes(self._exchange.values["tag_payloads"][self._place])
 
     @payload.setter
     def payload(self, payload: Union[bytes, str]) -> None:

@@ -24,7 +24,7 @@ class Turret:
         if not self.measures:
             raise AttributeError("this robot does not measure its turret")
         rotations = self._exchange.seen.turret_rotations
-        return rotations[self._reading] if rotations else 0.0
+        return float(rotations[self._reading]) if rotations else 0.0
 
     def _set(self, mode: int, field: str = "", value: float = 0.0) -> None:
         if not self.drives:

@@ -26,7 +26,8 @@ run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR}
     -DCMAKE_MAKE_PROGRAM=${BUILD_PROGRAM} -DCMAKE_PREFIX_PATH=${prefix}
     -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_FLAGS=${flags})
 run(${CMAKE_COMMAND} --build ${WORK}/build)
-run(${WORK}/build/somebodys_robot)
+run(${WORK}/build/somebodys_robot_client)
+run(${WORK}/build/somebodys_robot_client_static)
 
 file(GLOB_RECURSE description ${prefix}/*/ziggurat.pc)
 cmake_path(GET description PARENT_PATH folder)
@@ -34,25 +35,21 @@ set(ENV{PKG_CONFIG_PATH} ${folder})
 execute_process(COMMAND pkg-config --cflags --libs ziggurat OUTPUT_VARIABLE needed
                 COMMAND_ERROR_IS_FATAL ANY)
 separate_arguments(needed UNIX_COMMAND "${needed}")
+list(APPEND needed -Wl,-rpath,${prefix}/${LIBRARIES})
 run(${COMPILER} -std=c++20 ${flags} ${SOURCE}/main.cpp -o ${WORK}/by_pkg_config ${needed})
 run(${WORK}/by_pkg_config)
 
-# The controller of README.md in its scene, and without a server: it ends with a sentence.
-file(READ ${README} readme)
-string(REGEX MATCH "```cpp\n([^`]*)```" found "${readme}")
-file(WRITE ${WORK}/slider.cpp "${CMAKE_MATCH_1}")
-run(${COMPILER} -std=c++20 ${flags} ${WORK}/slider.cpp -o ${WORK}/slider ${needed})
-string(REGEX MATCH "```xml\n([^`]*)```" found "${readme}")
-string(REPLACE "<lua_controller id=\"push\">" "<external_controller id=\"push\" command=\"${WORK}/slider\">"
-       scene "${CMAKE_MATCH_1}")
-string(REPLACE "</lua_controller>" "</external_controller>" scene "${scene}")
-string(REPLACE "<params script=\"slider.lua\"/>" "" scene "${scene}")
-file(WRITE ${WORK}/slider.argos "${scene}")
-run(${prefix}/bin/ziggurat run ${WORK}/slider.argos --quiet)
-execute_process(COMMAND ${CMAKE_COMMAND} -E env ZIGGURAT_ENDPOINT=nowhere ${WORK}/slider
+# The controller of docs/cpp-client.md for its scene, and without a server: it ends with a sentence.
+file(READ ${DOCUMENT} document)
+string(REGEX MATCH "```cpp\n([^`]*)```" found "${document}")
+file(WRITE ${WORK}/my_controller.cpp "${CMAKE_MATCH_1}")
+run(${COMPILER} -std=c++20 ${flags} ${WORK}/my_controller.cpp -o ${WORK}/my_controller ${needed})
+run(${prefix}/bin/ziggurat run ${SCENES}/dynamics3d_multi_body_test.argos --controller my_controller=${WORK}/my_controller
+    --ticks 20 --quiet)
+execute_process(COMMAND ${CMAKE_COMMAND} -E env ZIGGURAT_ENDPOINT=nowhere ${WORK}/my_controller
                 RESULT_VARIABLE result ERROR_VARIABLE told)
-if(NOT result EQUAL 1 OR NOT told MATCHES "^slider: 'nowhere': not an endpoint")
-  message(FATAL_ERROR "the controller of README.md without a server: ${result}, ${told}")
+if(NOT result EQUAL 1 OR NOT told MATCHES "^'nowhere': not an endpoint")
+  message(FATAL_ERROR "the controller of docs/cpp-client.md without a server: ${result}, ${told}")
 endif()
 
 run(${CMAKE_COMMAND} -E chdir ${prefix} bin/ziggurat run ${SCENES}/prototype_radio_test.argos

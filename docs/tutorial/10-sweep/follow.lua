@@ -1,0 +1,24 @@
+local radius, side, wanted = 0.03, 0.036, 0.3  -- of a wheel, of the tag, from the tag [m]
+local steer = tonumber(robot.params.steer)     -- [m/s] for a tag at 45 degrees
+local ticks, sum = 0, 0
+
+local function drive(left, right)  -- [m/s]
+  for name, wheel in pairs(robot.joints) do
+    wheel.set_target((name:find("left") and left or right) / radius)
+  end
+end
+
+function init() end
+
+function step()
+  local eye = robot.cameras.front
+  local tag = eye.tag_detector[1]
+  if not tag then return drive(0, 0) end
+  local a, b = tag.corners[1], tag.corners[2]
+  local distance = eye.focal_length.x * side / math.sqrt((a.x - b.x) ^ 2 + (a.y - b.y) ^ 2)
+  local right = (tag.center.x - eye.principal_point.x) / eye.focal_length.x
+  local speed = 1.5 * (distance - wanted)
+  ticks, sum = ticks + 1, sum + math.abs(math.deg(math.atan(right)))
+  metric("aside", sum / ticks)  -- mean angle at which the tag is seen [degrees]
+  drive(speed + steer * right, speed - steer * right)
+end
