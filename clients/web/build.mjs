@@ -31,7 +31,7 @@ if (isTests) {
   });
 } else {
   const { metafile } = await build({
-    entryPoints: [join(here, "source/page.ts"), join(here, "source/page.css")],
+    entryPoints: [join(here, "source/page.ts"), join(here, "source/worker.ts"), join(here, "source/page.css")],
     outdir: folder,
     bundle: true,
     minify: true,

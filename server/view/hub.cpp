@@ -110,7 +110,10 @@ std::optional<Item> Hub::next(Viewer& viewer) {
   if (viewer.send_queue.has_answer()) return viewer.send_queue.next();
   if (auto news = viewer.known.next(channels_)) return news;
   if (std::exchange(viewer.lacks_graph, false)) return graph();
-  return viewer.send_queue.next();
+  if (viewer.is_paced && !viewer.is_ready) return std::nullopt;
+  auto item = viewer.send_queue.next();
+  if (item && viewer.send_queue.empty()) viewer.is_ready = false;
+  return item;
 }
 
 void Hub::handle(Viewer& viewer, const Wrong& message) {
@@ -198,6 +201,8 @@ void Hub::handle(Viewer& viewer, const SubscribeGraph& message) {
   viewer.wants_graph = message.wanted;
   viewer.lacks_graph = message.wanted;
 }
+
+void Hub::handle(Viewer& viewer, const Ready&) { viewer.is_paced = viewer.is_ready = true; }
 
 Item Hub::graph() const {
   std::vector<std::string> subscribed;

@@ -30,6 +30,7 @@ struct Viewer {
   KnownChannels known;
   bool wants_parameters = false;
   bool wants_graph = false, lacks_graph = false;  ///< at each change; the one of now
+  bool is_paced = false, is_ready = false;        ///< it says when it takes ticks; it does now
   std::int64_t time_ns = -1;                      ///< the clock that it was told; -1: none yet
   unsigned faults = 0;      ///< messages in a row that are none of the protocol
   unsigned unanswered = 0;  ///< calls
@@ -80,6 +81,7 @@ class Hub {
   void handle(Viewer& viewer, const SetParameters& message);
   void handle(Viewer& viewer, const SubscribeParameters& message);
   void handle(Viewer& viewer, const SubscribeGraph& message);
+  void handle(Viewer& viewer, const Ready& message);
   void handle(Viewer& viewer, const CallService& message);
   void handle(Viewer& viewer, const Wrong& message);
   void send(Viewer& viewer, Item item);

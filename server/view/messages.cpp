@@ -193,6 +193,7 @@ Incoming read_object(const Json& json) {
   if (op == "unsubscribeParameterUpdates") return SubscribeParameters{false};
   if (op == "subscribeConnectionGraph") return SubscribeGraph{true};
   if (op == "unsubscribeConnectionGraph") return SubscribeGraph{false};
+  if (op == "ready") return Ready{};
   throw Wrong{fmt::format("\"{}\" is not served", op.substr(0, 64))};
 }
 
@@ -311,7 +312,8 @@ Item server_info(const Introduction& from) {
                     {"metadata",
                      {{"version", from.version},
                       {"scene", from.scene},
-                      {"may_steer", from.may_steer ? "true" : "false"}}},
+                      {"may_steer", from.may_steer ? "true" : "false"},
+                      {"takes_ready", "true"}}},
                     {"sessionId", from.session}});
 }
 

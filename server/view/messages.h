@@ -56,6 +56,8 @@ struct SubscribeParameters {
 struct SubscribeGraph {
   bool wanted = true;
 };
+/// Our extension: the viewer has shown what it got, and is sent no tick before it says so again.
+struct Ready {};
 struct CallService {
   std::uint32_t service = 0, call = 0;
   std::string encoding, payload;
@@ -66,7 +68,7 @@ struct Wrong {
 };
 
 using Incoming = std::variant<Subscribe, Unsubscribe, GetParameters, SetParameters,
-                              SubscribeParameters, SubscribeGraph, CallService, Wrong>;
+                              SubscribeParameters, SubscribeGraph, Ready, CallService, Wrong>;
 
 Incoming read_text(std::string_view text);
 Incoming read_binary(std::string_view bytes);

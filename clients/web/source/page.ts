@@ -19,6 +19,7 @@ import { fillHelp } from "./panels/help";
 import { Layers } from "./panels/layers";
 import { LogPanel } from "./panels/log";
 import type { Panel } from "./panels/panel";
+import { SceneOverlay } from "./panels/scene";
 import { Plots } from "./panels/plots";
 import { TimeBar } from "./panels/time";
 import { Tree } from "./panels/tree";
@@ -87,11 +88,12 @@ app.onNotice = ({ level, text }) => {
 };
 
 const overlay = part("overlay");
+let frames = 0; // that were drawn
 app.onStatus = () => {
   const { phase, text } = app.connection;
-  const hasWorld = app.frame !== null;
+  const hasWorld = app.frame !== null && frames > 0;
   overlay.className = phase === "open" && hasWorld ? "" : hasWorld ? "banner" : "full";
-  setText(overlay, phase === "open" ? (hasWorld ? "" : app.recorded ? "Reading …" : "Connected. Waiting for the world …")
+  setText(overlay, phase === "open" ? (hasWorld ? "" : app.frame ? "Drawing …" : app.recorded ? "Reading …" : "Connected. Waiting for the world …")
                                     : text || `Connecting to ${app.source.name} …`);
 };
 
@@ -126,11 +128,12 @@ const body = make("div.body");
 part("right").append(make("nav", { role: "tablist" }, ...tabButtons.values()), body);
 
 const tools = make("div.tools", {},
-  ...(["select", "move"] as const).map((tool) => make("button", {
-    id: `tool-${tool}`, title: tool === "select" ? "Select (v)" : "Move (m)", click: () => { app.tool = tool; } }, icon(tool))),
+  ...(["select", "move", "ruler"] as const).map((tool) => make("button", {
+    id: `tool-${tool}`, title: { select: "Select (v)", move: "Move (m)", ruler: "Ruler: the length between two clicks (u)" }[tool], click: () => { app.tool = tool; } }, icon(tool))),
   make("button", { title: "Look at all that moves (a)", click: () => app.look() }, "All"),
   make("button", { title: "From the top (o)", click: () => { view.stage.top(); app.looked(); } }, "Top"));
-part("center").append(tools);
+const scene = new SceneOverlay(app, canvas, () => tree.found);
+part("center").append(scene.element, tools);
 
 function showTab(): Panel {
   const [tab, , panel] = tabs.find(([name]) => name === settings.tab)!;
@@ -141,7 +144,7 @@ function showTab(): Panel {
 
 function updatePanels(): void {
   for (const panel of [header, time, ...left, showTab()]) panel.update();
-  for (const tool of ["select", "move"]) part(`tool-${tool}`).classList.toggle("on", app.tool === tool);
+  for (const tool of ["select", "move", "ruler"]) part(`tool-${tool}`).classList.toggle("on", app.tool === tool);
   part("tool-move").hidden = !app.connection.mayControl;
   canvas.dataset.tool = app.tool;
   app.onStatus();
@@ -157,7 +160,6 @@ listenToKeys(app, {
 
 let shownKey = "";
 let updated = 0;
-let frames = 0;
 let lastPoses: unknown = null;
 function drawFrame(now: number): void {
   app.play(now * 1e-3);
@@ -169,10 +171,12 @@ function drawFrame(now: number): void {
     if (key !== shownKey || lastPoses !== poses) {
       shownKey = key;
       lastPoses = poses;
-      view.show(frame, app.selectedLinks, app.recorded ? null : app.timeline);
+      view.show(frame, app.selectedLinks, app.recorded ? null : app.timeline, app.isPaused, now * 1e-3);
     }
   }
-  if (view.render(now * 1e-3)) ++frames;
+  if (view.render(now * 1e-3) && view.poses && ++frames === 1) app.onStatus();
+  scene.update(now);
+  if (!view.stage.isBusy) app.source.ready?.();
   if (now - updated > updateEvery) {
     updated = now;
     updatePanels();

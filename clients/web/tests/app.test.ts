@@ -16,7 +16,7 @@ function makeApp(): { app: App; wants: ReadonlySet<string>[] } {
   const wants: ReadonlySet<string>[] = [];
   const source: Source = { name: "test", isLive: true, start: () => undefined, want: (topics) => wants.push(topics),
                            call: () => Promise.resolve({}), setParameter: () => undefined, close: () => undefined };
-  const view = { shown: new Set(), applyLayers: () => undefined } as unknown as View;
+  const view = { shown: new Set(), applyLayers: () => undefined, setColoring: () => undefined, motion: {} } as unknown as View;
   return { app: new App(source, settingsAtFirst(), view), wants };
 }
 

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { InstancedMesh } from "three";
+import type { Points } from "three";
+import { Detail } from "../source/drawing/detail";
 import { Lights } from "../source/drawing/lights";
 import { patternOf } from "../source/drawing/tags";
 import { cornersAt } from "../source/drawing/overlays";
@@ -8,7 +9,7 @@ import { mergedGeometry, roomFor } from "../source/drawing/merged";
 import { levels, Quality, roundness } from "../source/drawing/quality";
 import { makeGeometry, partsOf } from "../source/drawing/shapes";
 import { makeWorld } from "../source/data/generated";
-import type { Camera, Description, Observation, World } from "../source/model/messages";
+import type { Camera, Description, Observation, Poses, World } from "../source/model/messages";
 import { isPictureOf } from "../source/model/pictures";
 import { compose, rotate } from "../source/model/pose";
 import { bytesText, fixed, observed } from "../source/model/readings";
@@ -141,15 +142,18 @@ test("readings by device have names, limits and places", () => {
   assert.equal(bytesText(new Uint8Array([0, 255])), "00 ff");
 });
 
-test("many LEDs are drawn with fewer triangles each", () => {
+test("LEDs of a robot that is far are one point for each colour, and none for those that are off", () => {
   const mount = { link: 0, position: [0, 0, 0], orientation: [1, 0, 0, 0] };
-  const trianglesOf = (count: number): number => {
-    const lights = new Lights();
-    lights.setWorld({ leds: Array(count).fill({ mount }), directionalLeds: [] } as unknown as World);
-    return (lights.group.children[0] as InstancedMesh).geometry.index!.count / 3;
+  const lights = new Lights();
+  lights.setWorld({ leds: Array(12).fill({ mount, entity: 0 }), directionalLeds: [] } as unknown as World);
+  const points = (detail: Detail, ledColors: number[]): number => {
+    const poses = { positions: [0, 0, 0], orientations: [1, 0, 0, 0], ledColors, directionalLedColors: [] } as unknown as Poses;
+    lights.setPoses(poses, Uint8Array.of(detail));
+    return (lights.group.children[0] as Points).geometry.drawRange.count;
   };
-  assert.equal(trianglesOf(100), 168);
-  assert.equal(trianglesOf(100_000), 20);
+  const half = Array.from({ length: 12 }, (_, i) => (i < 6 ? 0xff : 0));
+  assert.deepEqual([points(Detail.whole, half), points(Detail.box, half), points(Detail.none, half)], [12, 1, 0]);
+  assert.equal(points(Detail.box, [1, 1, 1, 2, 2, 2, 3, 3, 3, 0, 0, 0]), 3);
 });
 
 test("tags: only integers below the number of patterns", () => {
@@ -197,10 +201,10 @@ test("frames that take seconds lower the quality at once, and many round shapes 
   assert.equal(roundness(100_000, 1000), 6);
 });
 
-test("a merged mesh has each copy's corners, colour and number", () => {
+test("a merged mesh has each copy's corners and number", () => {
   const box = makeGeometry("box", [], 8);
   const vertices = box.getAttribute("position").count, corners = box.index!.count;
-  const merged = mergedGeometry(box, 2, [1, 0, 0, 0, 0.5, 0]);
+  const merged = mergedGeometry(box, 2);
   const of = (name: string, i: number): number[] => {
     const { array, itemSize } = merged.getAttribute(name);
     return Array.from(array.slice(i * itemSize, (i + 1) * itemSize));
@@ -209,7 +213,6 @@ test("a merged mesh has each copy's corners, colour and number", () => {
   assert.equal(merged.index!.count, 2 * corners);
   for (const name of ["position", "normal"]) assert.deepEqual(of(name, vertices + 3), of(name, 3));
   assert.deepEqual([of("copy", vertices - 1), of("copy", vertices)], [[0], [1]]);
-  assert.deepEqual([of("color", 0), of("color", vertices)], [[1, 0, 0], [0, 0.5, 0]]);
   assert.equal(merged.index!.array[corners + 5], box.index!.array[5] + vertices);
   assert.deepEqual([1, 256, 257].map(roomFor), [256, 256, 512]);
 });

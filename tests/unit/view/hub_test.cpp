@@ -63,6 +63,30 @@ TEST(Hub, IntroducesItselfAndSendsWhatIsSubscribed) {
   EXPECT_TRUE(bench.requests.take().wanted.empty());
 }
 
+TEST(Hub, AViewerThatSaysWhenItIsReadyGetsTheNewestTicksThenOnly) {
+  Bench bench;
+  Viewer& viewer = bench.hub.add(Permission::steer);
+  bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":2}]})");
+  bench.sent(viewer);
+  for (const char* text : {"a", "b"}) {
+    bench.hub.show(5, std::vector{message_of(2, text)});
+    EXPECT_EQ(bench.sent(viewer), Sent{text}) << "one that never says it is sent all";
+  }
+  bench.say(viewer, R"({"op":"ready"})");
+  bench.hub.show(6, std::vector{message_of(2, "c")});
+  EXPECT_EQ(bench.sent(viewer), Sent{"c"});
+  for (int tick = 0; tick < 100; ++tick) {
+    bench.hub.show(7 + tick, std::vector{message_of(2, std::to_string(tick))});
+    EXPECT_EQ(bench.sent(viewer), Sent{}) << "it has not said it again";
+  }
+  bench.say(viewer, R"({"op":"getParameters","parameterNames":[],"id":"1"})");
+  EXPECT_EQ(bench.sent(viewer), Sent{"parameterValues"}) << "answers do not wait";
+  bench.say(viewer, R"({"op":"ready"})");
+  EXPECT_EQ(bench.sent(viewer), (Sent{"96", "97", "98", "99"}));
+  bench.hub.show(200, std::vector{message_of(2, "later")});
+  EXPECT_EQ(bench.sent(viewer), Sent{});
+}
+
 TEST(Hub, NonsenseIsAnsweredAndEndsAtLast) {
   Bench bench;
   Viewer& viewer = bench.hub.add(Permission::steer);

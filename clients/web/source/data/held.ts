@@ -8,22 +8,28 @@ const decoded = new Map<Held, Value>(); // the newest: what is drawn is read at 
 let bytes = 0;
 
 export class Held implements Message {
-  /** @throws Unreadable if it is too long, or damaged */
+  /** @param value  what it says, if that is known. @throws Unreadable if it is too long, or damaged */
   constructor(readonly topic: string, readonly timeNs: bigint, private readonly data: Uint8Array,
-              private readonly decoder: Decoder) { this.read(); }
+              private readonly decoder: Decoder, value?: Value) {
+    if (value) this.keep(value);
+    else this.read();
+  }
   get bytes(): number { return this.data.byteLength; }
   read<T = Value>(): T {
     let value = decoded.get(this);
     if (!value) {
       value = this.decoder(this.data);
-      decoded.set(this, value);
-      bytes += this.bytes;
-      for (const old of decoded.keys()) {
-        if (old === this || (decoded.size <= mostDecoded && bytes <= mostBytes)) break;
-        decoded.delete(old);
-        bytes -= old.bytes;
-      }
+      this.keep(value);
     }
     return value as T;
+  }
+  private keep(value: Value): void {
+    decoded.set(this, value);
+    bytes += this.bytes;
+    for (const old of decoded.keys()) {
+      if (old === this || (decoded.size <= mostDecoded && bytes <= mostBytes)) break;
+      decoded.delete(old);
+      bytes -= old.bytes;
+    }
   }
 }

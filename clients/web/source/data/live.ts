@@ -1,11 +1,14 @@
 // A running server, over the Foxglove WebSocket protocol. It connects again by itself.
 import { FoxgloveClient, type Channel, type Service } from "@foxglove/ws-protocol";
 import { makeDecoder, type Decoder } from "./decode";
+import { Decoding, pageWorker } from "./decoding";
 import { Held } from "./held";
 import type { Listener, Source, Status, Value } from "./source";
 
 const firstDelay = 250; // [ms] before the first new attempt; doubles up to
 const longestDelay = 2000;
+const leastPause = 25; // [ms] between two signs that the page is ready: who may only look sends at most fifty a second
+const hiddenPause = 1000; // [ms] between those of a page that is not drawn
 
 /** Why there is no connection, and what to do, for users. */
 function explain(url: URL, hadWorld: boolean): string {
@@ -39,12 +42,20 @@ export class LiveSource implements Source {
   private nextCall = 1;
   private delay = firstDelay;
   private timer = 0;
+  private socket: WebSocket | null = null; // of a server that waits until the page is ready
+  private hasNews = false; // messages came since the page was ready
+  private readyAt = -Infinity; // [ms]
+  private readonly hiddenTimer: ReturnType<typeof setInterval>;
+  private readonly decoding = new Decoding(pageWorker());
   private isClosed = false;
   private wasOpen = false;
   private status: Status = { phase: "connecting", text: "", mayControl: false, session: "" };
 
   /** @param url  of the WebSocket, with its token */
-  constructor(private readonly url: URL) { this.name = url.host; }
+  constructor(private readonly url: URL) {
+    this.name = url.host;
+    this.hiddenTimer = setInterval(() => { if (performance.now() - this.readyAt >= hiddenPause) this.ready(); }, hiddenPause);
+  }
 
   start(listener: Listener): void {
     this.listener = listener;
@@ -54,6 +65,7 @@ export class LiveSource implements Source {
   close(): void {
     this.isClosed = true;
     clearTimeout(this.timer);
+    clearInterval(this.hiddenTimer);
     this.client?.close();
   }
 
@@ -76,6 +88,14 @@ export class LiveSource implements Source {
     return new Promise((resolve, reject) => this.pending.set(callId, { resolve, reject }));
   }
 
+  ready(): void {
+    const now = performance.now();
+    if (!this.hasNews || !this.socket || now - this.readyAt < leastPause) return;
+    this.hasNews = false;
+    this.readyAt = now;
+    this.socket.send(JSON.stringify({ op: "ready" }));
+  }
+
   setParameter(name: string, value: number | boolean): void {
     this.client?.setParameters([{ name, value }]);
   }
@@ -86,6 +106,7 @@ export class LiveSource implements Source {
     client.on("serverInfo", (info) => {
       this.wasOpen = true;
       this.client = client;
+      this.socket = info.metadata?.["takes_ready"] === "true" ? socket : null;
       this.delay = firstDelay;
       client.subscribeParameterUpdates(["real_time_factor", "frames_per_second", "phase"]);
       client.getParameters(["real_time_factor", "frames_per_second", "phase"]);
@@ -122,9 +143,11 @@ export class LiveSource implements Source {
     client.on("message", ({ subscriptionId, timestamp, data }) => {
       const held = this.bySubscription.get(subscriptionId);
       if (!held) return;
-      const bytes = new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
-      const message = this.hold(held, timestamp, bytes);
-      if (message) this.listener.message(message);
+      const { topic, decoder } = held;
+      this.decoding.decode(decoder, data as DataView, (bytes, value) => {
+        this.hasNews = true;
+        this.listener.message(new Held(topic, timestamp, bytes, decoder, value));
+      }, (fault) => this.leaveOut(topic, timestamp, fault));
     });
     client.on("advertiseServices", (services) => {
       for (const service of services) this.services.set(service.name, service);
@@ -142,17 +165,13 @@ export class LiveSource implements Source {
     });
   }
 
-  /** null: it can't be read, which is told once for each topic. */
-  private hold({ topic, decoder }: { topic: string; decoder: Decoder }, timeNs: bigint, bytes: Uint8Array): Held | null {
-    try {
-      return new Held(topic, timeNs, bytes, decoder);
-    } catch (error) {
-      if (!this.unread.has(topic)) {
-        this.listener.notice("warning", `${topic} at ${(Number(timeNs) * 1e-9).toFixed(2)} s ${(error as Error).message}. It is left out.`);
-      }
-      this.unread.add(topic);
-      return null;
+  /** A message can't be read, which is told once for each topic. */
+  private leaveOut(topic: string, timeNs: bigint, fault: string): void {
+    this.hasNews = true;
+    if (!this.unread.has(topic)) {
+      this.listener.notice("warning", `${topic} at ${(Number(timeNs) * 1e-9).toFixed(2)} s ${fault}. It is left out.`);
     }
+    this.unread.add(topic);
   }
 
   private subscribe(): void {
@@ -186,6 +205,7 @@ export class LiveSource implements Source {
       if (channel.encoding !== "protobuf") throw new Error(`encoding ${channel.encoding} is unknown`);
       const schema = Uint8Array.from(atob(channel.schema), (letter) => letter.charCodeAt(0));
       decoder = makeDecoder(schema, channel.schemaName);
+      this.decoding.add(decoder, schema, channel.schemaName);
     } catch (error) {
       this.listener.notice("warning", `${channel.topic} can't be read: ${(error as Error).message}`);
       return undefined;
@@ -201,7 +221,9 @@ export class LiveSource implements Source {
   }
 
   private forget(): void {
-    this.client = null;
+    this.client = this.socket = null;
+    this.hasNews = false;
+    this.decoding.forget();
     this.channels.clear();
     this.services.clear();
     this.subscriptions.clear();

@@ -42,6 +42,8 @@ export interface Source {
   want(topics: ReadonlySet<string>): void;
   /** Calls a service; rejects with a sentence for the user. */
   call(service: string, request: Value): Promise<Value>;
+  /** What came has been shown: the source may send more. */
+  ready?(): void;
   setParameter(name: string, value: number | boolean): void;
   close(): void;
 }

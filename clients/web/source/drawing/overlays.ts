@@ -85,8 +85,10 @@ export function drawFrusta(world: World, poses: Poses, lines: Lines): void {
 
 export const rayColors = [0xe6a417, 0x8e5bd0, 0x3d8bfd, 0x2a9d8f]; // by kind
 
-export function drawRays(rays: Rays, lines: Lines): void {
+/** @param isWanted  by the number of a robot */
+export function drawRays(rays: Rays, isWanted: (robot: number) => boolean, lines: Lines): void {
   for (let i = 0; i < rays.kinds.length; ++i) {
+    if (!isWanted(rays.robots[i])) continue;
     const color = rays.hits[i] ? 0xe0402c : rayColors[rays.kinds[i]] ?? 0x888888;
     lines.add(rays.segments, rays.segments, color, 0.85, rays.hits[i] ? 0.85 : 0.25, 6 * i, 6 * i + 3);
   }
@@ -115,16 +117,17 @@ export class RadioFlashes {
   private readonly seconds = 0.45;
   get isActive(): boolean { return this.flashes.length > 0; }
 
-  add(world: World, poses: Poses, traffic: RadioTraffic, now: number): void {
+  /** @param isWanted  by the number of a robot that sends or receives */
+  add(world: World, poses: Poses, traffic: RadioTraffic, isWanted: (robot: number | undefined) => boolean, now: number): void {
     const end = now + this.seconds;
-    const push = (from: Mount | undefined, to: Mount | undefined, color: number): void => {
-      if (from && to && this.flashes.length < 2000) this.flashes.push({ from: at(poses, from), to: at(poses, to), color, end });
+    type End = { mount: Mount; robot?: number } | undefined;
+    const push = (from: End, to: End, color: number): void => {
+      if (!from || !to || this.flashes.length >= 2000 || !(isWanted(from.robot) || isWanted(to.robot))) return;
+      this.flashes.push({ from: at(poses, from.mount), to: at(poses, to.mount), color, end });
     };
-    for (const { sender, receiver } of traffic.messages) {
-      push(world.radios[sender]?.mount, world.radios[receiver]?.mount, rayColors[1]);
-    }
+    for (const { sender, receiver } of traffic.messages) push(world.radios[sender], world.radios[receiver], rayColors[1]);
     for (const { sender, receiver } of traffic.packets) {
-      push(world.rangeAndBearing[sender]?.mount, world.rangeAndBearing[receiver]?.mount, rayColors[2]);
+      push(world.rangeAndBearing[sender], world.rangeAndBearing[receiver], rayColors[2]);
     }
   }
 
@@ -137,6 +140,13 @@ export class RadioFlashes {
       lines.add(along(Math.max(0, part - 0.25)), along(part), color, 0.1, 1);
     }
   }
+}
+
+/** A line with an upright mark at both ends. */
+export function drawRuler(from: Vector, to: Vector, lines: Lines): void {
+  const color = 0xcc3311, mark = 0.04 * Math.hypot(...from.map((value, i) => to[i] - value));
+  lines.add(from, to, color);
+  for (const [x, y, z] of [from, to]) lines.add([x, y, z], [x, y, z + mark], color);
 }
 
 /** Paths of entities that were chosen. */

@@ -18,7 +18,7 @@ export const levels: Level[] = [
   { pixels: 0.5, shadowSize: 512, shadows: three.BasicShadowMap, triangles: 30_000 },
   { pixels: 0.5, shadowSize: 1024, shadows: null, triangles: 10_000 },
 ];
-const slow = 0.05, quick = 0.012; // [s] a frame
+const slow = 0.035, quick = 0.012; // [s] a frame
 const patience = 12; // frames
 const longestPatience = 1.5; // [s]
 

@@ -2,7 +2,7 @@
 // capsules in their own size.
 import * as three from "three";
 import { isRobot, Kind, type Entity, type Hull, type Link, type World } from "../model/messages";
-import type { Quaternion, Vector } from "../model/pose";
+import { transform, type Quaternion, type Vector } from "../model/pose";
 
 /** A piece of what is drawn: a shape that moves with a link. */
 export interface Part {
@@ -13,6 +13,7 @@ export interface Part {
   scale: Vector;
   color: number; // sRGB
   isDecoration: boolean; // the world does not have it
+  isSmall: boolean; // seen from near only
 }
 
 /** Whether a shape takes more triangles to look round. */
@@ -55,9 +56,32 @@ function hullGeometry(hull: Hull | undefined): three.BufferGeometry {
   return geometry;
 }
 
+/** The box around a part: its sides, and its centre and the middle of its bottom in the frame of the link [m]. */
+export function boundsOf({ shape, scale, position, orientation }: Part, hulls: Hull[]): { size: Vector; center: Vector; foot: Vector } {
+  const [name, a, b] = shape.split(" ");
+  let low: Vector = [-scale[0], -scale[1], 0], high: Vector = [scale[0], scale[1], scale[2]];
+  if (name === "box") [low, high] = [[-scale[0] / 2, -scale[1] / 2, 0], [scale[0] / 2, scale[1] / 2, scale[2]]];
+  if (name === "sphere") high = [scale[0], scale[1], 2 * scale[2]];
+  if (name === "wheel") [low, high] = [[-scale[0], -scale[1] / 2, -scale[2]], [scale[0], scale[1] / 2, scale[2]]];
+  if (name === "capsule") [low, high] = [[-Number(a), -Number(a), 0], [Number(a), Number(a), Number(b)]];
+  if (name === "hull") {
+    const vertices = hulls[Number(a)]?.vertices ?? [];
+    [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+    for (let i = 0; i < vertices.length; ++i) {
+      low[i % 3] = Math.min(low[i % 3], vertices[i]);
+      high[i % 3] = Math.max(high[i % 3], vertices[i]);
+    }
+    if (vertices.length === 0) low = high = [0, 0, 0];
+  }
+  const middle = low.map((value, i) => (value + high[i]) / 2) as Vector;
+  const pose = { position, orientation };
+  return { size: high.map((value, i) => value - low[i]) as Vector, center: transform(pose, middle),
+           foot: transform(pose, [middle[0], middle[1], low[2]]) };
+}
+
 function partOf(link: Link, index: number): Part | null {
   const base = { link: index, position: [0, 0, 0] as Vector, orientation: upright, color: link.color,
-                 isDecoration: false };
+                 isDecoration: false, isSmall: false };
   if (link.box) return { ...base, shape: "box", scale: [link.box.size[0], link.box.size[1], link.box.size[2]] };
   if (link.cylinder) {
     const { radius, height } = link.cylinder;
@@ -77,15 +101,15 @@ const dark = 0x2b2d31, grey = 0x54585f;
 function robotParts(entity: Entity, link: Link): Part[] {
   const { radius: r, height: h } = link.cylinder ?? { radius: 0, height: 0 };
   if (r === 0) return [];
-  const part = (shape: string, position: Vector, scale: Vector, color: number): Part =>
-    ({ shape, link: entity.referenceLink, position, orientation: upright, scale, color, isDecoration: true });
+  const part = (shape: string, position: Vector, scale: Vector, color: number, isSmall = false): Part =>
+    ({ shape, link: entity.referenceLink, position, orientation: upright, scale, color, isDecoration: true, isSmall });
   const sides = [-1, 1];
   if (entity.kind === Kind.footBot) {
     return [
       ...sides.map((side) => part("box", [0, side * 0.84 * r, 0], [1.3 * r, 0.36 * r, 0.27 * h], dark)), // tracks
-      part("cylinder", [0, 0, 0.28 * h], [1.01 * r, 1.01 * r, 0.04 * h], grey),
+      part("cylinder", [0, 0, 0.28 * h], [1.01 * r, 1.01 * r, 0.04 * h], grey, true),
       part("cylinder", [0, 0, 0.52 * h], [1.03 * r, 1.03 * r, 0.12 * h], 0xc9ccd1), // the ring of LEDs
-      part("cylinder", [0, 0, h], [0.34 * r, 0.34 * r, 0.15 * h], dark), // the camera that looks up
+      part("cylinder", [0, 0, h], [0.34 * r, 0.34 * r, 0.15 * h], dark, true), // the camera that looks up
       part("arrow", [0.66 * r, 0, h], [0.22 * r, 0.26 * r, 0.012 * h], 0xf2f3f5),
     ];
   }
@@ -100,13 +124,13 @@ function robotParts(entity: Entity, link: Link): Part[] {
   return [
     ...sides.map((side) => part("wheel", [0, side * 0.99 * r, 0.585 * r], [0.585 * r, 0.12 * r, 0.585 * r], dark)),
     part("cylinder", [0, 0, 0.8 * h], [1.02 * r, 1.02 * r, 0.06 * h], 0x2f8a55), // the upper board
-    part("cylinder", [0, 0, h], [0.42 * r, 0.42 * r, 0.12 * h], dark), // the loudspeaker
-    part("box", [0.97 * r, 0, 0.42 * h], [0.14 * r, 0.26 * r, 0.2 * h], dark), // the camera
+    part("cylinder", [0, 0, h], [0.42 * r, 0.42 * r, 0.12 * h], dark, true), // the loudspeaker
+    part("box", [0.97 * r, 0, 0.42 * h], [0.14 * r, 0.26 * r, 0.2 * h], dark, true), // the camera
     part("arrow", [0.7 * r, 0, h], [0.2 * r, 0.24 * r, 0.03 * h], 0xf2f3f5),
   ];
 }
 
-/** All parts of a world, links first. Removed entities have none. */
+/** All parts of a world, link by link, its own first. Removed entities have none. */
 export function partsOf(world: World): Part[] {
   const parts: Part[] = [];
   world.links.forEach((link, index) => {
@@ -118,5 +142,5 @@ export function partsOf(world: World): Part[] {
     const link = world.links[entity.referenceLink];
     if (isRobot(entity.kind) && !entity.removed && link) parts.push(...robotParts(entity, link));
   }
-  return parts;
+  return parts.sort((a, b) => a.link - b.link); // it is stable: the link's own part stays first
 }

@@ -1,31 +1,25 @@
-// The empty stage: renderer, sun, sky, floor, and the camera with its controls. z is up.
+// The empty stage: renderer, sun, sky, ground, and the camera with its controls. z is up.
 import * as three from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { World } from "../model/messages";
+import { lookAt, type Box } from "./framing";
+import { Ground, plainRadius } from "./ground";
 import { isSoftware, levels, Quality } from "./quality";
+import { Sky } from "./sky";
 import type { Vector } from "../model/pose";
+
+const mostLinksWithShadows = 200; // while they move, without graphics processor
 
 export interface Look { eye: Vector; at: Vector; fieldOfView: number }
 
 const sunDirection = new three.Vector3(-0.42, -0.62, 1.15).normalize(); // as in `ziggurat render`; shadows fall beside things at first
 const themes = {
-  light: { sky: 0xe9ebee, ground: 0xb9bcc0, light: 0xd4d6d9, dark: 0xc3c6ca, outside: 0xaeb1b6, sun: 2.3, ambient: 1.5 },
-  dark: { sky: 0x16181c, ground: 0x24272d, light: 0x3a3e46, dark: 0x31353c, outside: 0x23262b, sun: 2.0, ambient: 1.0 },
+  light: { horizon: 0xe3e8ec, zenith: 0xa4b2bc, ground: 0xb9bcc0, light: 0xd4d6d9, dark: 0xc3c6ca, outside: 0xaeb1b6, text: "#4c535c",
+           sun: 2.3, ambient: 1.5 },
+  dark: { horizon: 0x2b313a, zenith: 0x0c0f14, ground: 0x24272d, light: 0x3a3e46, dark: 0x31353c, outside: 0x23262b, text: "#aab2bd",
+          sun: 2.0, ambient: 1.0 },
 };
 export type Theme = keyof typeof themes;
-
-/** Squares of two greys; each is a tile. */
-function checkers(a: number, b: number): three.DataTexture {
-  const bytes = new Uint8Array(16);
-  [a, b, b, a].forEach((color, i) => bytes.set([color >> 16, (color >> 8) & 255, color & 255, 255], 4 * i));
-  const texture = new three.DataTexture(bytes, 2, 2);
-  texture.colorSpace = three.SRGBColorSpace;
-  texture.wrapS = texture.wrapT = three.RepeatWrapping;
-  texture.generateMipmaps = true;
-  texture.minFilter = three.LinearMipmapLinearFilter;
-  texture.needsUpdate = true;
-  return texture;
-}
 
 export class Stage {
   readonly scene = new three.Scene();
@@ -33,21 +27,24 @@ export class Stage {
   readonly renderer: three.WebGLRenderer;
   readonly controls: OrbitControls;
   private readonly sun = new three.DirectionalLight(0xffffff, 2);
-  private readonly sky = new three.HemisphereLight(0xffffff, 0x888888, 1);
-  private floor: three.Mesh[] = [];
+  private readonly skyLight = new three.HemisphereLight(0xffffff, 0x888888, 1);
+  private readonly sky = new Sky();
+  readonly ground: Ground;
   private world: World | null = null;
   private theme: Theme = "light";
   private readonly quality: Quality;
   readonly isSlow: boolean; // no graphics processor
   private wantsShadows = true;
   private readonly sunAt = new three.Vector3(NaN, NaN, NaN); // where it was aimed
-  private isFine = false; // the last frame was drawn with all pixels
+  private fence: WebGLSync | null = null; // of the last frame
+  isFine = false; // the last frame was drawn with all pixels
   isDirty = true;
 
   constructor(readonly canvas: HTMLCanvasElement) {
     const probe = document.createElement("canvas").getContext("webgl2");
     if (!probe) throw new Error("This browser has no WebGL 2. Switch on its graphics acceleration, or use another one.");
     const isSlow = this.isSlow = isSoftware(probe);
+    this.ground = new Ground(isSlow);
     this.renderer = new three.WebGLRenderer({ canvas, antialias: !isSlow });
     this.quality = isSlow ? new Quality(2, 1) : new Quality(window.devicePixelRatio > 1 ? 0 : 1, window.devicePixelRatio > 1 ? 0 : 1);
     this.renderer.shadowMap.enabled = true;
@@ -65,7 +62,7 @@ export class Stage {
     this.sun.shadow.radius = 3;
     this.sun.shadow.bias = -0.0004;
     this.sun.shadow.normalBias = 0.001;
-    this.scene.add(this.sun, this.sun.target, this.sky);
+    this.scene.add(this.sun, this.sun.target, this.skyLight, this.sky.mesh, this.ground.group);
   }
 
   private applyQuality(): void {
@@ -95,9 +92,16 @@ export class Stage {
   /** What casts shadows has moved. */
   shadowsChange(): void { this.renderer.shadowMap.needsUpdate = true; }
 
+  /** Whether a moving picture has shadows. */
+  private get shadowsMove(): boolean {
+    const isMuch = this.isSlow && (this.world?.links.length ?? 0) > mostLinksWithShadows;
+    return levels[this.quality.level].shadows !== null && !isMuch;
+  }
+
   /** A picture that stays has shadows also where moving ones are too slow with them. */
   private castShadows(): void {
-    this.sun.castShadow = this.wantsShadows && (this.isFine || levels[this.quality.level].shadows !== null);
+    this.sun.castShadow = this.wantsShadows && (this.isFine || this.shadowsMove);
+    this.ground.showShadows(this.sun.castShadow);
     this.shadowsChange();
   }
 
@@ -113,68 +117,28 @@ export class Stage {
   setTheme(theme: Theme): void {
     this.theme = theme;
     const colors = themes[theme];
-    this.scene.background = new three.Color(colors.sky);
-    this.scene.fog = new three.Fog(colors.sky, 30, 120);
+    this.sky.setColors(colors.horizon, colors.zenith);
+    this.scene.fog = new three.Fog(colors.horizon, 20, 110);
     this.sun.intensity = colors.sun;
-    this.sky.intensity = colors.ambient;
-    this.sky.groundColor.set(colors.ground);
+    this.skyLight.intensity = colors.ambient;
+    this.skyLight.groundColor.set(colors.ground);
     if (this.world) this.setWorld(this.world);
     this.isDirty = true;
   }
 
-  /** Floor and arena. */
   setWorld(world: World): void {
     this.world = world;
-    for (const mesh of this.floor) {
-      this.scene.remove(mesh);
-      mesh.geometry.dispose();
-      const material = mesh.material as three.MeshLambertMaterial;
-      material.map?.dispose();
-      material.dispose();
-    }
-    this.floor = [];
-    if (!world.hasFloor) return;
-    const colors = themes[this.theme];
-    const tile = world.floorTile > 0 ? world.floorTile : 0.1;
-    const [x, y] = [world.arenaSize[0] || 1, world.arenaSize[1] || 1];
-    const center: [number, number] = [world.arenaCenter[0] || 0, world.arenaCenter[1] || 0];
-    const map = checkers(colors.light, colors.dark);
-    map.repeat.set(x / (2 * tile), y / (2 * tile));
-    map.anisotropy = this.isSlow ? 1 : 4;
-    map.magFilter = three.NearestFilter;
-    this.addPlane(x, y, center, 0, new three.MeshLambertMaterial({ map }));
-    // After it: what is hidden costs nothing. Without graphics processor light is not computed for each pixel. The offset
-    // and the many pieces keep it behind: depths within one huge triangle are not exact.
-    const behind = { color: colors.outside, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 8 };
-    this.addPlane(240, 240, center, -0.0006, this.isSlow
-      ? new three.MeshBasicMaterial({ ...behind, color: this.litFromAbove(colors.outside) })
-      : new three.MeshLambertMaterial(behind), 16);
+    // What a matt surface that faces up looks like in the light of sun and sky.
+    const litFromAbove = (this.sun.intensity * sunDirection.z + this.skyLight.intensity) / Math.PI;
+    this.ground.setWorld(world, themes[this.theme], litFromAbove);
+    this.castShadows();
     this.isDirty = true;
   }
 
-  /** What a matt surface that faces up looks like in the light of sun and sky. */
-  private litFromAbove(color: number): three.Color {
-    return new three.Color(color).multiplyScalar((this.sun.intensity * sunDirection.z + this.sky.intensity) / Math.PI);
-  }
-
-  private addPlane(x: number, y: number, [cx, cy]: [number, number], z: number, material: three.Material, pieces = 1): void {
-    const mesh = new three.Mesh(new three.PlaneGeometry(x, y, pieces, pieces), material);
-    mesh.position.set(cx, cy, z);
-    mesh.receiveShadow = material instanceof three.MeshLambertMaterial;
-    mesh.renderOrder = this.floor.length + 1;
-    this.scene.add(mesh);
-    this.floor.push(mesh);
-  }
-
   /** Shows the whole of a box. */
-  frame(low: Vector, high: Vector): void {
-    const center = low.map((value, i) => (value + high[i]) / 2) as Vector;
-    const radius = Math.max(0.05, Math.hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]) / 2);
-    const narrow = Math.min(1, this.camera.aspect);
-    const distance = 0.95 * radius / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;
-    const way = new three.Vector3(0.55, -0.75, 0.55).normalize();
-    this.set({ eye: [center[0] + way.x * distance, center[1] + way.y * distance, center[2] + way.z * distance],
-               at: center, fieldOfView: this.camera.fov });
+  frame(box: Box): void {
+    const way = new three.Vector3(0.55, -0.75, 0.62).normalize().toArray();
+    this.set(lookAt(box, way, this.camera.fov, this.camera.aspect));
   }
 
   /** Looks straight down; +y is up on the screen. */
@@ -208,6 +172,9 @@ export class Stage {
     this.isDirty = true;
   }
 
+  /** Height of the picture [px]. */
+  get height(): number { return this.canvas.clientHeight; }
+
   resize(): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     const size = this.renderer.getSize(new three.Vector2());
@@ -218,20 +185,38 @@ export class Stage {
     this.isDirty = true;
   }
 
-  /** Draws. @param isFine  as well as it can, whatever it takes: for a picture that stays */
-  render(isFine = false): void {
+  /** Whether the last frame is still being drawn: another one would wait behind it. */
+  get isBusy(): boolean {
+    if (!this.fence) return false;
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    if (gl.getSyncParameter(this.fence, gl.SYNC_STATUS) !== gl.SIGNALED && !gl.isContextLost()) return true;
+    gl.deleteSync(this.fence);
+    this.fence = null;
+    return false;
+  }
+
+  /** Prepares a frame. @param isFine  as good as it can be, whatever it takes: for a picture that stays */
+  aim(isFine: boolean): void {
     if (isFine !== this.isFine) {
       this.isFine = isFine;
       if (isFine) this.renderer.setPixelRatio(this.finePixels);
       else this.setPixels(levels[this.quality.level].pixels);
-      if (levels[this.quality.level].shadows === null) this.castShadows();
+      if (!this.shadowsMove) this.castShadows();
     }
     const distance = this.camera.position.distanceTo(this.controls.target);
     this.camera.near = Math.max(0.0005, distance / 200);
     this.camera.far = Math.max(20, distance * 60);
     this.camera.updateProjectionMatrix();
     this.aimSun(distance);
+  }
+
+  render(): void {
+    const fog = this.scene.fog as three.Fog;
+    [fog.near, fog.far] = [0.2 * Math.min(this.camera.far, plainRadius), 0.9 * Math.min(this.camera.far, plainRadius)];
     this.renderer.render(this.scene, this.camera);
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
     this.isDirty = false;
   }
 

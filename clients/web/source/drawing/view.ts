@@ -1,17 +1,22 @@
 // The picture of one frame: everything that is drawn, layer by layer.
 import * as three from "three";
-import type { Contacts, Entity, Poses, RadioTraffic, Rays, World } from "../model/messages";
-import { compose, poseAt, type Pose, type Vector } from "../model/pose";
+import type { Contacts, Poses, RadioTraffic, Rays, World } from "../model/messages";
+import { Motion } from "../model/motion";
+import type { Pose, Vector } from "../model/pose";
 import type { Frame, Frames } from "../model/timeline";
 import { Bodies } from "./bodies";
+import { colorOf, type Coloring } from "./colors";
 import { Floor } from "./floor";
+import { arenaOf, boxOf, firstBox, Settling } from "./framing";
 import { Lights } from "./lights";
 import { Lines } from "./lines";
 import {
-  drawContacts, drawFrusta, drawMagnets, drawRays, drawSelection, drawTrail, RadioFlashes, typicalSize,
+  drawContacts, drawFrusta, drawMagnets, drawRays, drawRuler, drawSelection, drawTrail, RadioFlashes, typicalSize,
 } from "./overlays";
+import { Shade } from "./shade";
 import { Stage } from "./stage";
 import { Tags } from "./tags";
+import { originIn, Trails } from "./trails";
 
 /** Layers, with the key that switches each and the topic that it needs. */
 export const layers = [
@@ -25,9 +30,13 @@ export const layers = [
   { name: "radio", label: "Radio", key: "8", topic: "/radio" },
   { name: "contacts", label: "Contacts", key: "9", topic: "/contacts" },
   { name: "trails", label: "Trails", key: "0" },
+  { name: "marks", label: "Scale, axes", key: "z" },
+  { name: "everyone", label: "Rays, radio of all", key: "x" },
 ] as const;
 export type Layer = (typeof layers)[number]["name"];
-export const layersAtFirst: Layer[] = ["bodies", "shadows", "tags", "lights", "rays", "radio", "trails"];
+/** With more robots than this, what robots do is shown of the selected one only, unless the layer of all is on. */
+export const mostRobotsAtOnce = 12;
+export const layersAtFirst: Layer[] = ["bodies", "shadows", "tags", "lights", "rays", "radio", "trails", "marks"];
 
 /** Whether two frames of one world look the same, lines aside. */
 function isSame(a: Poses, b: Poses): boolean {
@@ -42,15 +51,10 @@ function isSame(a: Poses, b: Poses): boolean {
       && same(a.floorPaints ?? [], b.floorPaints ?? []);
 }
 
-/** X_WE of an entity's origin. */
-function originIn({ positions, orientations }: Poses, entity: Entity): Pose {
-  return compose(poseAt(positions, orientations, entity.referenceLink),
-                 { position: entity.originPosition, orientation: entity.originOrientation });
-}
-
 const longestGap = 100; // frames between two points of a trail
-const longestTrail = 1500; // points
-const mostRead = 60_000; // poses of links, for the trail of what has been
+const oneStep = 0.15; // [s], for which a tick of a paused world moves at most
+const longestMotion = 2; // [s], of ticks in slow motion
+const slowRate = 30; // frames a second without graphics processor: others need the processor, too
 const restAfter = 0.4; // [s] without change, the picture is drawn once with all pixels
 
 export class View {
@@ -64,7 +68,12 @@ export class View {
   private readonly flashes = new RadioFlashes();
   private world: World | null = null;
   private frame: Frame | null = null;
-  private trails = new Map<string, Vector[]>();
+  private readonly shade = new Shade();
+  readonly motion = new Motion();
+  private readonly trails = new Trails();
+  private seenAt: { id: string; place: Vector } | null = null; // where what is followed was drawn
+  private settling = new Settling();
+  private framed = ""; // the look that the page has chosen itself
   private reference = 1; // force [N] that has an arrow of this length [m]
   private arrow = 0.1;
   private selected: number[] = []; // links
@@ -73,16 +82,19 @@ export class View {
   private hasFramed = false;
   private drawnAt = 0; // [s]
   private drewBefore = false; // at the screen's last frame
-  poses: Poses | null = null;
+  private coloring: Coloring = "scene";
+  poses: Poses | null = null; // of the tick; what is drawn may be on its way there
   shown = new Set<Layer>(layersAtFirst);
   trailed: string[] = []; // ids of entities
+  ruler: Vector[] = []; // places that were clicked, two at most
+  private ruled: Vector[] = []; // the line that is drawn
   followed: string | null = null;
 
   constructor(canvas: HTMLCanvasElement, keepsLook: boolean) {
     this.stage = new Stage(canvas);
     this.bodies = new Bodies(this.stage.isSlow);
     this.hasFramed = keepsLook;
-    this.stage.scene.add(this.floor.group, this.bodies.group, this.tags.group, this.lights.group, this.lines.object,
+    this.stage.scene.add(this.floor.group, this.shade.mesh, this.bodies.group, this.tags.group, this.lights.group, this.lines.object,
                          this.inside.object);
   }
 
@@ -90,6 +102,8 @@ export class View {
   forget(): void {
     this.world = this.frame = this.poses = null;
     this.trails.clear();
+    this.motion.forget();
+    this.settling = new Settling();
     this.flashed = -1;
     this.hasFramed = false;
   }
@@ -97,8 +111,9 @@ export class View {
   /**
    * Shows a frame; false if nothing in it is known yet.
    * @param seen  where trails begin: all frames that can be read at once
+   * @param isPaused  time stands, or goes step by step; @param now  wall time [s]
    */
-  show(frame: Frame, selected: number[], seen: Frames | null): boolean {
+  show(frame: Frame, selected: number[], seen: Frames | null, isPaused: boolean, now: number): boolean {
     const message = frame.messages.get("/poses");
     const world = frame.world;
     if (!message || !world) return false;
@@ -109,7 +124,8 @@ export class View {
     const before = isNewWorld ? null : this.poses;
     const distance = frame.sequence - (this.frame?.sequence ?? frame.sequence);
     const isEarlier = this.frame !== null && frame.timeNs < this.frame.timeNs;
-    if (isEarlier || distance < 0 || distance > longestGap) this.trails.clear(); // the user jumped, or the world began anew
+    const isJump = isEarlier || distance < 0 || distance > longestGap; // the user jumped, or the world began anew
+    if (isJump) this.trails.clear();
     this.poses = poses;
     this.frame = frame;
     const isAnother = selected.join() !== this.selected.join() || this.trailed.some((id) => !this.trails.has(id));
@@ -118,27 +134,54 @@ export class View {
     if (before && !isAnother && isSame(before, poses)) {
       this.stage.isDirty ||= hasLines || this.hadLines;
       this.hadLines = hasLines;
+      this.settle(frame);
       return true;
     }
     this.hadLines = hasLines;
-    this.bodies.setPoses(poses);
-    this.stage.shadowsChange();
+    if (before !== poses) this.motion.take(poses, before !== null && !isJump, isPaused ? oneStep : longestMotion, now);
     this.floor.setPoses(poses);
-    this.tags.setPoses(poses);
-    this.lights.setPoses(poses);
-    this.follow(before);
-    this.growTrails(frame, seen);
-    if (!this.hasFramed) {
-      this.hasFramed = true;
-      this.frameAll();
-    }
-    this.stage.isDirty = true;
+    this.place();
+    this.trails.grow(this.trailed, frame, world, poses, seen);
+    this.settle(frame);
     return true;
+  }
+
+  /** Places what is drawn. */
+  private place(): void {
+    const { shown } = this.motion;
+    if (!shown) return;
+    this.stage.shadowsChange();
+    this.shade.setPoses(shown);
+    this.tags.setPoses(shown);
+    this.follow(shown);
+    this.stage.isDirty = true;
+  }
+
+  /** Chooses what is drawn, for an eye. @param height  of the picture [px], @param isFine  for a picture that stays */
+  private choose(poses: Poses, eye: three.PerspectiveCamera, height: number, isFine: boolean): void {
+    this.bodies.setPoses(poses, eye, height, isFine);
+    this.lights.setPoses(poses, this.bodies.details);
+  }
+
+  /** Shows all at first, and once more when it has settled, unless the user has turned the picture meanwhile. */
+  private settle(frame: Frame): void {
+    if (!this.world || !this.poses || this.settling.isOver) return;
+    this.stage.resize();
+    if (this.hasFramed && JSON.stringify(this.stage.look) !== this.framed) {
+      this.settling.isOver = true;
+      return;
+    }
+    const box = firstBox(this.world, this.poses);
+    if (!this.settling.take(box, Number(frame.timeNs) * 1e-9) && this.hasFramed) return;
+    this.hasFramed = true;
+    this.stage.frame(box);
+    this.framed = JSON.stringify(this.stage.look);
   }
 
   private setWorld(world: World): void {
     this.world = world;
-    this.bodies.setWorld(world, this.stage.triangles(false));
+    this.bodies.setWorld(world, this.stage.triangles(false), colorOf(world, this.coloring));
+    this.shade.setWorld(world);
     this.floor.setWorld(world);
     this.tags.setWorld(world);
     this.lights.setWorld(world);
@@ -148,10 +191,18 @@ export class View {
     this.arrow = 1.2 * typicalSize(world);
   }
 
+  /** Colours robots by what they are, or by what controls them. */
+  setColoring(coloring: Coloring): void {
+    this.coloring = coloring;
+    if (this.world) this.bodies.paint(colorOf(this.world, coloring));
+    this.stage.isDirty = true;
+  }
+
   applyLayers(): void {
     this.bodies.group.visible = this.shown.has("bodies");
     this.tags.group.visible = this.shown.has("tags");
     this.lights.group.visible = this.shown.has("lights");
+    this.stage.ground.marks.visible = this.shown.has("marks");
     this.stage.showShadows(this.shown.has("shadows"));
     this.stage.isDirty = true;
   }
@@ -159,14 +210,17 @@ export class View {
   /** Draws if anything changed; called at each frame of the screen. @param now  wall time [s] */
   render(now: number): boolean {
     this.stage.resize();
-    const isMoving = this.stage.isDirty || this.flashes.isActive;
+    const isMoving = this.stage.isDirty || this.flashes.isActive || this.motion.isMoving;
+    if (this.stage.isBusy || (this.stage.isSlow && isMoving && now - this.drawnAt < 0.9 / slowRate)) return false;
+    if (this.drewBefore) this.stage.noteFrame(now - this.drawnAt);
+    if (this.motion.go(now)) this.place();
     const isFine = !isMoving && now - this.drawnAt > restAfter && this.stage.canBeFiner;
     if (isMoving || isFine) {
       if (this.world && this.bodies.setDetail(this.world, this.stage.triangles(isFine))) this.stage.shadowsChange();
+      this.stage.aim(isFine);
+      if (this.motion.shown) this.choose(this.motion.shown, this.stage.camera, this.stage.height, isFine);
       this.drawLines(now);
-      this.stage.render(isFine);
-      // Consecutive frames only: the time between them includes what the graphics processor does.
-      if (isMoving && this.drewBefore) this.stage.noteFrame(now - this.drawnAt);
+      this.stage.render();
       this.drawnAt = now;
     }
     this.drewBefore = isMoving;
@@ -174,10 +228,19 @@ export class View {
   }
 
   /** Whether the picture is the last one, drawn as well as it can be, until something changes. */
-  get isAtRest(): boolean { return !this.stage.isDirty && !this.flashes.isActive && !this.stage.canBeFiner; }
+  get isAtRest(): boolean {
+    return !this.stage.isDirty && !this.flashes.isActive && !this.motion.isMoving && !this.stage.canBeFiner && !this.stage.isBusy;
+  }
+
+  /** Whether rays and messages of a robot are drawn. @param robot  its number; undefined: none, as of a thing that sends */
+  private isShown(robot: number | undefined): boolean {
+    if (!this.world || this.world.robots.length <= mostRobotsAtOnce || this.shown.has("everyone")) return true;
+    return robot !== undefined && this.selected.includes(this.world.entities[this.world.robots[robot]?.entity]?.firstLink);
+  }
 
   private drawLines(now: number): void {
-    const { lines, inside, frame, world, poses } = this;
+    const { lines, inside, frame, world } = this;
+    const poses = this.motion.shown;
     lines.clear();
     inside.clear();
     if (frame && world && poses) {
@@ -185,33 +248,37 @@ export class View {
       if (this.shown.has("magnets")) drawMagnets(world, poses, this.arrow, inside);
       if (this.shown.has("frusta")) drawFrusta(world, poses, lines);
       const rays = frame.messages.get("/rays");
-      if (rays && this.shown.has("rays")) drawRays(rays.read<Rays>(), lines);
+      if (rays && this.shown.has("rays")) drawRays(rays.read<Rays>(), (robot) => this.isShown(robot), lines);
       const contacts = frame.messages.get("/contacts");
       if (contacts && this.shown.has("contacts")) drawContacts(contacts.read<Contacts>(), this.reference, this.arrow, lines);
       const radio = frame.messages.get("/radio");
       if (radio && this.shown.has("radio") && this.flashed !== frame.sequence) {
         this.flashed = frame.sequence;
-        this.flashes.add(world, poses, radio.read<RadioTraffic>(), now);
+        this.flashes.add(world, poses, radio.read<RadioTraffic>(), (robot) => this.isShown(robot), now);
       }
       if (this.shown.has("trails")) {
         for (const points of this.trails.values()) drawTrail(points, 0xff9d2e, lines);
       }
     }
+    if (this.ruled.length === 2) drawRuler(this.ruled[0], this.ruled[1], inside);
     this.flashes.draw(now, lines);
     lines.commit();
     inside.commit();
   }
 
   /** Draws the world without lines and decorations from another camera; pixels are linear light, rows from the bottom. */
-  renderFrom(eye: three.Camera, target: three.WebGLRenderTarget, pixels: Uint8Array): void {
+  renderFrom(eye: three.PerspectiveCamera, target: three.WebGLRenderTarget, pixels: Uint8Array): void {
     const { renderer, scene } = this.stage;
-    const hidden = [this.lines.object, this.inside.object, this.bodies.decorations];
+    const hidden = [this.lines.object, this.inside.object, this.bodies.decorations, this.stage.ground.marks];
     for (const object of hidden) object.visible = false;
+    if (this.poses) this.choose(this.poses, eye, target.height, true);
     renderer.setRenderTarget(target);
     renderer.render(scene, eye);
     renderer.readRenderTargetPixels(target, 0, 0, target.width, target.height, pixels);
     renderer.setRenderTarget(null);
     for (const object of hidden) object.visible = true;
+    this.stage.ground.marks.visible = this.shown.has("marks");
+    if (this.motion.shown) this.choose(this.motion.shown, this.stage.camera, this.stage.height, this.stage.isFine);
   }
 
   /** X_WE of an entity's origin at the frame that is shown. */
@@ -224,75 +291,55 @@ export class View {
     return this.world?.entities.findIndex((entity) => entity.id === id && !entity.removed) ?? -1;
   }
 
-  private follow(before: Poses | null): void {
-    const entity = this.followed === null ? undefined : this.world?.entities[this.indexOf(this.followed)];
-    if (!entity || !before || !this.poses || before.generation !== this.poses.generation) return;
-    const k = 3 * entity.referenceLink;
-    const [a, b] = [before.positions, this.poses.positions];
-    this.stage.shift([b[k] - a[k], b[k + 1] - a[k + 1], b[k + 2] - a[k + 2]]);
-  }
-
-  private growTrails(frame: Frame, seen: Frames | null): void {
-    for (const id of [...this.trails.keys()]) if (!this.trailed.includes(id)) this.trails.delete(id);
-    for (const id of this.trailed) {
-      const points = this.trails.get(id) ?? (seen ? this.trailBefore(id, frame, seen) : []);
-      this.trails.set(id, points);
-      this.addTo(points, this.originOf(this.indexOf(id)));
+  private follow({ positions }: Poses): void {
+    const id = this.followed;
+    const entity = id === null ? undefined : this.world?.entities[this.indexOf(id)];
+    if (id === null || !entity) {
+      this.seenAt = null;
+      return;
     }
-  }
-
-  private addTo(points: Vector[], origin: Pose | null): void {
-    if (!origin?.position.every(Number.isFinite)) return;
-    const [x, y, z] = origin.position;
-    const last = points[points.length - 1];
-    if (!last || Math.hypot(x - last[0], y - last[1], z + 0.002 - last[2]) > 0.001) points.push([x, y, z + 0.002]);
-    if (points.length > longestTrail) points.shift();
-  }
-
-  /** Where an entity was before a frame. */
-  private trailBefore(id: string, frame: Frame, seen: Frames): Vector[] {
-    const reads = Math.min(Math.max(mostRead / (this.world?.links.length || 1), 20), 500);
-    const first = Math.max(seen.first, frame.sequence - longestTrail);
-    const step = Math.max(1, Math.ceil((frame.sequence - first) / reads));
-    const origins: Pose[] = [];
-    let later = frame;
-    for (let s = frame.sequence - step; s >= first; s -= step) {
-      const earlier = seen.at(s);
-      const message = earlier?.messages.get("/poses");
-      if (!earlier?.world || !message) continue;
-      const entity = earlier.world.entities.find((one) => one.id === id && !one.removed);
-      if (!entity || earlier.timeNs >= later.timeNs) break; // it was not there yet, or the world began anew
-      origins.push(originIn(message.read<Poses>(), entity));
-      later = earlier;
-    }
-    const points: Vector[] = [];
-    for (const origin of origins.reverse()) this.addTo(points, origin);
-    return points;
+    const place = [0, 1, 2].map((i) => positions[3 * entity.referenceLink + i]) as Vector;
+    const before = this.seenAt?.id === id ? this.seenAt.place : place;
+    this.seenAt = { id, place };
+    this.stage.shift(place.map((value, i) => value - before[i]) as Vector);
   }
 
   /** Looks at the entity with that id, or at all that moves. */
   frameAll(id?: string): void {
     if (!this.world || !this.poses) return;
-    const low: Vector = [Infinity, Infinity, Infinity], high: Vector = [-Infinity, -Infinity, -Infinity];
-    const isWanted = (entity: number): boolean => {
+    const box = boxOf(this.world, this.poses, (entity) => {
       const { movable, removed, robot, id: name } = this.world!.entities[entity];
       return !removed && (id === undefined ? movable || robot !== undefined : name === id);
-    };
-    this.world.links.forEach((link, index) => {
-      if (!isWanted(link.entity)) return;
-      for (let i = 0; i < 3; ++i) {
-        const value = this.poses!.positions[3 * index + i];
-        low[i] = Math.min(low[i], value - 0.05);
-        high[i] = Math.max(high[i], value + 0.05);
-      }
     });
-    if (low[0] > high[0]) {
-      const [x, y] = [this.world.arenaSize[0] / 2 || 1, this.world.arenaSize[1] / 2 || 1];
-      this.stage.frame([-x, -y, 0], [x, y, 0.2]);
-    } else {
-      this.stage.frame(low, high);
-    }
+    this.stage.frame(box ?? arenaOf(this.world));
   }
+
+  /** Above an entity, as it is drawn; null: it is not there. */
+  above(id: string): Vector | null {
+    const index = this.indexOf(id), shown = this.motion.shown;
+    if (index < 0 || !shown) return null;
+    const k = 3 * this.world!.entities[index].referenceLink;
+    const { positions } = shown;
+    const place: Vector = [positions[k], positions[k + 1], positions[k + 2] + this.bodies.heightOf(index)];
+    return place.every(Number.isFinite) ? place : null;
+  }
+
+  /** Where a point is on the canvas [px]; null: outside. */
+  onScreen(point: Vector): [number, number] | null {
+    const at = new three.Vector3(...point).project(this.stage.camera);
+    if (Math.abs(at.x) > 1 || Math.abs(at.y) > 1 || Math.abs(at.z) > 1) return null;
+    const { clientWidth, clientHeight } = this.stage.canvas;
+    return [(at.x + 1) / 2 * clientWidth, (1 - at.y) / 2 * clientHeight];
+  }
+
+  /** Draws a line between two points; none: no line. */
+  showRuler(points: Vector[]): void {
+    this.stage.isDirty ||= points.join() !== this.ruled.join();
+    this.ruled = points;
+  }
+
+  /** A place was clicked with the ruler: its begin, its end, or that of the next one. */
+  measure(point: Vector): void { this.ruler = this.ruler.length === 1 ? [this.ruler[0], point] : [point]; }
 
   /** The link under a place of the canvas (-1 to 1 each, y up). */
   pick(x: number, y: number): { link: number; point: three.Vector3 } | null {

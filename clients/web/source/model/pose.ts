@@ -61,6 +61,28 @@ export function place(to: Float64Array, positions: Floats, orientations: Floats,
   to[6] = w * mz + x * my - y * mx + z * mw;
 }
 
+/** Half of the sides, along the world's axes, of the box around a box of these half sides. */
+export function halfExtents(q: Floats, half: Floats): Vector {
+  const [w, x, y, z] = [q[0], q[1], q[2], q[3]];
+  const row = (a: number, b: number, c: number): number => Math.abs(a) * half[0] + Math.abs(b) * half[1] + Math.abs(c) * half[2];
+  return [row(1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+          row(2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+          row(2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y))];
+}
+
+/**
+ * Orientations between two, along the shortest turn: slerp.
+ * @param to  from `at` on, where the two have theirs; @param part  0: that of `a`, 1: that of `b`
+ */
+export function turn(to: Float32Array, a: Floats, b: Floats, at: number, part: number): void {
+  let dot = 0;
+  for (let k = 0; k < 4; ++k) dot += a[at + k] * b[at + k];
+  const sign = dot < 0 ? -1 : 1; // a quaternion and its negative are the same orientation
+  const angle = Math.acos(Math.min(1, dot * sign)), sine = Math.sin(angle);
+  const [p, q] = sine < 1e-3 ? [1 - part, part] : [Math.sin((1 - part) * angle) / sine, Math.sin(part * angle) / sine];
+  for (let k = 0; k < 4; ++k) to[at + k] = p * a[at + k] + sign * q * b[at + k];
+}
+
 /** Mounts as place() takes them, seven numbers each. */
 export function packed(mounts: { position: Floats; orientation: Floats }[]): Float64Array<ArrayBuffer> {
   const numbers = new Float64Array(7 * mounts.length);

@@ -1,4 +1,5 @@
 // What the user has chosen, as it stands in the address after "#", so that a link shows the same view.
+import { colorings, type Coloring } from "../drawing/colors";
 import type { Look } from "../drawing/stage";
 import { layers, layersAtFirst, type Layer } from "../drawing/view";
 import { nameOf, parseName, type SeriesName } from "./series";
@@ -13,11 +14,13 @@ export interface Settings {
   plots: SeriesName[];
   tab: Tab;
   theme: "light" | "dark" | "system";
+  isSmooth: boolean; // motion between ticks is drawn
+  coloring: Coloring; // of robots
 }
 
 export function settingsAtFirst(): Settings {
   return { look: null, layers: [...layersAtFirst], selected: null, followed: null, trailed: [], plots: [],
-           tab: "devices", theme: "system" };
+           tab: "devices", theme: "system", isSmooth: true, coloring: "scene" };
 }
 
 const tabs: Tab[] = ["devices", "plots", "camera", "log", "barrier"];
@@ -38,6 +41,8 @@ export function toAddress(settings: Settings): string {
   for (const plot of settings.plots) parts.append("plot", nameOf(plot));
   if (settings.tab !== "devices") parts.set("tab", settings.tab);
   if (settings.theme !== "system") parts.set("theme", settings.theme);
+  if (!settings.isSmooth) parts.set("motion", "off");
+  if (settings.coloring !== "scene") parts.set("colors", settings.coloring);
   return parts.toString();
 }
 
@@ -64,5 +69,7 @@ export function fromAddress(text: string): Settings {
   settings.tab = tabs.find((tab) => tab === parts.get("tab")) ?? "devices";
   const theme = parts.get("theme");
   settings.theme = theme === "light" || theme === "dark" ? theme : "system";
+  settings.isSmooth = parts.get("motion") !== "off";
+  settings.coloring = colorings.find((one) => one === parts.get("colors")) ?? "scene";
   return settings;
 }

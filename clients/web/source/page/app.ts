@@ -1,7 +1,8 @@
 // What the page knows and does; panels show it and call it. Nothing here touches the document.
 import type { Listener, Message, Source, Status, Value } from "../data/source";
+import type { Coloring } from "../drawing/colors";
 import type { View, Layer } from "../drawing/view";
-import { layers } from "../drawing/view";
+import { layers, mostRobotsAtOnce } from "../drawing/view";
 import { Collisions } from "../model/collisions";
 import type { Barrier, Contacts, Entity, Log, Robot, World } from "../model/messages";
 import { Playback } from "../model/playback";
@@ -15,8 +16,6 @@ export interface LogEntry { sequence: number; seconds: number; name: string; lev
 export interface Notice { level: "info" | "warning" | "error"; text: string }
 
 const mostName = 200; // characters of who logged a line
-/** With more robots than this, only what is selected or plotted is subscribed. */
-const mostRobotsAtOnce = 12;
 /** A frame that began less than this before may not be whole [ms]: its messages arrive one by one. */
 const arrivalTime = 5;
 /** With more links than this, collisions are looked for only while the layer of contacts is on. */
@@ -37,7 +36,7 @@ export class App implements Listener {
   pinned: number | null = null;
   /** The frame at which the page looks, the same during one redraw; it follows `pinned` at the next one. */
   frame: Frame | null = null;
-  tool: "select" | "move" = "select";
+  tool: "select" | "move" | "ruler" = "select";
   onNotice: (notice: Notice) => void = () => undefined;
   onStatus: () => void = () => undefined;
   onSettings: () => void = () => undefined;
@@ -146,13 +145,15 @@ export class App implements Listener {
     const newest = this.seen.newest?.world ?? null; // while the page looks back, too
     this.wantedFor = newest;
     const wanted = new Set(["/world", "/poses", "/log", "/barrier", "/phases"]);
+    const robots = newest?.robots ?? [];
+    const selected = this.selectedRobot;
+    const areShown = robots.length <= mostRobotsAtOnce || selected !== null || this.view.shown.has("everyone");
     for (const layer of layers) {
-      if ("topic" in layer && this.view.shown.has(layer.name)) wanted.add(layer.topic);
+      const isOfRobots = layer.name === "rays" || layer.name === "radio";
+      if ("topic" in layer && this.view.shown.has(layer.name) && (areShown || !isOfRobots)) wanted.add(layer.topic);
     }
     if ((newest?.links.length ?? Infinity) <= mostLinksForCollisions) wanted.add("/contacts");
     for (const { name } of this.series) wanted.add(name.topic);
-    const robots = newest?.robots ?? [];
-    const selected = this.selectedRobot;
     for (const robot of robots.length <= mostRobotsAtOnce ? robots : selected ? [selected] : []) {
       wanted.add(`/robots/${robot.description.id}/observation`);
       wanted.add(`/robots/${robot.description.id}/command`);
@@ -282,6 +283,20 @@ export class App implements Listener {
     this.looked();
   }
 
+  /** Moves what is drawn smoothly from tick to tick, or as the ticks come. */
+  toggleMotion(): void {
+    this.settings.isSmooth = this.view.motion.isOn = !this.settings.isSmooth;
+    this.onNotice({ level: "info", text: this.settings.isSmooth ? "Motion between ticks is drawn." : "Each tick is drawn as it is." });
+    this.onSettings();
+  }
+
+  /** Colours robots in the next way: as in the scene, by model, by controller. */
+  setColoring(coloring: Coloring): void {
+    this.settings.coloring = coloring;
+    this.view.setColoring(coloring);
+    this.onSettings();
+  }
+
   follow(id: string | null): void {
     this.settings.followed = this.view.followed = id;
     this.onSettings();
@@ -314,6 +329,8 @@ export class App implements Listener {
     view.shown = new Set(settings.layers);
     view.followed = settings.followed;
     view.trailed = settings.trailed;
+    view.motion.isOn = settings.isSmooth;
+    view.setColoring(settings.coloring);
     if (settings.look) view.stage.set(settings.look);
     view.applyLayers();
   }

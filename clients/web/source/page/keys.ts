@@ -1,5 +1,6 @@
 // The keyboard.
 import * as three from "three";
+import { colorings } from "../drawing/colors";
 import { layers } from "../drawing/view";
 import type { Tab } from "../model/settings";
 import type { App } from "./app";
@@ -52,10 +53,13 @@ function act(app: App, actions: Actions, event: KeyboardEvent): boolean {
     case "e": return done(actions.open());
     case "v": return done(app.tool = "select");
     case "m": return done(app.tool = "move");
+    case "u": return done(app.tool = app.tool === "ruler" ? "select" : "ruler");
+    case "i": return done(app.toggleMotion());
+    case "y": return done(app.setColoring(colorings[(colorings.indexOf(app.settings.coloring) + 1) % colorings.length]));
     case "l": return done(actions.theme());
     case "?": case "h": return done(actions.help());
     case "/": return done(actions.search());
-    case "Escape": return done(app.select(null));
+    case "Escape": return done(app.view.ruler = [], app.select(null));
   }
   if (selected === null) return false;
   switch (key) {
@@ -67,7 +71,7 @@ function act(app: App, actions: Actions, event: KeyboardEvent): boolean {
   return false;
 }
 
-function done(_: unknown): boolean { return true; }
+function done(..._: unknown[]): boolean { return true; }
 
 function move(app: App, frames: number): void {
   app.playback.isPlaying = false;

@@ -85,6 +85,11 @@ export class Pointer {
     void this.app.call("/move", { entity: grab.id, position: grab.place, may_overlap: true }).finally(() => { this.isSending = false; });
   }
 
+  private measure(event: PointerEvent): void {
+    const point = this.app.view.pick(...this.at(event))?.point ?? this.app.view.onPlane(...this.at(event), 0);
+    if (point) this.app.view.measure(point.toArray());
+  }
+
   private release(event: PointerEvent): void {
     const { down, grab } = this;
     this.down = this.grab = null;
@@ -94,6 +99,7 @@ export class Pointer {
       if (!isClick) this.send(grab, true);
       return;
     }
+    if (isClick && event.button === 0 && this.app.tool === "ruler") return this.measure(event);
     if (isClick && event.button === 0) this.app.select(this.entityAt(event)?.id ?? null);
   }
 }

@@ -6,7 +6,9 @@ const keys: [string, string][] = [
   [",  .", "one frame back, ahead"], ["<  >", "fifty frames back, ahead"], ["Home  End", "the oldest frame; the newest (live)"],
   ["↑ ↓ ← →", "orbit; with shift: pan"], ["+  −", "zoom"], ["a", "look at all that moves"], ["f", "look at what is selected"],
   ["g", "follow what is selected"], ["o", "from the top"], ["t", "trail of what is selected"],
-  ["v  m", "select, or move with the mouse"], ["Delete", "remove what is selected"], ["/", "search"],
+  ["v  m", "select, or move with the mouse"],
+  ["u", "ruler: the length between two clicks"], ["i", "motion between ticks, or each tick as it is"], ["y", "colours of robots: as in the scene, by model, by controller"],
+  ["z", "scale, axes and compass"], ["x", "rays and radio of all robots, also where they are many"], ["Delete", "remove what is selected"], ["/", "search"],
   ["1 … 9, 0", "switch a layer"], ["d p c b", "devices, plots, camera, barrier"], ["k", "log"], ["l", "light or dark"], ["e", "open a recording"],
   ["Esc", "select nothing"], ["?", "this list"],
 ];

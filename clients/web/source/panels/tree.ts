@@ -14,6 +14,7 @@ export class Tree implements Panel {
   private readonly count = make("span.muted");
   private world: World | null = null;
   private shown = "";
+  found: string[] = []; // ids of what is searched; none: nothing is
   private open = new Set<string>();
 
   constructor(private readonly app: App) {
@@ -40,6 +41,7 @@ export class Tree implements Panel {
     const rank = (entity: Entity): number => (entity.robot !== undefined ? 0 : entity.movable ? 1 : 2);
     const ordered = matching.map((entity, i) => ({ entity, i }))
       .sort((a, b) => rank(a.entity) - rank(b.entity) || a.i - b.i).map(({ entity }) => entity);
+    this.found = text === "" ? [] : ordered.map(({ id }) => id);
     setText(this.count, `${ordered.length}`);
     const rows = ordered.slice(0, mostRows).flatMap((entity) => this.rowsOf(world, entity));
     if (ordered.length > mostRows) rows.push(make("p.muted", {}, `… and ${ordered.length - mostRows} more: search`));
