@@ -67,7 +67,7 @@ export class App implements Listener {
     this.playback.isPlaying = false;
     if (source instanceof Recorded) {
       this.pinned = 0;
-      for (const series of this.series) source.fill(series);
+      for (const series of this.series) void source.fill(series);
       this.playback.speed = 1;
       this.playback.start();
     }
@@ -171,8 +171,14 @@ export class App implements Listener {
   /** Chooses the frame of this redraw. */
   chooseFrame(): void {
     const before = this.world;
-    this.frame = this.recorded ? this.recorded.at(this.pinned ?? this.recorded.last) ?? this.frame : this.frameOfRun();
+    this.frame = this.recorded ? this.frameOf(this.recorded) : this.frameOfRun();
     if (this.world !== before) this.want();
+  }
+
+  /** While the frame is being read, the nearest one that is there, so that a drag shows something at once. */
+  private frameOf(recorded: Recorded): Frame | null {
+    const wanted = this.pinned ?? recorded.last;
+    return recorded.at(wanted) ?? (this.playback.isPlaying ? null : recorded.nearest(wanted)) ?? this.frame;
   }
 
   /** The newest frame that is whole, unless the user looks back. */
@@ -218,8 +224,12 @@ export class App implements Listener {
 
   pin(sequence: number | null): void {
     const { first, last } = this.timeline;
-    if (this.recorded) this.pinned = Math.min(Math.max(sequence ?? last, first), last);
-    else this.pinned = sequence === null || sequence >= last ? null : Math.max(sequence, first);
+    if (this.recorded) {
+      this.pinned = Math.min(Math.max(sequence ?? last, first), last);
+      this.recorded.at(this.pinned); // reading begins now
+    } else {
+      this.pinned = sequence === null || sequence >= last ? null : Math.max(sequence, first);
+    }
     if (this.isLive) this.playback.isPlaying = false;
   }
 
@@ -302,7 +312,7 @@ export class App implements Listener {
     } else {
       const series = new Series(name);
       this.series = [...this.series, series];
-      this.recorded?.fill(series);
+      void this.recorded?.fill(series);
     }
     this.settings.plots = this.series.map((series) => series.name);
     this.want();

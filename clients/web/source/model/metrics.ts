@@ -1,0 +1,12 @@
+// Metrics: figures of a run that its controllers and directors measure. A running server sends them as /metrics with all
+// values that hold; a recording has those that were set at a tick in its /inputs.
+
+export const metricsTopic = "/metrics";
+
+export interface Metrics { metrics: { robot: string; name: string; value: number }[] }
+
+/** Each as ROBOT/NAME, as in a run's summary. */
+export function metricsIn(message: unknown): { path: string; value: number }[] {
+  const list = (message as Partial<Metrics> | null)?.metrics;
+  return Array.isArray(list) ? list.map(({ robot, name, value }) => ({ path: `${robot}/${name}`, value })) : [];
+}
