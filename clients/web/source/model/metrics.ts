@@ -3,10 +3,12 @@
 
 export const metricsTopic = "/metrics";
 
+/** Of /inputs. */
 export interface Metrics { metrics: { robot: string; name: string; value: number }[] }
 
 /** Each as ROBOT/NAME, as in a run's summary. */
 export function metricsIn(message: unknown): { path: string; value: number }[] {
-  const list = (message as Partial<Metrics> | null)?.metrics;
-  return Array.isArray(list) ? list.map(({ robot, name, value }) => ({ path: `${robot}/${name}`, value })) : [];
+  const { metrics, values } = (message ?? {}) as Partial<Metrics> & { values?: Record<string, number> };
+  if (Array.isArray(metrics)) return metrics.map(({ robot, name, value }) => ({ path: `${robot}/${name}`, value }));
+  return Object.entries(values ?? {}).map(([path, value]) => ({ path, value }));
 }

@@ -43,6 +43,7 @@ export class Recorded implements Source, Frames {
   private readonly bySchema = new Map<number, Decoder | null>();
   private readonly startNs: bigint;
   private tickNs: number;
+  private firstTick: number | null = null; // null: not read yet
   private readonly missing = new Set<number>(); // generations without a world that can be read
   private readonly searched = new Set<number>(); // generations whose world is looked for
   private readonly leftOut = new Set<string>();
@@ -60,7 +61,7 @@ export class Recorded implements Source, Frames {
     this.tickNs = Math.max(first.tickNs, length / mostFrames);
     this.last = Math.round(length / this.tickNs);
     this.worlds.set(first.generation, first);
-    this.chunks = new Chunks(container, (timeNs) => this.sequenceOf(timeNs));
+    this.chunks = new Chunks(container, (timeNs) => this.placeOf(timeNs));
   }
 
   /** @throws Error with a sentence for the user */
@@ -110,11 +111,19 @@ export class Recorded implements Source, Frames {
 
   // --- frames ---------------------------------------------------------------------------------------
 
-  private sequenceOf(timeNs: bigint): number {
+  private placeOf(timeNs: bigint): number {
     return Math.min(Math.max(Math.round(Number(timeNs - this.startNs) / this.tickNs), 0), mostFrames);
   }
 
   stepNs(): number { return this.tickNs; }
+
+  tickOf(sequence: number): number | null {
+    return this.firstTick === null ? null : this.firstTick + sequence;
+  }
+
+  sequenceOf(tick: number): number | null {
+    return this.firstTick === null ? null : Math.min(Math.max(tick - this.firstTick, 0), this.last);
+  }
 
   at(sequence: number): Frame | null {
     const wanted = Math.min(Math.max(Math.round(sequence), 0), this.last);
@@ -217,6 +226,7 @@ export class Recorded implements Source, Frames {
           if (!world || !areWhole(poses, world)) continue;
           frame.world = world;
           frame.tick = poses.tick;
+          if (sequence === 0) this.firstTick ??= poses.tick;
         }
         frame.messages.set(held.topic, held);
       }
@@ -286,6 +296,7 @@ export class Recorded implements Source, Frames {
   private async readAll(): Promise<void> {
     if (this.isReading) return;
     this.isReading = true;
+    await Promise.resolve(); // what is asked for at the same time is read together
     while (!this.isClosed && (!this.hasRead || this.unread.length > 0)) {
       const fillings = this.unread;
       this.unread = [];
@@ -311,7 +322,7 @@ export class Recorded implements Source, Frames {
         const topic = this.topicOf(message);
         if (!topics.has(topic)) continue;
         await pieces.next();
-        const sequence = this.sequenceOf(message.timeNs);
+        const sequence = this.placeOf(message.timeNs);
         if (isFirst) this.note(topic, sequence, message, collisions);
         for (const { series, stride } of fillings) {
           if (recordedTopic(series.name.topic) !== topic || sequence % stride !== 0) continue;

@@ -1,6 +1,7 @@
 // Numbers over time: any number of any channel, named by its topic and its path in the decoded message,
 // for example "jointReadings.2".
 import type { Value } from "../data/source";
+import type { Label } from "./labels";
 import { metricsIn, metricsTopic } from "./metrics";
 import type { Frame, Timeline } from "./timeline";
 
@@ -74,6 +75,7 @@ export class Series {
   readonly sequences: number[] = [];
   readonly times: number[] = []; // simulated [s]
   readonly values: (number | null)[] = [];
+  label: Label | null = null; // null: not known yet
   private next = 0;
 
   constructor(readonly name: SeriesName) {}
