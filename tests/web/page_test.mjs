@@ -192,7 +192,7 @@ pageTest("the vehicle's wheels turn with 1 rad/s, and can be plotted", vehicle, 
   await waitFor(() => page.evaluate(() => location.hash.includes("plot=") && location.hash.includes("selected=vehicle")), "address");
   await page.locator('[data-tab="log"]').click();
   await page.locator(".log .line").first().waitFor();
-  await page.locator('[data-tab="barrier"]').click();
+  await page.locator('[data-tab="controllers"]').click();
   await page.locator(".sessions td").first().waitFor();
 }, "--real-time", "4");
 

@@ -9,9 +9,10 @@ import { App } from "./page/app";
 import { listenToKeys } from "./page/keys";
 import { embedded, listenToFiles, openRecording } from "./page/open";
 import { Pointer } from "./page/pointer";
-import { BarrierPanel } from "./panels/barrier";
+import { copyLink, Film, savePicture } from "./page/share";
 import { CameraPanel } from "./panels/camera";
 import { Change } from "./panels/change";
+import { Controllers } from "./panels/controllers";
 import { Devices } from "./panels/devices";
 import { icon, longText, make, setText } from "./panels/element";
 import { Header } from "./panels/header";
@@ -75,10 +76,15 @@ app.onSettings = () => {
   clearTimeout(addressTimer);
   addressTimer = setTimeout(() => {
     if (settings.look) settings.look = view.stage.look;
+    settings.tick = app.addressTick;
     history.replaceState(null, "", `${location.pathname}${location.search}#${toAddress(settings)}`);
   }, 250) as unknown as number;
 };
 view.stage.controls.addEventListener("end", () => app.looked());
+window.addEventListener("hashchange", () => { // a link to another moment, opened in this page
+  app.change(fromAddress(location.hash));
+  applyTheme();
+});
 
 app.onNotice = ({ level, text }) => {
   const notice = make(`div.notice.${level}`, { click: () => notice.remove() }, longText("span", text));
@@ -113,7 +119,7 @@ const time = new TimeBar(app);
 const left: Panel[] = [tree, new Layers(app), change];
 const tabs: [Tab, string, Panel][] = [
   ["devices", "Devices", new Devices(app)], ["plots", "Plots", new Plots(app)], ["camera", "Camera", new CameraPanel(app)],
-  ["log", "Log", new LogPanel(app)], ["barrier", "Barrier", new BarrierPanel(app)],
+  ["log", "Log", new LogPanel(app)], ["controllers", "Controllers", new Controllers(app)],
 ];
 
 part("header").append(
@@ -133,7 +139,13 @@ const tools = make("div.tools", {},
   make("button", { title: "Look at all that moves (a)", click: () => app.look() }, "All"),
   make("button", { title: "From the top (o)", click: () => { view.stage.top(); app.looked(); } }, "Top"));
 const scene = new SceneOverlay(app, canvas, () => tree.found);
-part("center").append(scene.element, tools);
+const film = new Film(app);
+const filmTime = make("span.number");
+const share = make("div.tools.share", {},
+  make("button", { id: "picture", title: "Save a picture of what you see (j)", click: () => savePicture(app) }, icon("picture")),
+  make("button", { id: "film", title: "Begin a film of what you see, or end and save it (w)", click: () => film.toggle() }, icon("film"), filmTime),
+  make("button", { id: "link", title: "Copy a link to this moment (q)", click: () => void copyLink(app) }, icon("link")));
+part("center").append(scene.element, tools, share);
 
 function showTab(): Panel {
   const [tab, , panel] = tabs.find(([name]) => name === settings.tab)!;
@@ -146,6 +158,8 @@ function updatePanels(): void {
   for (const panel of [header, time, ...left, showTab()]) panel.update();
   for (const tool of ["select", "move", "ruler"]) part(`tool-${tool}`).classList.toggle("on", app.tool === tool);
   part("tool-move").hidden = !app.connection.mayControl;
+  part("film").classList.toggle("on", film.isRunning);
+  setText(filmTime, film.isRunning ? `${film.seconds.toFixed(0)} s` : "");
   canvas.dataset.tool = app.tool;
   app.onStatus();
 }
@@ -156,6 +170,7 @@ new Pointer(app, canvas, (x, y, z) => change.setPlace(x, y, z));
 listenToKeys(app, {
   open: chooseFile, help: () => (help.open ? help.close() : openHelp()), theme: toggleTheme,
   search: () => tree.search.focus(), speed: (by) => time.changeSpeed(by),
+  picture: () => savePicture(app), film: () => film.toggle(), link: () => void copyLink(app),
 });
 
 let shownKey = "";
@@ -174,8 +189,10 @@ function drawFrame(now: number): void {
       view.show(frame, app.selectedLinks, app.recorded ? null : app.timeline, app.isPaused, now * 1e-3);
     }
   }
-  if (view.render(now * 1e-3) && view.poses && ++frames === 1) app.onStatus();
+  const hasDrawn = view.render(now * 1e-3);
+  if (hasDrawn && view.poses && ++frames === 1) app.onStatus();
   scene.update(now);
+  film.frame(hasDrawn);
   if (!view.stage.isBusy) app.source.ready?.();
   if (now - updated > updateEvery) {
     updated = now;

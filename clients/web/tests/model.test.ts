@@ -132,7 +132,7 @@ test("a picture of another size than the camera's is not decoded", () => {
 test("readings by device have names, limits and places", () => {
   const seen = { jointReadings: [0.02, 1], proximity: [0.5], batteries: [0.9, Infinity], rangeAndBearing: [],
     radioMessages: [{ radio: 0, payload: new TextEncoder().encode("hi") }] } as unknown as Observation;
-  const groups = observed("/t", robot, seen, () => [0, 0.1]);
+  const groups = observed("/t", robot, seen, (id) => ({ type: id === "lift" ? 3 : 4, lower: 0, upper: 0.1 }));
   assert.deepEqual(groups.map(({ device }) => device), ["Joints", "Proximity", "Battery", "Radio"]);
   assert.deepEqual(groups[0].readings[0].range, [0, 0.1]);
   assert.equal(groups[0].readings[1].range, undefined); // a speed has no limits

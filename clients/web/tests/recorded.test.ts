@@ -4,6 +4,7 @@ import { test } from "node:test";
 import { McapWriter, type IReadable } from "@mcap/core";
 import { compress } from "lz4js";
 import type { Status } from "../source/data/source";
+import { Chunks } from "../source/model/chunks";
 import { Collisions } from "../source/model/collisions";
 import type { Contacts, World } from "../source/model/messages";
 import { Playback } from "../source/model/playback";
@@ -134,6 +135,28 @@ test("a place in a large recording is found without reading the rest", async () 
   assert.equal(frame.tick, 15_010);
   assert.ok(read < bytes.length / 2, `${read} of ${bytes.length} bytes were read`);
   assert.ok(took < 200, `${took.toFixed(0)} ms`);
+});
+
+test("while a place is being read, the nearest one that is there is known; memory has its bound", async () => {
+  const recorded = await open(await write(20_000, world(), 16_384));
+  assert.equal(recorded.nearest(500), null); // nothing is there yet
+  await until(() => recorded.at(2_000));
+  assert.equal(recorded.at(15_000), null);
+  const near = recorded.nearest(15_000)!;
+  assert.ok(near.sequence >= 2_000 && near.sequence < 3_000 && near.tick === near.sequence + 10, `${near.sequence}`);
+  await until(() => recorded.at(15_000));
+  assert.equal(recorded.nearest(15_000)?.sequence, 15_000);
+
+  const chunks = new Chunks(recorded.container, (timeNs) => Number(timeNs - 1_000_000_000n) / tickNs, 100_000);
+  const here = (): number => chunks.parts.filter(({ state }) => state === "here").length;
+  for (const part of chunks.parts) {
+    chunks.use(part);
+    chunks.keep(part, await recorded.container.read(part.chunk));
+    chunks.trim(() => undefined);
+  }
+  assert.ok(here() >= 1 && here() < 5, `${here()} of ${chunks.parts.length} chunks`);
+  assert.equal(chunks.nearest(0), chunks.parts.find(({ state }) => state === "here")?.sequences[0]);
+  assert.ok(!chunks.hasRoomFor(chunks.parts[0]));
 });
 
 const damaged = new Uint8Array([8]); // the number is missing

@@ -21,8 +21,9 @@ export interface Link {
   box?: Box; cylinder?: Cylinder; sphere?: Sphere; capsule?: Cylinder; hull?: number;
 }
 export interface Hull { vertices: Floats; triangles: Floats }
+export enum JointType { unspecified, fixed, spherical, prismatic, revolute }
 export interface Joint {
-  id: string; entity: number; type: number; parent: number; child: number;
+  id: string; entity: number; type: JointType; parent: number; child: number;
   position: Floats; axis: Floats; lower?: number; upper?: number;
 }
 export interface Mount { link: number; position: Floats; orientation: Floats }

@@ -20,7 +20,7 @@ export class Playback {
 
   /** The frame to show after the one at `sequence`. It waits for frames that are still being read.
       @param now  wall time [s] */
-  advance(now: number, sequence: number, frames: Frames): number {
+  advance(now: number, sequence: number, frames: Pick<Frames, "last" | "stepNs" | "at">): number {
     const passed = this.before === 0 ? 0 : Math.min(now - this.before, 0.25); // a hidden page stands
     this.before = now;
     if (!this.isPlaying) return sequence;

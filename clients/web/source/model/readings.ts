@@ -1,6 +1,7 @@
 // What one robot senses and is told, device by device, with the place of each number in its message,
 // so that it can be plotted.
-import type { Command, Description, DeviceField, DeviceKind, Floats, Observation } from "./messages";
+import { JointType, type Command, type Description, type DeviceField, type DeviceKind, type Floats, type Joint, type Observation, type World }
+  from "./messages";
 import { beginning } from "./texts";
 
 const mostLetters = 200; // of bytes that are text
@@ -11,6 +12,8 @@ export interface Reading {
   value?: number;
   range?: [number, number]; // of a bar
   series?: { topic: string; path: string };
+  name?: string; // of the series, without its robot and unit
+  unit?: string;
 }
 export interface Group { device: string; readings: Reading[]; more: number } // so many more are not made
 
@@ -42,7 +45,8 @@ export function number(value: number, unit = ""): string {
 /** Adds readings of one message; `group` collects them by device. */
 class Collector {
   groups: Group[] = [];
-  constructor(private readonly topic: string) {}
+  /** @param suffix  of the names of series */
+  constructor(private readonly topic: string, private readonly suffix = "") {}
 
   group(device: string): Group {
     let found = this.groups.find((group) => group.device === device);
@@ -60,7 +64,8 @@ class Collector {
       range?: [number, number]): void {
     if (index >= values.length) return;
     const value = values[index];
-    this.group(device).readings.push({ label, value, text: number(value, unit), range,
+    const name = (device === "Joints" ? label : `${device} ${label}`) + this.suffix;
+    this.group(device).readings.push({ label, value, text: number(value, unit), range, name, unit,
                                        series: { topic: this.topic, path: `${field}.${index}` } });
   }
 }
@@ -69,14 +74,33 @@ const modes = ["", "disabled", "position", "velocity"];
 const turretModes = ["", "passive", "position", "speed"];
 const axes = ["x", "y", "z"];
 
-export type Limits = (joint: string) => [number, number] | undefined;
+/** The joint of a robot with that id. */
+export type Joints = (id: string) => Pick<Joint, "type" | "lower" | "upper"> | undefined;
 
-export function observed(topic: string, robot: Description, o: Observation, limits: Limits): Group[] {
-  const out = new Collector(topic);
-  out.first("Joints", robot.jointSensors).forEach(({ id, mode }, i) => {
-    out.add("Joints", `${id} ${modes[mode] ?? ""}`, "jointReadings", o.jointReadings, i,
-            "", mode === 2 ? limits(id) : undefined);
+export function jointsOf(world: World, entity: number): Joints {
+  return (id) => world.joints.find((joint) => joint.entity === entity && joint.id === id);
+}
+
+/** Of a joint's position or velocity; empty: it is not known. */
+function unitOf(joint: ReturnType<Joints>, mode: number): string {
+  const unit = joint?.type === JointType.prismatic ? "m" : joint?.type === JointType.revolute ? "rad" : "";
+  return unit !== "" && modes[mode] === "velocity" ? `${unit}/s` : unit;
+}
+
+function limitsOf(joint: ReturnType<Joints>): [number, number] | undefined {
+  return joint?.lower !== undefined && joint.upper !== undefined ? [joint.lower, joint.upper] : undefined;
+}
+
+function addJoints(out: Collector, list: { id: string; mode: number }[], field: string, values: Floats, joints: Joints): void {
+  out.first("Joints", list).forEach(({ id, mode }, i) => {
+    const joint = joints(id);
+    out.add("Joints", `${id} ${modes[mode] ?? ""}`, field, values, i, unitOf(joint, mode), mode === 2 ? limitsOf(joint) : undefined);
   });
+}
+
+export function observed(topic: string, robot: Description, o: Observation, joints: Joints): Group[] {
+  const out = new Collector(topic);
+  addJoints(out, robot.jointSensors, "jointReadings", o.jointReadings, joints);
   out.first("Proximity", robot.proximitySensors).forEach((_, i) => out.add("Proximity", `${i}`, "proximity", o.proximity, i, "", [0, 1]));
   if (robot.positioning) {
     axes.forEach((axis, i) => out.add("Position", axis, "positioning", o.positioning, i, "m"));
@@ -156,12 +180,9 @@ function addCounts(out: Collector, robot: Description, o: Observation): void {
   }
 }
 
-export function commanded(topic: string, robot: Description, c: Command, limits: Limits): Group[] {
-  const out = new Collector(topic);
-  out.first("Joints", robot.jointActuators).forEach(({ id, mode }, i) => {
-    out.add("Joints", `${id} ${modes[mode] ?? ""}`, "jointTargets", c.jointTargets, i, "",
-            mode === 2 ? limits(id) : undefined);
-  });
+export function commanded(topic: string, robot: Description, c: Command, joints: Joints): Group[] {
+  const out = new Collector(topic, ", commanded");
+  addJoints(out, robot.jointActuators, "jointTargets", c.jointTargets, joints);
   out.first("Magnets", robot.magnets).forEach(({ id }, i) => out.add("Magnets", id || `${i}`, "magnetCurrents", c.magnetCurrents, i));
   const color = (values: Floats, i: number): string => `#${(values[i] ?? 0).toString(16).padStart(6, "0")}`;
   out.first("LEDs", robot.leds.slice(0, c.ledColors.length)).forEach(({ id }, i) =>

@@ -1,58 +1,55 @@
 // A recording: all its frames, of which those in view are in memory. Frames are the ticks of the recording from its
-// first, so that their places on the time line are known before they are read. In the background all of the file is
-// read once, for log lines, collisions and plots.
+// first, so that their places on the time line are known before they are read. A frame is decoded when it is looked at.
+// In the background all of the file is read once, for log lines, collisions and plots; what has room stays in memory.
 import type { IReadable } from "@mcap/core";
-import { Container, type Chunk, type RawMessage } from "../data/container";
+import { Container, type RawMessage } from "../data/container";
 import type { Decoder } from "../data/decode";
 import { Held } from "../data/held";
 import type { Listener, Message, Source, Value } from "../data/source";
 import { areWhole, checkWorld } from "./check";
+import { Chunks, upperBound, type Part } from "./chunks";
 import { Collisions } from "./collisions";
 import { decoderIn, endOf, findWorld } from "./first_world";
 import type { Contacts, Log, Poses, World } from "./messages";
+import { metricsIn, metricsTopic, type Metrics } from "./metrics";
 import { Pieces } from "./pieces";
 import type { Series } from "./series";
 import { kept, mostShown } from "./texts";
 import { newestMessage, type Frame, type Frames, type Mark } from "./timeline";
 
-const mostBytes = 192 * 1024 * 1024; // of frames in memory
 const mostFrames = 1e8;
-const mostPoints = 6000; // of a plot
+const mostPoints = 20_000; // of a plot
 const mostTold = 3; // messages that are left out; further ones are told together
 const mostLeftOut = 100_000; // that are remembered
-const ofMessage = 300; // memory beside its bytes
+const mostReads = 2; // at the same time: of a drag over many chunks only some are read, and its end soon
 
-interface Part {
-  readonly chunk: Chunk;
-  readonly first: number; // frame
-  readonly last: number;
-  state: "away" | "coming" | "here" | "damaged";
-  frames: number[];
-  bytes: number;
-  used: number; // when, in calls
-}
+/** A series that is filled with every so many frames of the file. */
+interface Filling { series: Series; stride: number; done: () => void }
 
-/** An act of a supervisor or viewer, in /inputs: protocol/ziggurat/v1/run.proto. */
-interface Acts { acts: Record<string, Record<string, unknown> | undefined>[] }
+/** Of /inputs, protocol/ziggurat/v1/run.proto: acts of supervisors and viewers, and metrics. */
+interface Inputs extends Metrics { acts: Record<string, Record<string, unknown> | undefined>[] }
 
 export class Recorded implements Source, Frames {
   readonly isLive = false;
   readonly first = 0;
   readonly last: number;
   readonly marks: Mark[] = [];
-  private readonly parts: Part[] = [];
-  private readonly frames = new Map<number, Frame>();
+  /** Last values of the run's metrics, by ROBOT/NAME; those of the whole file, when it was read. */
+  readonly metrics = new Map<string, number>();
+  private readonly chunks: Chunks;
+  private readonly frames = new Map<number, Frame>(); // that were looked at, of chunks in memory
   private readonly worlds = new Map<number, World>(); // by generation
   private readonly decoders = new Map<number, Decoder | null>(); // by channel; those of one schema are the same
   private readonly bySchema = new Map<number, Decoder | null>();
   private readonly startNs: bigint;
   private tickNs: number;
+  private firstTick: number | null = null; // null: not read yet
   private readonly missing = new Set<number>(); // generations without a world that can be read
+  private readonly searched = new Set<number>(); // generations whose world is looked for
   private readonly leftOut = new Set<string>();
-  private bytes = 0;
-  private calls = 0;
+  private reads = 0;
   private listener: Listener | null = null;
-  private unread: Series[] = [];
+  private unread: Filling[] = [];
   private isReading = false;
   private hasRead = false; // log and collisions
   private isClosed = false;
@@ -64,10 +61,7 @@ export class Recorded implements Source, Frames {
     this.tickNs = Math.max(first.tickNs, length / mostFrames);
     this.last = Math.round(length / this.tickNs);
     this.worlds.set(first.generation, first);
-    for (const chunk of container.chunks) {
-      this.parts.push({ chunk, first: this.sequenceOf(chunk.startNs), last: this.sequenceOf(chunk.endNs),
-                        state: "away", frames: [], bytes: 0, used: 0 });
-    }
+    this.chunks = new Chunks(container, (timeNs) => this.placeOf(timeNs));
   }
 
   /** @throws Error with a sentence for the user */
@@ -110,96 +104,83 @@ export class Recorded implements Source, Frames {
   close(): void { this.isClosed = true; }
 
   private tellTopics(): void {
-    this.listener?.topics([...new Set([...this.container.channels.values()].map(({ topic }) => topic))].sort());
+    const topics = new Set([...this.container.channels.values()].map(({ topic }) => topic));
+    if (this.metrics.size > 0) topics.add(metricsTopic);
+    this.listener?.topics([...topics].sort());
   }
 
   // --- frames ---------------------------------------------------------------------------------------
 
-  private sequenceOf(timeNs: bigint): number {
+  private placeOf(timeNs: bigint): number {
     return Math.min(Math.max(Math.round(Number(timeNs - this.startNs) / this.tickNs), 0), mostFrames);
   }
 
   stepNs(): number { return this.tickNs; }
 
+  tickOf(sequence: number): number | null {
+    return this.firstTick === null ? null : this.firstTick + sequence;
+  }
+
+  sequenceOf(tick: number): number | null {
+    return this.firstTick === null ? null : Math.min(Math.max(tick - this.firstTick, 0), this.last);
+  }
+
   at(sequence: number): Frame | null {
     const wanted = Math.min(Math.max(Math.round(sequence), 0), this.last);
-    const parts = this.partsAt(wanted);
-    ++this.calls;
-    for (const part of parts) {
-      part.used = this.calls;
-      if (part.state === "away") void this.load(part);
-    }
-    const next = this.parts[this.parts.indexOf(parts[0]) + 1]; // so that playing does not wait
-    if (next?.state === "away" && wanted > (parts[0].first + parts[0].last) / 2) void this.load(next);
-    if (parts.some(({ state }) => state === "coming")) return null;
-    for (const part of parts) {
-      let low = 0, high = part.frames.length;
-      while (low < high) { // the first one behind
-        const middle = (low + high) >> 1;
-        if (part.frames[middle] <= wanted) low = middle + 1;
-        else high = middle;
-      }
-      const found = this.frames.get(part.frames[low - 1]);
-      if (found) return found;
+    const parts = this.chunks.at(wanted);
+    for (const part of parts) this.need(part);
+    const last = parts[parts.length - 1];
+    const next = this.chunks.after(last); // so that playing does not wait
+    if (next && wanted > (last.first + last.last) / 2) this.need(next);
+    if (parts.some(({ state }) => state === "away" || state === "coming")) return null;
+    for (const part of parts.reverse()) {
+      const found = part.sequences[upperBound(part.sequences, wanted, (one) => one) - 1];
+      if (found !== undefined) return this.make(found);
     }
     return null;
   }
 
-  /** The parts that have a frame, the last first: one, or two where one ends within the frame. If none has it, the one before. */
-  private partsAt(sequence: number): Part[] {
-    let low = 0, high = this.parts.length;
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (this.parts[middle].first <= sequence) low = middle + 1;
-      else high = middle;
-    }
-    const last = Math.max(low - 1, 0);
-    const found = [this.parts[last]];
-    for (let i = last - 1; i >= 0 && i > last - 4 && this.parts[i].last >= sequence; --i) found.push(this.parts[i]);
-    return found;
+  /** The frame in memory that is nearest to a place, while that is being read. */
+  nearest(sequence: number): Frame | null {
+    const found = this.chunks.nearest(sequence);
+    return found === null ? null : this.make(found);
   }
 
   message(topic: string, sequence: number, back = 400, entity?: number): Message | null {
-    return newestMessage(topic, this.backwards(sequence, back), entity);
+    const found = this.chunks.newestWith(topic, sequence, back);
+    if (found === null) return null;
+    const begin = entity === undefined ? found : Math.min(sequence, this.last); // whose it is, its way here tells
+    const frames = Array.from({ length: begin - found + 1 }, (_, i) => this.make(begin - i));
+    return newestMessage(topic, frames, entity);
   }
 
-  private *backwards(sequence: number, back: number): Generator<Frame | undefined> {
-    for (let s = Math.min(sequence, this.last); s >= 0 && s > sequence - back; --s) yield this.frames.get(s);
+  private need(part: Part): void {
+    this.chunks.use(part);
+    if (part.state === "away" && this.reads < mostReads) void this.load(part);
   }
 
   private async load(part: Part): Promise<void> {
     part.state = "coming";
+    ++this.reads;
     try {
-      const messages = await this.container.read(part.chunk);
-      await this.knowWorlds(part, messages);
-      await this.makeFrames(part, messages);
-      part.state = "here";
+      this.keep(part, await this.container.read(part.chunk));
     } catch (error) {
       part.state = "damaged";
       this.listener?.notice("error", `${this.name} is damaged at ${(part.first * this.tickNs * 1e-9).toFixed(2)} s: ${(error as Error).message}. `
         + "The rest can be shown.");
     }
-    this.forgetOld();
+    --this.reads;
   }
 
-  /** Finds the worlds that the part's poses belong to. */
-  private async knowWorlds(part: Part, messages: RawMessage[]): Promise<void> {
-    const generations = new Set<number>();
+  private keep(part: Part, messages: RawMessage[]): void {
     for (const message of messages) {
-      const topic = this.container.channels.get(message.channel)?.topic;
-      if (topic === "/world") this.takeWorld(message);
-      if (topic === "/poses") generations.add(this.decode<Poses>(message)?.generation ?? 0);
+      if (this.topicOf(message) === "/world") this.takeWorld(message);
     }
-    const isUnknown = (): boolean => [...generations].some((generation) => !this.worlds.has(generation) && !this.missing.has(generation));
-    for (let i = this.parts.indexOf(part) - 1; i >= 0 && isUnknown(); --i) {
-      const { channels } = this.parts[i].chunk;
-      if (channels && ![...channels].some((id) => this.container.channels.get(id)?.topic === "/world")) continue;
-      for (const message of await this.container.read(this.parts[i].chunk)) {
-        if (this.container.channels.get(message.channel)?.topic === "/world") this.takeWorld(message);
-      }
-    }
-    for (const generation of generations) if (!this.worlds.has(generation)) this.missing.add(generation);
+    this.chunks.keep(part, messages);
+    this.chunks.trim(({ sequences }) => { for (const sequence of sequences) this.frames.delete(sequence); });
   }
+
+  private topicOf(message: RawMessage): string { return this.container.channels.get(message.channel)?.topic ?? ""; }
 
   private takeWorld(message: RawMessage): void {
     const world = this.decode<World>(message);
@@ -208,47 +189,50 @@ export class Recorded implements Source, Frames {
     this.worlds.set(world.generation, world);
   }
 
-  private async makeFrames(part: Part, messages: RawMessage[]): Promise<void> {
-    let frame: Frame | undefined;
-    const pieces = new Pieces();
-    for (const message of messages) {
-      await pieces.next();
-      const channel = this.container.channels.get(message.channel);
-      const decoder = this.decoderOf(message.channel);
-      if (!channel || !decoder) continue;
-      const held = this.hold(channel.topic, message, decoder);
-      if (!held) continue;
-      const sequence = this.sequenceOf(message.timeNs);
-      if (frame?.sequence !== sequence) frame = this.frames.get(sequence);
-      if (!frame) {
-        frame = { sequence, timeNs: message.timeNs, tick: sequence, world: null, messages: new Map() };
-        this.frames.set(sequence, frame);
-        part.frames.push(sequence);
-      }
-      if (channel.topic === "/poses") {
-        const poses = held.read<Poses>();
-        const world = this.worlds.get(poses.generation);
-        if (!world || !areWhole(poses, world)) continue;
-        frame.world = world;
-        frame.tick = poses.tick;
-      }
-      frame.messages.set(channel.topic, held);
-      part.bytes += message.data.byteLength + ofMessage;
+  /** Finds the world that poses of a part belong to, before it. */
+  private async search(generation: number, part: Part): Promise<void> {
+    if (this.searched.has(generation)) return;
+    this.searched.add(generation);
+    for (const { chunk } of this.chunks.before(part)) {
+      if (chunk.channels && ![...chunk.channels].some((id) => this.container.channels.get(id)?.topic === "/world")) continue;
+      try {
+        for (const message of await this.container.read(chunk)) {
+          if (this.topicOf(message) === "/world") this.takeWorld(message);
+        }
+      } catch { /* load() says it when the place is looked at */ }
+      if (this.worlds.has(generation)) return;
     }
-    part.bytes = Math.max(part.bytes, messages[0]?.data.buffer.byteLength ?? 0); // all of the chunk, if any of it is kept
-    part.frames.sort((a, b) => a - b);
-    this.bytes += part.bytes;
+    this.missing.add(generation);
   }
 
-  private forgetOld(): void {
-    while (this.bytes > mostBytes) {
-      const here = this.parts.filter(({ state, used }) => state === "here" && used < this.calls);
-      if (here.length < 2) return;
-      const old = here.reduce((a, b) => (a.used < b.used ? a : b));
-      for (const sequence of old.frames) this.frames.delete(sequence);
-      this.bytes -= old.bytes;
-      Object.assign(old, { state: "away", frames: [], bytes: 0 });
+  /** A frame of the parts in memory, of its messages; null: it has none, or its world is still looked for. */
+  private make(sequence: number): Frame | null {
+    const known = this.frames.get(sequence);
+    if (known) return known;
+    const parts = this.chunks.at(sequence).filter((part) => part.byFrame.has(sequence));
+    let frame: Frame | null = null;
+    for (const part of parts) {
+      for (const message of part.byFrame.get(sequence) ?? []) {
+        const held = this.hold(message);
+        if (!held) continue;
+        frame ??= { sequence, timeNs: message.timeNs, tick: sequence, world: null, messages: new Map() };
+        if (held.topic === "/poses") {
+          const poses = held.read<Poses>();
+          const world = this.worlds.get(poses.generation);
+          if (!world && !this.missing.has(poses.generation)) {
+            void this.search(poses.generation, part);
+            return null;
+          }
+          if (!world || !areWhole(poses, world)) continue;
+          frame.world = world;
+          frame.tick = poses.tick;
+          if (sequence === 0) this.firstTick ??= poses.tick;
+        }
+        frame.messages.set(held.topic, held);
+      }
     }
+    if (frame) this.frames.set(sequence, frame);
+    return frame;
   }
 
   private decoderOf(id: number): Decoder | null {
@@ -275,10 +259,12 @@ export class Recorded implements Source, Frames {
     }
   }
 
-  private hold(topic: string, message: RawMessage, decoder: Decoder): Held | null {
-    if (this.leftOut.has(keyOf(message))) return null;
+  /** null: it can't be read. */
+  private hold(message: RawMessage): Held | null {
+    const decoder = this.decoderOf(message.channel);
+    if (!decoder || this.leftOut.has(keyOf(message))) return null;
     try {
-      return new Held(topic, message.timeNs, message.data, decoder);
+      return new Held(this.topicOf(message), message.timeNs, message.data, decoder);
     } catch (error) {
       this.leaveOut(message, endOf(error));
       return null;
@@ -299,52 +285,63 @@ export class Recorded implements Source, Frames {
 
   // --- all of the file, once ------------------------------------------------------------------------
 
-  /** Fills series with their numbers of the whole recording, in the background. */
-  fill(series: Series): void {
-    this.unread.push(series);
-    void this.readAll();
+  /** Fills a series with its numbers of the whole recording, in the background. @param most  points, about */
+  fill(series: Series, most = mostPoints): Promise<void> {
+    return new Promise((done) => {
+      this.unread.push({ series, stride: Math.max(1, Math.ceil(this.length / most)), done });
+      void this.readAll();
+    });
   }
 
   private async readAll(): Promise<void> {
     if (this.isReading) return;
     this.isReading = true;
+    await Promise.resolve(); // what is asked for at the same time is read together
     while (!this.isClosed && (!this.hasRead || this.unread.length > 0)) {
-      const series = this.unread;
+      const fillings = this.unread;
       this.unread = [];
       const isFirst = !this.hasRead;
       this.hasRead = true;
-      await this.visit(isFirst, series);
+      await this.visit(isFirst, fillings);
+      for (const { done } of fillings) done();
       this.tellTopics(); // those of a file without summary are known now
     }
     this.isReading = false;
   }
 
-  private async visit(isFirst: boolean, series: Series[]): Promise<void> {
+  private async visit(isFirst: boolean, fillings: Filling[]): Promise<void> {
     const collisions = new Collisions();
-    const stride = Math.max(1, Math.ceil(this.length / mostPoints));
-    const topics = new Set(series.map(({ name }) => name.topic));
+    const topics = new Set(fillings.map(({ series }) => recordedTopic(series.name.topic)));
     if (isFirst) for (const topic of ["/log", "/contacts", "/inputs"]) topics.add(topic);
-    for (const part of this.parts) {
+    for (const part of this.chunks.parts) {
+      while (this.reads > 0 && !this.isClosed) await new Promise((resolve) => setTimeout(resolve, 5)); // the user waits
       if (this.isClosed) return;
       const begin = performance.now();
       const pieces = new Pieces();
-      let messages: RawMessage[] = [];
-      try {
-        messages = await this.container.read(part.chunk);
-        for (const message of messages) {
-          const topic = this.container.channels.get(message.channel)?.topic ?? "";
-          if (!topics.has(topic)) continue;
-          await pieces.next();
-          const sequence = this.sequenceOf(message.timeNs);
-          if (isFirst) this.note(topic, sequence, message, collisions);
-          for (const one of series) {
-            if (one.name.topic === topic && sequence % stride === 0) {
-              one.add(sequence, Number(message.timeNs) * 1e-9, this.decode(message));
-            }
-          }
+      for (const message of await this.messagesOf(part)) {
+        const topic = this.topicOf(message);
+        if (!topics.has(topic)) continue;
+        await pieces.next();
+        const sequence = this.placeOf(message.timeNs);
+        if (isFirst) this.note(topic, sequence, message, collisions);
+        for (const { series, stride } of fillings) {
+          if (recordedTopic(series.name.topic) !== topic || sequence % stride !== 0) continue;
+          series.add(sequence, Number(message.timeNs) * 1e-9, this.decode(message));
         }
-      } catch { /* load() says it when the place is looked at */ }
+      }
       await new Promise((resolve) => setTimeout(resolve, performance.now() - begin)); // half of the time is for drawing
+    }
+  }
+
+  /** Those of a chunk, which stays in memory if there is room: load() tells what is damaged when the place is looked at. */
+  private async messagesOf(part: Part): Promise<RawMessage[]> {
+    if (part.state !== "away") return part.messages.length > 0 ? part.messages : this.container.read(part.chunk).catch(() => []);
+    try {
+      const messages = await this.container.read(part.chunk);
+      if (this.chunks.hasRoomFor(part)) this.keep(part, messages);
+      return messages;
+    } catch {
+      return [];
     }
   }
 
@@ -359,10 +356,12 @@ export class Recorded implements Source, Frames {
       const text = contacts && world ? collisions.take(contacts, Number(message.timeNs), world) : "";
       if (text) this.mark(sequence, "collision", text);
     } else if (topic === "/inputs") {
-      for (const act of this.decode<Acts>(message)?.acts ?? []) {
+      const inputs = this.decode<Inputs>(message);
+      for (const act of inputs?.acts ?? []) {
         const name = ["spawn", "remove", "move", "reset", "restore", "snapshot"].find((key) => act[key] !== undefined);
         if (name) this.mark(sequence, "reset", `${name} ${String(act[name]?.["entity"] ?? act[name]?.["name"] ?? "")}`);
       }
+      for (const { path, value } of inputs ? metricsIn(inputs) : []) this.metrics.set(path, value);
     }
   }
 
@@ -370,6 +369,9 @@ export class Recorded implements Source, Frames {
     if (this.marks.length < 20_000) this.marks.push({ sequence, kind, text: kept(text, mostShown) });
   }
 }
+
+/** The topic of the file that has what is shown under a topic. */
+function recordedTopic(topic: string): string { return topic === metricsTopic ? "/inputs" : topic; }
 
 /** Of a message in the file. */
 function keyOf({ channel, timeNs, data }: RawMessage): string { return `${channel} ${timeNs} ${data.byteOffset}`; }

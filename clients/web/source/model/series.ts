@@ -1,6 +1,8 @@
 // Numbers over time: any number of any channel, named by its topic and its path in the decoded message,
 // for example "jointReadings.2".
 import type { Value } from "../data/source";
+import type { Label } from "./labels";
+import { metricsIn, metricsTopic } from "./metrics";
 import type { Frame, Timeline } from "./timeline";
 
 export interface SeriesName { topic: string; path: string }
@@ -15,6 +17,17 @@ export function numberAt(value: unknown, path: string): number | null {
   if (typeof found === "bigint") return Number(found);
   if (typeof found === "boolean") return found ? 1 : 0;
   return typeof found === "number" ? found : null;
+}
+
+/** The number of a series in a message of its topic. */
+function numberOf({ topic, path }: SeriesName, message: unknown): number | null {
+  if (topic !== metricsTopic) return numberAt(message, path);
+  return metricsIn(message).find((metric) => metric.path === path)?.value ?? null;
+}
+
+/** All numbers of a message that can be plotted. */
+export function plottable(topic: string, message: unknown): { path: string; value: number }[] {
+  return topic === metricsTopic ? metricsIn(message) : numbersIn(message);
 }
 
 const mostVisited = 20_000; // parts of a message, in which numbers are looked for
@@ -62,6 +75,7 @@ export class Series {
   readonly sequences: number[] = [];
   readonly times: number[] = []; // simulated [s]
   readonly values: (number | null)[] = [];
+  label: Label | null = null; // null: not known yet
   private next = 0;
 
   constructor(readonly name: SeriesName) {}
@@ -84,9 +98,11 @@ export class Series {
 
   /** Takes the number out of a message. @param time  simulated [s] */
   add(sequence: number, time: number, message: unknown): void {
+    const value = numberOf(this.name, message);
+    if (value === null && this.name.topic === metricsTopic) return; // it holds until it is set again
     this.sequences.push(sequence);
     this.times.push(time);
-    this.values.push(numberAt(message, this.name.path));
+    this.values.push(value);
   }
 
   get latest(): number | null { return this.values[this.values.length - 1] ?? null; }

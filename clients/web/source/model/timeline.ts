@@ -15,7 +15,7 @@ export interface Frame {
   readonly messages: Map<string, Message>;
 }
 
-export type MarkKind = "log" | "warning" | "error" | "missed" | "collision" | "reset";
+export type MarkKind = "log" | "warning" | "error" | "missed" | "session" | "collision" | "reset" | "bookmark";
 
 /** Something that happened. */
 export interface Mark {
@@ -33,6 +33,10 @@ export interface Frames {
   readonly marks: Mark[];
   /** The frame, or the nearest one before; null while it is being read. */
   at(sequence: number): Frame | null;
+  /** The tick of a frame. A recording counts on where its world was reset: each has its own number. null: not known yet. */
+  tickOf(sequence: number): number | null;
+  /** The frame at a tick, or the last one before; null: none is, yet. */
+  sequenceOf(tick: number): number | null;
   /** Simulated time from a frame to the next one [ns]; null: not known yet. */
   stepNs(sequence: number): number | null;
   /**
@@ -89,6 +93,19 @@ export class Timeline implements Frames {
   stepNs(sequence: number): number | null {
     const [a, b] = [this.at(sequence), this.at(sequence + 1)];
     return a && b ? Math.max(0, Number(b.timeNs - a.timeNs)) : null; // after a reset time begins again
+  }
+
+  tickOf(sequence: number): number | null { return this.at(sequence)?.tick ?? null; }
+
+  /** Of the newest run. */
+  sequenceOf(tick: number): number | null {
+    for (let s = this.last, before = Infinity; s >= this.first; --s) {
+      const found = this.at(s)?.tick ?? 0;
+      if (found > before) return null; // that was before the reset
+      if (found <= tick) return s === this.last && found < tick ? null : s;
+      before = found;
+    }
+    return null;
   }
 
   clear(): void {

@@ -4,13 +4,16 @@ import type { Coloring } from "../drawing/colors";
 import type { View, Layer } from "../drawing/view";
 import { layers, mostRobotsAtOnce } from "../drawing/view";
 import { Collisions } from "../model/collisions";
+import { Connections, lanes, type Lane } from "../model/marks";
 import type { Barrier, Contacts, Entity, Log, Robot, World } from "../model/messages";
 import { Playback } from "../model/playback";
 import { Recorded } from "../model/recorded";
-import { nameOf, Series, type SeriesName } from "../model/series";
+import { metricsTopic } from "../model/metrics";
+import { nameOf, plottable, Series, type SeriesName } from "../model/series";
 import type { Settings, Tab } from "../model/settings";
 import { beginning, kept } from "../model/texts";
-import { Timeline, type Frame, type Frames } from "../model/timeline";
+import { Timeline, type Frame, type Frames, type Mark } from "../model/timeline";
+import { Moments } from "./moments";
 
 export interface LogEntry { sequence: number; seconds: number; name: string; level: number; text: string; length: number }
 export interface Notice { level: "info" | "warning" | "error"; text: string }
@@ -24,6 +27,8 @@ const mostLinksForCollisions = 300;
 export class App implements Listener {
   private seen = new Timeline(); // of a running world
   private collisions = new Collisions();
+  private connections = new Connections();
+  private readonly moments: Moments;
   readonly playback = new Playback();
   connection: Status = { phase: "connecting", text: "", mayControl: false, session: "" };
   topicNames: string[] = [];
@@ -46,6 +51,7 @@ export class App implements Listener {
 
   constructor(public source: Source, readonly settings: Settings, readonly view: View) {
     this.series = settings.plots.map((name) => new Series(name));
+    this.moments = new Moments(settings);
     this.applySettings();
   }
 
@@ -55,6 +61,8 @@ export class App implements Listener {
     this.source = source;
     this.seen = new Timeline();
     this.collisions = new Collisions();
+    this.connections = new Connections();
+    this.moments.forget();
     this.log = [];
     this.barrier = null;
     this.parameters.clear();
@@ -66,9 +74,9 @@ export class App implements Listener {
     this.playback.isPlaying = false;
     if (source instanceof Recorded) {
       this.pinned = 0;
-      for (const series of this.series) source.fill(series);
+      for (const series of this.series) void source.fill(series);
       this.playback.speed = 1;
-      this.playback.start();
+      if (!this.moments.isWaiting) this.playback.start();
     }
     source.start(this);
   }
@@ -106,6 +114,7 @@ export class App implements Listener {
     if (message.topic === "/world" || (message.topic === "/poses" && this.seen.newest?.world !== this.wantedFor)) this.want();
     if (message.topic === "/barrier") {
       this.barrier = message.read<Barrier>();
+      for (const text of this.connections.take(this.barrier.status?.sessions ?? [])) this.seen.mark("session", text);
       this.seen.noteMissed(this.barrier.histograms.reduce((sum, { missedTicks }) => sum + missedTicks, 0));
     }
   }
@@ -144,7 +153,7 @@ export class App implements Listener {
   want(): void {
     const newest = this.seen.newest?.world ?? null; // while the page looks back, too
     this.wantedFor = newest;
-    const wanted = new Set(["/world", "/poses", "/log", "/barrier", "/phases"]);
+    const wanted = new Set(["/world", "/poses", "/log", "/barrier", "/phases", metricsTopic]);
     const robots = newest?.robots ?? [];
     const selected = this.selectedRobot;
     const areShown = robots.length <= mostRobotsAtOnce || selected !== null || this.view.shown.has("everyone");
@@ -172,8 +181,22 @@ export class App implements Listener {
   /** Chooses the frame of this redraw. */
   chooseFrame(): void {
     const before = this.world;
-    this.frame = this.recorded ? this.recorded.at(this.pinned ?? this.recorded.last) ?? this.frame : this.frameOfRun();
+    this.frame = this.recorded ? this.frameOf(this.recorded) : this.frameOfRun();
     if (this.world !== before) this.want();
+    this.showMoment();
+  }
+
+  /** The moment of the address, as soon as it is there. */
+  private showMoment(): void {
+    const found = this.moments.find(this.timeline);
+    if (found && "fault" in found) this.onNotice({ level: "warning", text: found.fault });
+    else if (found) this.pin(found.sequence);
+  }
+
+  /** While the frame is being read, the nearest one that is there, so that a drag shows something at once. */
+  private frameOf(recorded: Recorded): Frame | null {
+    const wanted = this.pinned ?? recorded.last;
+    return recorded.at(wanted) ?? (this.playback.isPlaying ? null : recorded.nearest(wanted)) ?? this.frame;
   }
 
   /** The newest frame that is whole, unless the user looks back. */
@@ -218,10 +241,59 @@ export class App implements Listener {
   // --- what the user does ---------------------------------------------------------------------------
 
   pin(sequence: number | null): void {
+    this.go(sequence);
+    this.onSettings();
+  }
+
+  private go(sequence: number | null): void {
     const { first, last } = this.timeline;
-    if (this.recorded) this.pinned = Math.min(Math.max(sequence ?? last, first), last);
-    else this.pinned = sequence === null || sequence >= last ? null : Math.max(sequence, first);
+    if (this.recorded) {
+      this.pinned = Math.min(Math.max(sequence ?? last, first), last);
+      this.recorded.at(this.pinned); // reading begins now
+    } else {
+      this.pinned = sequence === null || sequence >= last ? null : Math.max(sequence, first);
+    }
     if (this.isLive) this.playback.isPlaying = false;
+  }
+
+  /** The tick of the address: where the page stands, in what it has; null: it goes on. */
+  get addressTick(): number | null {
+    if (this.moments.isWaiting) return this.settings.tick;
+    return this.pinned === null || this.playback.isPlaying ? null : this.timeline.tickOf(this.pinned);
+  }
+
+  /** Marks of the user. */
+  get bookmarks(): Mark[] { return this.moments.bookmarks; }
+
+  /** Adds a bookmark at the frame that is shown, or removes its one. */
+  toggleBookmark(): void {
+    const tick = this.frame && this.timeline.tickOf(this.frame.sequence);
+    if (!this.frame || tick === null) return;
+    this.moments.toggle(tick, this.frame.sequence);
+    this.onSettings();
+  }
+
+  /** Shows or hides a lane of the time line. */
+  toggleLane(name: Lane): void {
+    const { hiddenLanes } = this.settings;
+    this.settings.hiddenLanes = lanes.map((lane) => lane.name).filter((lane) => hiddenLanes.includes(lane) !== (lane === name));
+    this.onSettings();
+  }
+
+  /** Takes what another address says. */
+  change(settings: Settings): void {
+    Object.assign(this.settings, settings);
+    this.series = settings.plots.map((name) => this.series.find((series) => nameOf(series.name) === nameOf(name)) ?? this.makeSeries(name));
+    if (this.recorded) this.playback.isPlaying &&= settings.tick === null;
+    this.moments.restart();
+    this.applySettings();
+    this.want();
+  }
+
+  private makeSeries(name: SeriesName): Series {
+    const series = new Series(name);
+    void this.recorded?.fill(series);
+    return series;
   }
 
   /** One frame further, of what the page has; of a running world one tick. */
@@ -247,8 +319,10 @@ export class App implements Listener {
     if (this.isLive || !this.playback.isPlaying) return;
     const { last } = this.timeline;
     const next = this.playback.advance(now, this.pinned ?? last, this.timeline);
-    if (next !== this.pinned) this.pin(next);
-    if (next >= last) this.playback.isPlaying = false;
+    if (next !== this.pinned) this.go(next);
+    if (next < last) return;
+    this.playback.isPlaying = false;
+    this.onSettings();
   }
 
   select(id: string | null): void {
@@ -315,13 +389,37 @@ export class App implements Listener {
     if (without.length < this.series.length) {
       this.series = without;
     } else {
-      const series = new Series(name);
-      this.series = [...this.series, series];
-      this.recorded?.fill(series);
+      this.series = [...this.series, this.makeSeries(name)];
     }
     this.settings.plots = this.series.map((series) => series.name);
     this.want();
     this.onSettings();
+  }
+
+  /** Whether each series has a chart of its own. */
+  setApart(isApart: boolean): void {
+    this.settings.apart = isApart;
+    this.onSettings();
+  }
+
+  /** The plotted series with all values that the page has; of a recording, all of it. */
+  async wholeSeries(): Promise<Series[]> {
+    const whole = this.series.map(({ name }) => new Series(name));
+    if (this.recorded) await Promise.all(whole.map((series) => this.recorded?.fill(series, Infinity)));
+    else for (const series of whole) series.update(this.seen, Infinity);
+    return whole;
+  }
+
+  /** What can be plotted of a topic; null: it has no message near the frame that is shown. */
+  numbersOf(topic: string): { path: string; value: number }[] | null {
+    if (this.recorded && topic === metricsTopic) return [...this.recorded.metrics].map(([path, value]) => ({ path, value }));
+    const message = this.timeline.message(topic, this.pinned ?? this.timeline.last);
+    return message && plottable(topic, message.read());
+  }
+
+  /** Of what is shown, for names of files: the scene without its folder and ending. */
+  get title(): string {
+    return beginning(this.world?.scene ?? this.source.name, 100).replace(/^.*\//, "").replace(/\.argos$/, "");
   }
 
   applySettings(): void {
@@ -350,10 +448,11 @@ export class App implements Listener {
     if (this.isLive) return void this.call(this.isPaused ? "/resume" : "/pause");
     if (this.playback.isPlaying) {
       this.playback.isPlaying = false;
-      return;
+    } else {
+      if (this.recorded && this.pinned === this.recorded.last) this.pin(0); // once more
+      this.playback.start();
     }
-    if (this.recorded && this.pinned === this.recorded.last) this.pin(0); // once more
-    this.playback.start();
+    this.onSettings();
   }
 
   /** Takes the numbers that are new into the plots; those of a recording come by themselves. */

@@ -5,9 +5,10 @@ import { layers } from "../drawing/view";
 import type { Tab } from "../model/settings";
 import type { App } from "./app";
 
-export interface Actions { open(): void; help(): void; theme(): void; search(): void; speed(by: 1 | -1): void }
+export interface Actions { open(): void; help(): void; theme(): void; search(): void; speed(by: 1 | -1): void;
+                          picture(): void; film(): void; link(): void }
 
-const tabKeys: Record<string, Tab> = { d: "devices", p: "plots", c: "camera", b: "barrier", k: "log" };
+const tabKeys: Record<string, Tab> = { d: "devices", p: "plots", c: "camera", b: "controllers", k: "log" };
 const turns: Record<string, [number, number]> = {
   ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1],
 };
@@ -52,10 +53,14 @@ function act(app: App, actions: Actions, event: KeyboardEvent): boolean {
     case "o": return done(top(app));
     case "e": return done(actions.open());
     case "v": return done(app.tool = "select");
-    case "m": return done(app.tool = "move");
+    case "m": return app.connection.mayControl && done(app.tool = "move");
     case "u": return done(app.tool = app.tool === "ruler" ? "select" : "ruler");
     case "i": return done(app.toggleMotion());
     case "y": return done(app.setColoring(colorings[(colorings.indexOf(app.settings.coloring) + 1) % colorings.length]));
+    case "s": return done(app.toggleBookmark());
+    case "j": return done(actions.picture());
+    case "w": return done(actions.film());
+    case "q": return done(actions.link());
     case "l": return done(actions.theme());
     case "?": case "h": return done(actions.help());
     case "/": return done(actions.search());
@@ -66,7 +71,7 @@ function act(app: App, actions: Actions, event: KeyboardEvent): boolean {
     case "f": return done(app.look(selected));
     case "g": return done(app.follow(app.settings.followed === selected ? null : selected));
     case "t": return done(app.toggleTrail(selected));
-    case "Delete": case "Backspace": return done(void app.call("/remove", { entity: selected }));
+    case "Delete": case "Backspace": return app.recorded === null && done(void app.call("/remove", { entity: selected }));
   }
   return false;
 }

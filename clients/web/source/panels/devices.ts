@@ -1,7 +1,7 @@
 // Readings and commands of the selected robot, device by device; of any other entity its pose.
 import type { App } from "../page/app";
 import { kindName, type Command, type Observation, type Poses, type World } from "../model/messages";
-import { commanded, fixed, mostReadings, number, observed, type Group, type Limits, type Reading } from "../model/readings";
+import { commanded, fixed, jointsOf, mostReadings, number, observed, type Group, type Reading } from "../model/readings";
 import { nameOf } from "../model/series";
 import type { Frame } from "../model/timeline";
 import { icon, longText, make, restOf, setText } from "./element";
@@ -33,7 +33,7 @@ export class Devices implements Panel {
       return;
     }
     const groups = this.groups();
-    const shape = `${selected.entity.id}|${groups.map(([title, list]) => title + list.map(
+    const shape = `${selected.entity.id}|${app.connection.mayControl}|${groups.map(([title, list]) => title + list.map(
       ({ device, readings }) => device + readings.map(({ label }) => label).join()).join()).join()}`;
     if (shape !== this.shape) this.rebuild(shape, groups);
     this.fill(groups.flatMap(([, list]) => list.flatMap(({ readings }) => readings)));
@@ -49,13 +49,13 @@ export class Devices implements Panel {
     const { frame, selected } = this.app;
     if (!robot || !frame || !selected || !this.app.world) return [];
     const found: [string, Group[]][] = [];
-    const limits = this.limits(this.app.world);
+    const joints = jointsOf(this.app.world, selected.index);
     const seen = this.app.timeline.message(`/robots/${robot.id}/observation`, frame.sequence, 60, selected.index);
-    if (seen) found.push(["Senses", observed(seen.topic, robot, seen.read<Observation>(), limits)]);
+    if (seen) found.push(["Senses", observed(seen.topic, robot, seen.read<Observation>(), joints)]);
     const told = this.app.timeline.message(`/robots/${robot.id}/command`, frame.sequence, 60, selected.index);
     if (told) {
       const command = { tagPayloads: this.payloads(this.app.world, frame), ...told.read<Command>() };
-      found.push(["Commands", commanded(told.topic, robot, command, limits)]);
+      found.push(["Commands", commanded(told.topic, robot, command, joints)]);
     }
     return found.map(([title, list]) => [title, list.slice(0, mostRows).map(({ device, readings, more }) =>
       ({ device, readings: readings.slice(0, mostRows), more: more + Math.max(readings.length - mostRows, 0) }))]);
@@ -66,14 +66,6 @@ export class Devices implements Panel {
     const selected = this.app.selected?.index;
     const changed = new Map((frame.messages.get("/poses")?.read<Poses>().tagPayloads ?? []).map(({ tag, payload }) => [tag, payload]));
     return world.tags.flatMap(({ entity, payload }, i) => (entity === selected ? [changed.get(i) ?? payload] : []));
-  }
-
-  private limits(world: World): Limits {
-    const selected = this.app.selected?.index;
-    return (id) => {
-      const joint = world.joints.find((other) => other.id === id && other.entity === selected);
-      return joint?.lower !== undefined && joint.upper !== undefined ? [joint.lower, joint.upper] : undefined;
-    };
   }
 
   private rebuild(shape: string, groups: [string, Group[]][]): void {
@@ -89,8 +81,8 @@ export class Devices implements Panel {
         make("button", { click: () => app.look(entity.id), title: "Look at it (F)" }, "Look"),
         make("button.follow", { click: () => app.follow(app.settings.followed === entity.id ? null : entity.id), title: "Move with it (G)" }, "Follow"),
         make("button.trail", { click: () => app.toggleTrail(entity.id), title: "Draw its path (T)" }, "Trail"),
-        make("button.danger", { click: () => void app.call("/remove", { entity: entity.id }), title: "Remove it (Delete)",
-                                id: "remove" }, "Remove")),
+        app.connection.mayControl ? make("button.danger", { click: () => void app.call("/remove", { entity: entity.id }), title: "Remove it (Delete)",
+                                id: "remove" }, "Remove") : null),
       this.pose);
     for (const [title, list] of groups) {
       if (list.length > 0) this.element.append(make("h3", {}, title));

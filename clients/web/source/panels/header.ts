@@ -8,14 +8,14 @@ export class Header implements Panel {
   readonly element = make("div.header");
   private readonly scene = make("span.scene");
   private readonly state = make("span.badge");
-  private readonly steering = make("span.badge.quiet");
+  private readonly control = make("span.badge.quiet");
   private readonly rate = make("span.rate.number");
   private readonly connection = make("span.connection", { title: "connection" });
   private rates: { wall: number; seconds: number; tick: number }[] = [];
 
   constructor(private readonly app: App, openFile: () => void, toggleTheme: () => void, openHelp: () => void) {
     this.element.append(make("strong.name", {}, "Ziggurat"), this.scene, this.state, this.rate, make("span.space"),
-      this.steering, this.connection,
+      this.control, this.connection,
       make("button.wide", { id: "open", title: "Open a recording, a file .mcap (e), or drop it on the page", click: openFile }, "Open"),
       make("button", { title: "Light or dark (L)", click: toggleTheme }, "◐"),
       make("button", { title: "Keys and help (?)", click: openHelp }, "?"));
@@ -35,8 +35,8 @@ export class Header implements Panel {
     const { phase: connected, mayControl } = app.connection;
     setText(this.connection, connected === "open" ? app.source.name : connected);
     this.connection.dataset.phase = connected;
-    setText(this.steering, connected !== "open" || !app.source.isLive ? "" : mayControl ? "may steer" : "may look");
-    this.steering.title = mayControl ? "The address has the token: pause, move, spawn and remove work."
+    setText(this.control, connected !== "open" || !app.source.isLive ? "" : mayControl ? "may control" : "may look");
+    this.control.title = mayControl ? "The address has the token: pause, move, spawn and remove work."
                                      : "Open the address with the token, as the server printed it, to change the world.";
     setText(this.rate, this.rateText());
   }

@@ -11,6 +11,7 @@ export class LogPanel implements Panel {
   private readonly filter = make("input", { type: "search", placeholder: "Filter", "aria-label": "Filter the log" }) as HTMLInputElement;
   private readonly pauseOn = make("input", { placeholder: "Pause when a line contains …", "aria-label": "Pause when a line contains" }) as HTMLInputElement;
   private readonly only = make("input", { type: "checkbox" }) as HTMLInputElement;
+  private readonly pausing = make("div.chooser", {}, this.pauseOn);
   private key = "";
   private last: LogEntry | undefined;
   private shown: LogEntry[] = [];
@@ -18,11 +19,12 @@ export class LogPanel implements Panel {
   constructor(private readonly app: App) {
     this.pauseOn.addEventListener("change", () => { app.pauseOnText = this.pauseOn.value; });
     this.element.append(make("div.chooser", {}, this.filter, make("label", {}, this.only, "selected only")),
-                        make("div.chooser", {}, this.pauseOn), this.lines);
+                        this.pausing, this.lines);
   }
 
   update(): void {
     const { app } = this;
+    this.pausing.hidden = !app.connection.mayControl;
     if (document.activeElement !== this.pauseOn) this.pauseOn.value = app.pauseOnText;
     const last = app.log.at(-1);
     const key = `${this.filter.value}|${this.only.checked}|${app.settings.selected}|${app.pinned}`;

@@ -1,22 +1,29 @@
-// Plots of any numbers of any topic, over simulated time.
-import uPlot from "uplot";
+// Plots of any numbers of any topic over simulated time. Series of one unit share a chart.
 import type { App } from "../page/app";
-import { nameOf, numbersIn, type Series } from "../model/series";
-import { make, setText } from "./element";
+import { save } from "../page/save";
+import { chartOf, labelOf, longLabel, type Label } from "../model/labels";
+import { nameOf, type Series } from "../model/series";
+import { csvOf } from "../model/table";
+import { Chart, type Curve } from "./chart";
+import { make } from "./element";
 import type { Panel } from "./panel";
 
-const strokes = ["#3d8bfd", "#e0642c", "#2a9d5f", "#a050c8", "#c9a000", "#d6336c", "#14a0b8", "#7a7f87"];
+// Colours that are told apart also by those who do not see some of them: Okabe and Ito's.
+const strokes = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#8c6d1f", "#7a7f87"];
 
 const mostTopics = 5000; // to choose from
-
-interface Drawn { series: Series; chart: uPlot; value: HTMLElement; box: HTMLElement }
 
 export class Plots implements Panel {
   readonly element = make("section.plots");
   private readonly list = make("div");
   private readonly topic = make("select", { "aria-label": "Topic" }) as HTMLSelectElement;
   private readonly path = make("select", { "aria-label": "Number" }) as HTMLSelectElement;
-  private drawn = new Map<string, Drawn>();
+  private readonly apart = make("input", { type: "checkbox", id: "plots-apart" }) as HTMLInputElement;
+  private readonly actions = make("div.actions", {},
+    make("button", { id: "plots-csv", title: "All values as a table, of a recording those of the whole of it", click: () => void this.saveTable() }, "CSV"),
+    make("button", { id: "plots-png", title: "The charts as a picture", click: () => this.savePicture() }, "PNG"),
+    make("label", { title: "Otherwise series of one unit share a chart" }, this.apart, "a chart for each"));
+  private charts = new Map<string, Chart>();
   private topics: string[] = [];
 
   constructor(private readonly app: App) {
@@ -25,68 +32,65 @@ export class Plots implements Panel {
       if (this.path.value !== "") this.app.togglePlot({ topic: this.topic.value, path: this.path.value });
       this.path.value = "";
     });
-    this.element.append(make("div.chooser", {}, this.topic, this.path), this.list);
+    this.apart.addEventListener("change", () => app.setApart(this.apart.checked));
+    this.element.append(make("div.chooser", {}, this.topic, this.path), this.actions, this.list);
   }
 
   update(): void {
     const { app } = this;
     this.listTopics();
-    const names = new Set(app.series.map((series) => nameOf(series.name)));
-    for (const [name, { chart, box }] of this.drawn) {
-      if (names.has(name)) continue;
-      chart.destroy();
-      box.remove();
-      this.drawn.delete(name);
-    }
     app.updateSeries();
+    this.apart.checked = app.settings.apart;
+    this.actions.hidden = app.series.length === 0;
+    const wanted = new Map<string, Curve[]>();
     app.series.forEach((series, i) => {
-      const drawn = this.drawn.get(nameOf(series.name)) ?? this.add(series, strokes[i % strokes.length]);
-      drawn.series = series; // a recording that was opened has new ones
-      this.fill(drawn);
+      const label = this.labelOf(series);
+      const key = app.settings.apart ? nameOf(series.name) : chartOf(series.name, label);
+      const curve = { series, label: label ?? { of: series.name.topic, text: series.name.path, unit: "" }, stroke: strokes[i % strokes.length] };
+      wanted.set(key, [...wanted.get(key) ?? [], curve]);
     });
-    if (app.series.length === 0 && !this.list.hasChildNodes()) {
+    for (const [key, chart] of this.charts) {
+      if (wanted.has(key) && chart.shows(wanted.get(key)!)) continue;
+      chart.remove();
+      this.charts.delete(key);
+    }
+    for (const [key, curves] of wanted) {
+      const chart = this.charts.get(key) ?? new Chart(app, curves, () => this.element.clientWidth - 2);
+      this.charts.set(key, chart);
+      if (!chart.element.isConnected) this.list.append(chart.element);
+      chart.update();
+    }
+    if (wanted.size > 0) this.list.querySelector(".empty")?.remove();
+    else if (!this.list.hasChildNodes()) {
       this.list.append(make("p.empty", {}, "Choose a topic and a number above, or click the plot sign beside a reading."));
     }
   }
 
-  private add(series: Series, stroke: string): Drawn {
-    this.list.querySelector(".empty")?.remove();
-    const value = make("span.number");
-    const box = make("div.plot-box", { "data-plot": nameOf(series.name) }, make("div.title", {},
-      make("span.swatch", { style: `background:${stroke}` }), make("span", { title: nameOf(series.name) },
-        `${series.name.topic.replace("/robots/", "")} ${series.name.path}`), value,
-      make("button", { title: "Remove the plot", click: () => this.app.togglePlot(series.name) }, "×")));
-    this.list.append(box);
-    const color = (name: string) => () => getComputedStyle(document.body).getPropertyValue(name);
-    const axis = { stroke: color("--muted"), grid: { stroke: color("--line"), width: 1 }, ticks: { show: false },
-                   font: "10px system-ui" };
-    const chart = new uPlot({
-      width: Math.max(200, this.element.clientWidth - 24), height: 120, legend: { show: false },
-      cursor: { y: false }, scales: { x: { time: false } },
-      series: [{}, { stroke, width: 1.5, points: { show: false } }],
-      axes: [{ ...axis, size: 24 }, { ...axis, size: 46 }],
-      hooks: { draw: [(plot) => this.drawMoment(plot)] },
-    }, [[], []], box);
-    const drawn = { series, chart, value, box };
-    this.drawn.set(nameOf(series.name), drawn);
-    return drawn;
+  /** It stays as it was first known: the robot may be gone later. */
+  private labelOf(series: Series): Label | null {
+    if (series.label) return series.label;
+    const { frame, timeline, world } = this.app;
+    const message = frame && series.name.topic.startsWith("/robots/") ? timeline.message(series.name.topic, frame.sequence, 60) : null;
+    return series.label = labelOf(series.name, world, message?.read());
   }
 
-  /** A line at the frame that is shown, while the page looks back. */
-  private drawMoment(plot: uPlot): void {
-    const frame = this.app.pinned === null ? null : this.app.frame;
-    if (!frame) return;
-    const x = plot.valToPos(Number(frame.timeNs) * 1e-9, "x", true);
-    plot.ctx.fillStyle = "#e6a417";
-    plot.ctx.fillRect(x - 1, plot.bbox.top, 2, plot.bbox.height);
+  private async saveTable(): Promise<void> {
+    const series = await this.app.wholeSeries();
+    const labels = this.app.series.map((one) => longLabel(this.labelOf(one) ?? { of: one.name.topic, text: one.name.path, unit: "" }));
+    save(new Blob([csvOf(series, labels)], { type: "text/csv" }), `${this.app.title} plots.csv`);
   }
 
-  private fill({ series, chart, value }: Drawn): void {
-    setText(value, series.latest === null ? "–" : series.latest.toPrecision(5));
-    // Time must grow: after a reset only the new run is drawn.
-    let begin = series.times.length - 1;
-    while (begin > 0 && series.times[begin - 1] < series.times[begin]) --begin;
-    chart.setData([series.times.slice(Math.max(begin, 0)), series.values.slice(Math.max(begin, 0))]);
+  private savePicture(): void {
+    const charts = [...this.charts.values()];
+    const ratio = window.devicePixelRatio;
+    const height = charts.reduce((sum, chart) => sum + chart.pictureHeight, 0);
+    const canvas = make("canvas", { width: Math.max(...charts.map(({ width }) => width)) * ratio, height: height * ratio }) as HTMLCanvasElement;
+    const draw = canvas.getContext("2d")!;
+    draw.fillStyle = getComputedStyle(document.body).getPropertyValue("--panel");
+    draw.fillRect(0, 0, canvas.width, canvas.height);
+    let top = 0;
+    for (const chart of charts) top += chart.paint(draw, top, ratio);
+    canvas.toBlob((blob) => { if (blob) save(blob, `${this.app.title} plots.png`); });
   }
 
   private listTopics(): void {
@@ -101,10 +105,10 @@ export class Plots implements Panel {
   }
 
   private listNumbers(): void {
-    const message = this.app.timeline.message(this.topic.value, this.app.pinned ?? this.app.timeline.last);
-    const numbers = message ? numbersIn(message.read()) : [];
-    this.path.replaceChildren(make("option", { value: "" }, message || this.topic.value === "" ? "Number …"
+    const { value: topic } = this.topic;
+    const numbers = this.app.numbersOf(topic);
+    this.path.replaceChildren(make("option", { value: "" }, numbers || topic === "" ? "Number …"
       : "not shown now: switch its layer on, or select its robot"),
-      ...numbers.map(({ path, value }) => make("option", { value: path }, `${path} = ${value.toPrecision(4)}`)));
+      ...(numbers ?? []).map(({ path, value }) => make("option", { value: path }, `${path} = ${value.toPrecision(4)}`)));
   }
 }

@@ -1,14 +1,11 @@
 // Time: play, pause, step, speed, reset, and the line of all frames that the page has seen.
 import type { App } from "../page/app";
-import type { MarkKind } from "../model/timeline";
-import { beginning } from "../model/texts";
+import { lanes } from "../model/marks";
 import { icon, make, setText } from "./element";
+import { Lanes } from "./lanes";
 import type { Panel } from "./panel";
 
 const speeds = [0.1, 0.25, 0.5, 1, 2, 4, 10, 0];
-const markColors: Record<MarkKind, string> = {
-  log: "#8a919b", warning: "#e6a417", error: "#e0402c", missed: "#d6336c", collision: "#8e5bd0", reset: "#3d8bfd",
-};
 
 export class TimeBar implements Panel {
   readonly element = make("div.time");
@@ -16,43 +13,27 @@ export class TimeBar implements Panel {
   private readonly step = make("button", { id: "step", title: "One tick (n)", click: () => this.app.step() }, icon("step"));
   private readonly reset = make("button", { id: "reset", title: "Back to the start (r)", click: () => this.app.restart() }, icon("reset"));
   private readonly speed = make("select", { id: "speed", title: "Simulated seconds per second ([ and ])" }) as HTMLSelectElement;
-  private readonly line = make("canvas.line", { id: "timeline", title: "All that this page has seen: drag to look back" }) as HTMLCanvasElement;
+  private readonly line: Lanes;
   private readonly clock = make("span.clock.number", { id: "clock" });
   private readonly live = make("button.live", { id: "live", title: "Jump to the newest (End)", click: () => this.app.pin(null) }, "LIVE");
+  private readonly bookmark = make("button", { id: "bookmark", title: "Bookmark this moment, or remove its bookmark (s)", click: () => this.app.toggleBookmark() }, icon("bookmark"));
+  private readonly choices = make("div.choices");
+  private readonly lanes = make("details.lanes", {}, make("summary", { title: "Which marks are shown" }, icon("lanes")), this.choices);
   private wasPaused: boolean | null = null;
 
   constructor(private readonly app: App) {
     this.speed.append(...speeds.map((speed) => make("option", { value: speed }, speed === 0 ? "max" : `×${speed}`)));
     this.speed.addEventListener("change", () => app.setSpeed(Number(this.speed.value)));
-    this.line.addEventListener("pointerdown", (event) => {
-      this.line.setPointerCapture(event.pointerId);
-      this.scrub(event);
+    this.line = new Lanes(app);
+    for (const { name, label, color } of lanes) {
+      const box = make("input", { type: "checkbox", "data-lane": name }) as HTMLInputElement;
+      box.addEventListener("change", () => app.toggleLane(name));
+      this.choices.append(make("label", {}, box, make("i", { style: `background:${color}` }), label, make("span.muted.number", { "data-count": name })));
+    }
+    document.addEventListener("pointerdown", (event) => {
+      if (!this.lanes.contains(event.target as Node)) (this.lanes as HTMLDetailsElement).open = false;
     });
-    this.line.addEventListener("pointermove", (event) => {
-      if (this.line.hasPointerCapture(event.pointerId)) this.scrub(event);
-      else this.hint(event);
-    });
-    this.element.append(make("div.buttons", {}, this.play, this.step, this.reset, this.speed), this.line, this.clock, this.live);
-  }
-
-  /** Frames per pixel. */
-  private get scale(): number { return Math.max(this.app.timeline.length - 1, 1) / Math.max(this.line.clientWidth, 1); }
-
-  private sequenceAt(event: PointerEvent): number {
-    return this.app.timeline.first + Math.round((event.clientX - this.line.getBoundingClientRect().left) * this.scale);
-  }
-
-  private scrub(event: PointerEvent): void {
-    if (!this.app.recorded) this.app.playback.isPlaying = false;
-    this.app.pin(this.sequenceAt(event));
-  }
-
-  private hint(event: PointerEvent): void {
-    const { timeline } = this.app;
-    const sequence = this.sequenceAt(event);
-    const near = timeline.marks.filter((mark) => Math.abs(mark.sequence - sequence) <= 3 * this.scale).slice(-6);
-    const tick = this.app.recorded ? "" : `tick ${timeline.at(sequence)?.tick ?? ""}`;
-    this.line.title = [tick, ...near.map((mark) => beginning(mark.text))].join("\n");
+    this.element.append(make("div.buttons", {}, this.play, this.step, this.reset, this.speed, this.bookmark, this.lanes), this.line.element, this.clock, this.live);
   }
 
   changeSpeed(by: 1 | -1): void {
@@ -86,7 +67,18 @@ export class TimeBar implements Panel {
       this.clock.dataset.tick = String(frame.tick);
       this.clock.dataset.live = String(newest?.tick ?? "");
     }
-    this.draw();
+    this.line.update();
+    if ((this.lanes as HTMLDetailsElement).open) this.countMarks();
+    this.bookmark.classList.toggle("on", app.bookmarks.some(({ sequence }) => sequence === frame?.sequence));
+  }
+
+  private countMarks(): void {
+    const marks = [...this.app.timeline.marks, ...this.app.bookmarks];
+    for (const { name, kinds } of lanes) {
+      const of = kinds as readonly string[];
+      setText(this.choices.querySelector(`[data-count="${name}"]`)!, String(marks.filter(({ kind }) => of.includes(kind)).length));
+      this.choices.querySelector<HTMLInputElement>(`[data-lane="${name}"]`)!.checked = !this.app.settings.hiddenLanes.includes(name);
+    }
   }
 
   private showSpeed(factor: number): void {
@@ -97,31 +89,5 @@ export class TimeBar implements Panel {
     }
     this.speed.querySelector("[data-other]")?.remove();
     this.speed.append(make("option", { value: factor, "data-other": "1", selected: true }, `×${factor}`));
-  }
-
-  private draw(): void {
-    const { timeline } = this.app;
-    const ratio = window.devicePixelRatio;
-    const [width, height] = [Math.round(this.line.clientWidth * ratio), Math.round(this.line.clientHeight * ratio)];
-    if (this.line.width !== width) this.line.width = width;
-    if (this.line.height !== height) this.line.height = height;
-    const draw = this.line.getContext("2d")!;
-    const style = getComputedStyle(this.element);
-    const middle = height / 2;
-    draw.clearRect(0, 0, width, height);
-    draw.fillStyle = style.getPropertyValue("--line");
-    draw.fillRect(0, middle - 2 * ratio, width, 4 * ratio);
-    const x = (sequence: number): number => (sequence - timeline.first) / Math.max(timeline.length - 1, 1) * (width - 2 * ratio);
-    const shown = this.app.pinned ?? timeline.last;
-    draw.fillStyle = style.getPropertyValue("--accent");
-    draw.fillRect(0, middle - 2 * ratio, x(shown), 4 * ratio);
-    for (const mark of timeline.marks) {
-      if (mark.sequence < timeline.first) continue;
-      const tall = mark.kind === "log" ? 0.22 : 0.42;
-      draw.fillStyle = markColors[mark.kind];
-      draw.fillRect(x(mark.sequence) - ratio, middle - tall * height, 2 * ratio, 2 * tall * height);
-    }
-    draw.fillStyle = style.getPropertyValue("--text");
-    draw.fillRect(x(shown) - ratio, 0, 2 * ratio, height);
   }
 }

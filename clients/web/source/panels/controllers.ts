@@ -1,4 +1,4 @@
-// The barrier: which controllers the tick waits for, how fast they answer, where the time of a tick goes.
+// Controllers: which the tick waits for, how fast they answer, where the time of a tick goes.
 import type { App } from "../page/app";
 import type { Barrier, Phases, Session } from "../model/messages";
 import { beginning } from "../model/texts";
@@ -15,8 +15,8 @@ function seconds(value: number): string {
   return value >= 1e-3 ? `${(value * 1e3).toFixed(1)} ms` : `${(value * 1e6).toFixed(0)} µs`;
 }
 
-export class BarrierPanel implements Panel {
-  readonly element = make("section.barrier");
+export class Controllers implements Panel {
+  readonly element = make("section.controllers");
 
   constructor(private readonly app: App) {}
 
