@@ -280,6 +280,8 @@ def run(number, options=(), change=perturb, keep=None, kills=0, lose=False):
         changes = change(tree, number)
         if rules:
             shutil.copy(pathlib.Path(__file__).parent / "parked.lua", scene_file.parent)
+            for director in tree.getroot().findall("director"):  # that of the scene ends a run earlier
+                tree.getroot().remove(director)
             tree.getroot().append(ElementTree.Element("director", id="end", script="parked.lua"))
         tree.write(scene_file)
         trace, readings = (pathlib.Path(folder) / name for name in ("trace.csv", "readings.jsonl"))
