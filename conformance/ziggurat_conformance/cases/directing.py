@@ -53,6 +53,20 @@ def _refused(title: str, name: str, code: str, *acts, **fields) -> Case:
                 fresh=True, variant=VARIANT)
 
 
+def _paint(*center: float, size: tuple = (1.0,), color: int = 0) -> dict:
+    return {"paint_floor": {"center": list(center), "size": list(size), "color": color}}
+
+
+def _ground(*expected: float) -> Check:
+    """Brightness under rover1's ground sensors, which it reads behind its 24 light sensors."""
+
+    def check(stage) -> str:
+        found = list(stage.peer("p").observation.device_readings)[24:]
+        return "" if found == list(expected) else f"the ground sensors read {found}; {list(expected)} is expected"
+
+    return Check("ground", check)
+
+
 def _remember(peer: str):
     """The next WorldState, for later."""
     def check(stage) -> str:
@@ -207,4 +221,20 @@ CASES = [
           Hear("p", "end", {"reason": "FINISHED", "message": "it stands"}), Hear("d", "end", {"reason": "FINISHED"})),
          fresh=True, variant=VARIANT),
     _refused("A result has 1 KiB at most", "R10.long", "TOO_LARGE", finish={"result": "x" * 1025}),
+    Case("R12.seen", "What is painted on the floor is seen from the next tick on, and stays; a reset forgets it",
+         (_BOTH, answer("p"), _says("d"), *observe("p"), *_sees("d"), _ground(1, 1, 1, 1), answer("p"),
+          _says("d", acts=[_paint(0.0, 0.0, size=(20.0, 20.0)), _paint(0.0, 9.0, color=0xFFFFFF)]), *observe("p"),
+          *_sees("d"), _ground(0, 0, 0, 0), answer("p"), _says("d"), *observe("p"), *_sees("d"), _ground(0, 0, 0, 0),
+          Join("s", hello(role="ROLE_SUPERVISOR"), {"robots": Count(0)}), ask("s", 1, reset={}), told("s", 1),
+          Hear("p", "reset"), *observe("p"), Hear("d", "reset"), Hear("d", "world_layout"), *_sees("d"), answer("p"),
+          _says("d"), *observe("p"), *_sees("d"), _ground(1, 1, 1, 1)),
+         Level.RECONNECT, fresh=True, variant=VARIANT, scene="rovers"),
+    *[_refused(title, f"R12.{name}", "BAD_VALUE", act) for name, title, act in (
+        ("center", "A painted region has a centre", _paint(1.0)),
+        ("size", "… and a size", _paint(0.0, 0.0, size=())),
+        ("three", "… of no more than two numbers", _paint(0.0, 0.0, size=(1.0, 1.0, 1.0))),
+        ("nothing", "… above 0", _paint(0.0, 0.0, size=(1.0, 0.0))),
+        ("far", "… not too far away", _paint(2e6, 0.0)),
+        ("nan", "… at numbers", _paint(float("nan"), 0.0)),
+        ("color", "… and a colour", _paint(0.0, 0.0, color=0x1000000)))],
 ]

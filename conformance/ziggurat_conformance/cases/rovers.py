@@ -109,7 +109,7 @@ def _sees_light(stage) -> str:
     """A light of intensity 1 is 1 m ahead."""
     angles = [device.properties[0] for device in _kind(stage, "footbot_light").devices]
     expected = [math.exp(-2) * max(0.0, 1 - 2 * abs(angle) / math.pi) for angle in angles]
-    found = list(stage.peer("p").observation.device_readings)
+    found = list(stage.peer("p").observation.device_readings)[:24]  # those of the ground are behind
     wrong = len(found) != 24 or any(abs(a - b) > 1e-6 for a, b in zip(found, expected))
     return f"device_readings is {found}; {expected} is expected" if wrong else ""
 

@@ -8,7 +8,7 @@ from .command import metric_faults
 from .fault import Fault
 
 _MOST_ACTS, _MOST_LINES, _LONGEST_RESULT = 10_000, 1000, 1024
-_LARGEST = 1e6  # of a force [N] or torque [N m]
+_LARGEST = 1e6  # of a force [N] or torque [N m], and of a painted region [m]
 _Group = protocol.Subscription
 
 
@@ -25,9 +25,17 @@ def direction_faults(direction: protocol.Direction) -> Iterator[Fault]:
             if values and (len(values) != 3 or not all(abs(value) <= _LARGEST for value in values)):
                 yield Fault("R8", f"the {name} of act {number} is {list(values)}", "BAD_VALUE",
                             f"acts[{number}].push.{name}")
+        if act.WhichOneof("act") == "paint_floor" and not _is_region(act.paint_floor):
+            yield Fault("R12", f"act {number} paints no region", "BAD_VALUE", f"acts[{number}].paint_floor")
     if len(direction.finish.result.encode()) > _LONGEST_RESULT:
         yield Fault("R10", "a result is longer than 1 KiB", "TOO_LARGE", "finish.result")
     yield from _figures(direction.metrics)
+
+
+def _is_region(paint: protocol.PaintFloor) -> bool:
+    return (len(paint.center) == 2 and len(paint.size) in (1, 2) and paint.color <= 0xFFFFFF
+            and all(abs(value) <= _LARGEST for value in paint.center)
+            and all(0 < value <= _LARGEST for value in paint.size))
 
 
 def last_words_faults(leave: protocol.Leave) -> Iterator[Fault]:
