@@ -49,7 +49,7 @@ COMMENT = re.compile(r"(?P<code>.*?)//[/!]?<?(?P<text> .*)?$")
 VAGUE = re.compile(r"\W*(What|Of|Those|That|How|Where|Whose)\b")
 END = re.compile(r"(?<=[.;:?])\s+|\s{2,}|\s@\w+\s+|\s- ")  # of a sentence
 
-TOPS = ["README.md", "quickstart", "CMakeLists.txt", "bench", "clients", "cmake", "conformance",
+TOPS = ["README.md", "CONTRIBUTING.md", "SECURITY.md", "quickstart", "CMakeLists.txt", "bench", "clients", "cmake", "conformance",
         "docker", "docs", "protocol", "scenes", "server", "tests", "tools"]
 SUFFIXES = {".h", ".cpp", ".py", ".lua", ".md", ".proto", ".argos", ".cmake", ".txt", ".sh", ""}
 GENERATED = {"server/render/tag36h11.cpp"}  # with a licence

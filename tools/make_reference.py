@@ -24,7 +24,8 @@ test compares it with the program. What the attributes mean: [scene-format.md](s
 [Values](scene-format.md#values).
 
 *required*: a fault without it. *none*: may be missing, without a default of its own. *no effect*: read, and told in a
-notice. Two of them: it depends on the element's other attributes. `params` and `parameters` have attributes of your own;
+notice. An attribute that only one kind of an element has (`size` of a `magnet` with `shape="box"`, `layout` with
+`method="grid"`) is required with that kind. Two of them: it depends on the element's other attributes. `params` and `parameters` have attributes of your own;
 `models` has the entities of `arena`, without `body`.
 
 """

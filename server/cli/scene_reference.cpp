@@ -109,7 +109,7 @@ std::string section(const Entry& entry) {
   const Described& element = *entry.element;
   std::string text = fmt::format("## {}\n\nIn {}.\n", elements(entry.names), places(entry.parents));
   if (!element.children.empty())
-    text += fmt::format("\nContains {}.\n", elements(element.children));
+    text += fmt::format("\nContains `<{}>`.\n", fmt::join(element.children, "> <"));
   if (element.attributes.empty()) return text;
   return text + "\n| Attribute | Type | Unit | Default |\n|---|---|---|---|\n" + rows_of(element);
 }

@@ -97,13 +97,15 @@ void read_radios(Draft& draft, Element& container, Entity& entity) {
   });
 }
 
-MagnetShape read_magnet_shape(Element& element) {
+/// The volume of a magnet; nothing if it is a dipole.
+std::optional<MagnetShape> read_magnet_shape(Element& element) {
   using Kind = MagnetShape::Kind;
-  MagnetShape shape;
-  shape.kind = element.required(
+  const auto kind = element.optional(
       "shape",
-      OneOf<Kind>{{"box", Kind::box}, {"cylinder", Kind::cylinder}, {"sphere", Kind::sphere}},
-      Kind::sphere);
+      OneOf<Kind>{{"box", Kind::box}, {"cylinder", Kind::cylinder}, {"sphere", Kind::sphere}});
+  if (!element.has("shape")) return std::nullopt;
+  MagnetShape shape;
+  shape.kind = kind.value_or(Kind::sphere);
   if (shape.kind == Kind::box) shape.size = element.required("size", size);
   if (shape.kind != Kind::box) shape.radius = element.required("radius", length, 1.0);
   if (shape.kind == Kind::cylinder) shape.height = element.required("height", length, 1.0);
@@ -117,7 +119,7 @@ Magnet read_magnet(Draft& draft, Element& element, std::string id) {
   magnet.id = std::move(id);
   magnet.anchor = read_anchor(draft, element);
   magnet.offset = element.required("offset", position);
-  if (element.has("shape")) magnet.shape = read_magnet_shape(element);
+  magnet.shape = read_magnet_shape(element);
   constexpr std::array<std::string_view, 3> strengths{"passive_field", "moment", "remanence"};
   const auto passive_field = element.optional("passive_field", In{"the dialect's", vector3});
   const auto moment = element.optional("moment", In{"A·m²", vector3});

@@ -12,7 +12,7 @@ namespace {
 
 constexpr unsigned most_copies = 1'000'000;  // of all <distribute> together
 
-using Triple = Value<math::Vector3> (*)(std::string_view);
+using Triple = In<math::Vector3>;
 
 void read_uniform(Element& element, Triple triple, Generator& out) {
   const math::Vector3 unknown =
@@ -40,7 +40,7 @@ Generator read_generator(Element element, Triple triple) {
       break;
     case DistributionMethod::gaussian:
       out.first = element.required("mean", triple);
-      out.second = element.required("std_dev", non_negative_vector3);
+      out.second = element.required("std_dev", In{triple.unit, non_negative_vector3});
       break;
     case DistributionMethod::constant:
       out.first = element.required("values", triple);
@@ -122,10 +122,10 @@ void read_distribution(Draft& draft, Element& element) {
   Distribution out;
   out.where = element.where();
   if (auto child = element.required_child("position")) {
-    out.position = read_generator(*child, position);
+    out.position = read_generator(*child, In{"m", position});
   }
   if (auto child = element.required_child("orientation")) {
-    out.orientation = read_generator(*child, vector3);
+    out.orientation = read_generator(*child, In{"°", vector3});
   }
   auto entity = element.required_child("entity");
   element.done();

@@ -75,6 +75,12 @@ class Element {
   template <class Read>
   std::optional<ValueOf<Read>> optional(const char* attribute, Read read) {
     tell<Read>(attribute, read, Need::optional);
+    return take(attribute, read);
+  }
+
+  /// The same, without a record of it in the vocabulary.
+  template <class Read>
+  std::optional<ValueOf<Read>> take(const char* attribute, Read read) {
     const std::optional<std::string> text = take(attribute);
     if (!text) return std::nullopt;
     auto value = read(std::string_view(*text));
@@ -89,7 +95,7 @@ class Element {
   template <class Read>
   ValueOf<Read> optional(const char* attribute, Read read, ValueOf<Read> fallback) {
     tell<Read>(attribute, read, Need::optional, &fallback);
-    return optional(attribute, read).value_or(std::move(fallback));
+    return take(attribute, read).value_or(std::move(fallback));
   }
 
   /// The attribute's value; a missing or wrong one is a fault and gives `fallback`.
@@ -100,8 +106,9 @@ class Element {
   /// Checks an attribute that has no effect here, and reports that.
   template <class Read>
   void without_effect(const char* attribute, Read read, std::string_view why) {
-    if (!has(attribute)) return tell<Read>(attribute, read, Need::without_effect);
-    optional(attribute, read);
+    tell<Read>(attribute, read, Need::without_effect);
+    if (!has(attribute)) return;
+    take(attribute, read);
     report().notice(where(attribute),
                     fmt::format("{} of <{}> has no effect here: {}", attribute, name(), why));
   }
@@ -182,7 +189,7 @@ template <class Read>
 std::optional<Element::ValueOf<Read>> needed(Element& element, const char* attribute, Read read) {
   element.tell(attribute, read, Need::required);
   if (!element.has(attribute)) missing(element, attribute, example_of(read));
-  return element.optional(attribute, read);
+  return element.take(attribute, read);
 }
 
 template <class Read>

@@ -95,8 +95,9 @@ math::Pose read_light_pose(Element& element, Placement placement) {
     element.optional("orientation", orientation);
     return {};
   }
-  element.required("position", position, math::Vector3::Zero());
-  return read_pose(element);
+  doubt_angles(element, "orientation");
+  const math::Vector3 at = element.required("position", position);
+  return {at, element.optional("orientation", orientation, math::Quaternion::Identity())};
 }
 
 /// Beginning of the ids of copies; empty: they are numbers alone.

@@ -67,7 +67,7 @@ void read_axis_and_limit(Element& element, Joint& joint) {
     return;
   }
   joint.axis = element.required("axis", direction, math::Vector3::UnitZ());
-  if (const auto limit = element.optional("limit", range)) {
+  if (const auto limit = element.optional("limit", In{"m or °", range})) {
     if (joint.type == JointType::revolute) doubt_angles(element, "limit");
     const double unit = joint.type == JointType::revolute ? std::numbers::pi / 180.0 : 1.0;
     joint.limit = JointLimit{limit->first * unit, limit->second * unit};

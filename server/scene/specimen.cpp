@@ -29,16 +29,12 @@ constexpr std::string_view beginning = R"(<argos-configuration>
 )";
 
 /// Devices of a controller with what they may have in them; a later element replaces an empty one.
-constexpr std::string_view actuators_with_parts = R"(
-<joints><joint/></joints>
-<kilobot_led medium=""/><pipuck_leds medium=""/><builderbot_leds medium=""/>
-)";
+constexpr std::string_view actuators_with_parts = "<joints><joint/></joints>";
 constexpr std::string_view sensors_with_parts = R"(
 <joints><joint/></joints>
 <cameras><camera><led_detector/><directional_led_detector/><tag_detector/></camera></cameras>
 <imus><imu/></imus>
 <contact_sensors><contact_sensor/></contact_sensors>
-<kilobot_communication medium=""/>
 )";
 
 /// Parts of entities.
@@ -58,7 +54,7 @@ constexpr std::string_view prototype =
   <leds><led id="l"/></leds>
   <directional_leds><directional_led id="d"/></directional_leds>
   <tags><tag id="t"/></tags>
-  <radios><radio id="r" medium=""/></radios>
+  <radios><radio id="r"/></radios>
   <magnets>
     <magnet id="m"/><magnet shape="box"/><magnet shape="cylinder"/><magnet shape="sphere"/>
   </magnets>

@@ -133,6 +133,10 @@ void add(Described& element, std::string_view attribute, Asked asked) {
   asked.attribute = attribute;
   const auto known = std::ranges::find(element.attributes, attribute, &Asked::attribute);
   if (known == element.attributes.end()) return element.attributes.push_back(std::move(asked));
+  if (known->needs == std::vector{Need::without_effect}) {  // of another variant
+    known->type = asked.type;
+    known->unit = asked.unit;
+  }
   add_new(known->needs, asked.needs);
   add_new(known->usual, asked.usual);
 }

@@ -16,7 +16,8 @@ from documents import FENCE, ROOT, pages
 BIN = pathlib.Path(os.environ.get("ZIGGURAT_BUILD", ROOT / "build/release")) / "bin"
 SPAN = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z_-]*")
-OF_OTHERS = {"--bind", "--fast", "--gtest_filter", "--gtest_list_tests", "--only", "--test-name-pattern"}  # of unshare, an example, tests
+# Options of unshare, tests, an example and other simulators.
+OF_OTHERS = {"--bind", "--fast", "--gtest_filter", "--gtest_list_tests", "--only", "--pause", "--playback", "--test-name-pattern"}
 
 
 def told(*command):

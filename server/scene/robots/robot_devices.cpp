@@ -5,15 +5,23 @@
 #include "scene/robots/robots.h"
 
 namespace ziggurat::scene {
+namespace {
+
+/// The medium that the element names, if it names one.
+std::optional<std::size_t> read_own_medium(const Enabling& e, MediumKind kind) {
+  e.element.tell("medium", &identifier, Need::optional);
+  return e.element.has("medium") ? read_medium(e.draft, e.element, kind) : std::nullopt;
+}
+
+}  // namespace
 
 void enable_leds_of_robot(const Enabling& e) {
-  LedsUse& use = e.devices.leds.emplace();
-  if (e.element.has("medium")) use.medium = read_medium(e.draft, e.element, MediumKind::led);
+  e.devices.leds.emplace().medium = read_own_medium(e, MediumKind::led);
 }
 
 void enable_kilobot_communication(const Enabling& e) {
-  if (e.element.has("medium")) {
-    e.described->medium = read_medium(e.draft, e.element, MediumKind::kilobot_communication);
+  if (const auto own = read_own_medium(e, MediumKind::kilobot_communication)) {
+    e.described->medium = own;
   }
   e.described->noise = e.element.optional("noise_std_dev", In{"m", non_negative}, 0.0);
   e.described->loss = e.element.optional("message_drop_prob", probability, 0.0);
