@@ -25,7 +25,7 @@ class Release(unittest.TestCase):
         self.write("docs/changelog.md", CHANGELOG)
         release.git(self.root, "init", "--quiet")
         for key in ("user.name", "user.email"):
-            release.git(self.root, "config", key, "someone@example.org")
+            release.git(self.root, "config", key, "release@example.org")
         self.commit()
         release.git(self.root, "tag", "v0.1.0")
 
