@@ -108,7 +108,13 @@ void Hub::receive(Viewer& viewer, std::string_view message, Frame frame) {
 
 std::optional<Item> Hub::next(Viewer& viewer) {
   if (viewer.send_queue.has_answer()) return viewer.send_queue.next();
-  if (auto news = viewer.known.next(channels_)) return news;
+  const bool has_tick = !viewer.send_queue.empty() && (viewer.is_ready || !viewer.is_paced);
+  if (!(has_tick && std::exchange(viewer.was_told, false))) {
+    if (auto news = viewer.known.next(channels_)) {
+      viewer.was_told = true;
+      return news;
+    }
+  }
   if (std::exchange(viewer.lacks_graph, false)) return graph();
   if (viewer.is_paced && !viewer.is_ready) return std::nullopt;
   auto item = viewer.send_queue.next();

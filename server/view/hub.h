@@ -31,10 +31,11 @@ struct Viewer {
   bool wants_parameters = false;
   bool wants_graph = false, lacks_graph = false;  ///< at each change; the one of now
   bool is_paced = false, is_ready = false;        ///< it says when it takes ticks; it does now
-  std::int64_t time_ns = -1;                      ///< the clock that it was told; -1: none yet
-  unsigned faults = 0;      ///< messages in a row that are none of the protocol
-  unsigned unanswered = 0;  ///< calls
-  bool is_over = false;     ///< to be disconnected: it sends nonsense, or does not read
+  bool was_told = false;      ///< of channels, by the last item: a tick may come between two lists
+  std::int64_t time_ns = -1;  ///< the clock that it was told; -1: none yet
+  unsigned faults = 0;        ///< messages in a row that are none of the protocol
+  unsigned unanswered = 0;    ///< calls
+  bool is_over = false;       ///< to be disconnected: it sends nonsense, or does not read
 };
 
 class Hub {
@@ -56,7 +57,8 @@ class Hub {
 
   enum class Frame { text, binary };
   void receive(Viewer& viewer, std::string_view message, Frame frame);
-  /// Next item to send to the viewer: answers, changes of the channels, then ticks.
+  /// Next item to send to the viewer: answers, changes of the channels, then ticks; these also
+  /// between two parts of a long list of channels.
   std::optional<Item> next(Viewer& viewer);
 
   /// @param list  all channels of now, ascending by id

@@ -211,6 +211,19 @@ TEST(Hub, ALongListOfChannelsIsMadeInPartsAsTheViewerReads) {
   EXPECT_LE(gone.size(), 12u) << "each channel is told to be gone once";
 }
 
+TEST(Hub, TicksComeBetweenThePartsOfALongListOfChannels) {
+  Bench bench;
+  bench.hub.set_channels(large_channels(1, 100));
+  Viewer& viewer = bench.hub.add(Permission::look);
+  for (int i = 0; i < 2; ++i) EXPECT_TRUE(bench.hub.next(viewer));  // serverInfo, the first part
+  bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":1}]})");
+  bench.hub.show(5, std::vector{message_of(1, "a tick")});
+  const Sent sent = bench.sent(viewer);
+  const auto place = std::ranges::find(sent, "a tick") - sent.begin();
+  EXPECT_LT(place, 4);
+  EXPECT_EQ(sent.back(), "advertise");
+}
+
 TEST(Hub, AChannelThatGoesAndComesAgainIsToldAnew) {
   Bench bench;
   Viewer& viewer = bench.hub.add(Permission::look);

@@ -14,13 +14,12 @@ interface Port {
   onmessage: ((event: MessageEvent) => void) | null;
 }
 
-/** Memory of packed numbers, which changes hands without being copied. */
-export function buffersIn(value: unknown, found = new Set<ArrayBuffer>()): Set<ArrayBuffer> {
-  if (value instanceof Float32Array || value instanceof Float64Array) found.add(value.buffer as ArrayBuffer);
-  else if (value && typeof value === "object" && !ArrayBuffer.isView(value)) {
-    for (const part of Object.values(value)) if (part && typeof part === "object") buffersIn(part, found);
-  }
-  return found;
+const largeBytes = 1024; // smaller memory is sooner copied
+
+/** Memory of a message's own long rows of packed numbers, which changes hands without being copied. */
+export function buffersIn(value: Value): ArrayBuffer[] {
+  return Object.values(value).filter((row) => row instanceof Float32Array || row instanceof Float64Array)
+    .map(({ buffer }) => buffer as ArrayBuffer).filter(({ byteLength }) => byteLength >= largeBytes);
 }
 
 /** The worker's side. */

@@ -108,6 +108,8 @@ export class LiveSource implements Source {
       this.client = client;
       this.socket = info.metadata?.["takes_ready"] === "true" ? socket : null;
       this.delay = firstDelay;
+      this.hasNews = true; // from the first tick on they come as the page takes them
+      this.ready();
       client.subscribeParameterUpdates(["real_time_factor", "frames_per_second", "phase"]);
       client.getParameters(["real_time_factor", "frames_per_second", "phase"]);
       this.tell({ phase: "open", text: "", mayControl: info.metadata?.["may_steer"] === "true",

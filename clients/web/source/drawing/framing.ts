@@ -27,6 +27,13 @@ export function boxOf(world: World, poses: Poses, isWanted: (entity: number) => 
       high[i] = Math.max(high[i], pose[i] + up[i] + half[i]);
     }
   }
+  world.links.forEach(({ entity }, link) => { // things without body, too
+    if (!isWanted(entity) || world.entities[entity].removed) return;
+    for (let i = 0; i < 3; ++i) {
+      low[i] = Math.min(low[i], poses.positions[3 * link + i]);
+      high[i] = Math.max(high[i], poses.positions[3 * link + i]);
+    }
+  });
   return low.every(Number.isFinite) && high.every(Number.isFinite) ? { low, high } : null;
 }
 

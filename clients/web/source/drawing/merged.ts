@@ -101,13 +101,7 @@ export class Merged {
   show(copies: number): void {
     this.mesh.visible = copies > 0;
     this.mesh.geometry.setDrawRange(0, copies * this.corners);
-    for (const texture of [this.matrices, this.colors]) {
-      if (copies === 0) break;
-      const { width } = texture.image;
-      texture.clearUpdateRanges();
-      for (let row = 0; row * perRow < copies; ++row) texture.addUpdateRange(4 * width * row, 4 * width);
-      texture.needsUpdate = true;
-    }
+    if (copies > 0) this.matrices.needsUpdate = this.colors.needsUpdate = true;
   }
 
   dispose(): void {

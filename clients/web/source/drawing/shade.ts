@@ -91,7 +91,7 @@ export class Shade {
     const height = pose[2] - hz, least = Math.min(hx, hy, hz);
     const most = 1.2 * Math.min(hx, hy) + least;
     if (height > most || height < -hz || !(least > 0)) return false;
-    const spread = Math.min(0.35 * Math.min(hx, hy, 2 * hz) + Math.max(height, 0), most);
+    const spread = Math.min(0.35 * Math.min(Math.sqrt(hx * hy), 2 * hz) + Math.max(height, 0), 2 * most);
     const { geometry } = this.mesh;
     const positions = geometry.getAttribute("position").array as Float32Array;
     const footprints = geometry.getAttribute("footprint").array as Float32Array;

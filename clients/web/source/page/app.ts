@@ -156,7 +156,7 @@ export class App implements Listener {
     const wanted = new Set(["/world", "/poses", "/log", "/barrier", "/phases", metricsTopic]);
     const robots = newest?.robots ?? [];
     const selected = this.selectedRobot;
-    const areShown = robots.length <= mostRobotsAtOnce || selected !== null || this.view.shown.has("everyone");
+    const areShown = (newest !== null && robots.length <= mostRobotsAtOnce) || selected !== null || this.view.shown.has("everyone");
     for (const layer of layers) {
       const isOfRobots = layer.name === "rays" || layer.name === "radio";
       if ("topic" in layer && this.view.shown.has(layer.name) && (areShown || !isOfRobots)) wanted.add(layer.topic);
