@@ -88,7 +88,7 @@ export class LiveSource implements Source {
       this.client = client;
       this.delay = firstDelay;
       client.subscribeParameterUpdates(["real_time_factor", "frames_per_second", "phase"]);
-      client.getParameters(["real_time_factor", "frames_per_second", "phase"]);
+      client.getParameters(["real_time_factor", "frames_per_second", "phase", "replay"]);
       this.tell({ phase: "open", text: "", mayControl: info.metadata?.["may_steer"] === "true",
                   session: info.sessionId ?? "" });
     });

@@ -52,7 +52,7 @@ function act(app: App, actions: Actions, event: KeyboardEvent): boolean {
     case "o": return done(top(app));
     case "e": return done(actions.open());
     case "v": return done(app.tool = "select");
-    case "m": return app.connection.mayControl && done(app.tool = "move");
+    case "m": return app.mayChange && done(app.tool = "move");
     case "s": return done(app.toggleBookmark());
     case "i": return done(actions.picture());
     case "x": return done(actions.film());
@@ -67,7 +67,7 @@ function act(app: App, actions: Actions, event: KeyboardEvent): boolean {
     case "f": return done(app.look(selected));
     case "g": return done(app.follow(app.settings.followed === selected ? null : selected));
     case "t": return done(app.toggleTrail(selected));
-    case "Delete": case "Backspace": return app.recorded === null && done(void app.call("/remove", { entity: selected }));
+    case "Delete": case "Backspace": return app.mayChange && done(void app.call("/remove", { entity: selected }));
   }
   return false;
 }
