@@ -187,7 +187,7 @@ export class App implements Listener {
 
   /** The moment of the address, as soon as it is there. */
   private showMoment(): void {
-    const found = this.moments.find(this.timeline);
+    const found = this.moments.find(this.timeline, this.recorded === null);
     if (found && "fault" in found) this.onNotice({ level: "warning", text: found.fault });
     else if (found) this.pin(found.sequence);
   }
