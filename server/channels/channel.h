@@ -27,9 +27,10 @@ enum class Kind {
   calibration,
   image,
   annotations,
+  metrics,
 };
 
-using Kinds = std::bitset<static_cast<std::size_t>(Kind::annotations) + 1>;
+using Kinds = std::bitset<static_cast<std::size_t>(Kind::metrics) + 1>;
 
 constexpr std::size_t index_of(Kind kind) { return static_cast<std::size_t>(kind); }
 
@@ -51,6 +52,7 @@ constexpr Pace pace_of(Kind kind) {
       return Pace::answer;
     case Kind::barrier:
     case Kind::log:
+    case Kind::metrics:
       return Pace::event;
     default:
       return Pace::tick;

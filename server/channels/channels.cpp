@@ -35,6 +35,8 @@ const Schema& schema_of(Kind kind) {
       return schema<v1::Barrier>();
     case Kind::phases:
       return schema<v1::Phases>();
+    case Kind::metrics:
+      return schema<v1::Metrics>();
     case Kind::log:
       return schema<foxglove::Log>();
     case Kind::scene:
@@ -61,7 +63,7 @@ constexpr std::array whole_world{
     std::pair{Kind::radio, "/radio"},     std::pair{Kind::contacts, "/contacts"},
     std::pair{Kind::barrier, "/barrier"}, std::pair{Kind::phases, "/phases"},
     std::pair{Kind::log, "/log"},         std::pair{Kind::scene, "/scene"},
-    std::pair{Kind::transforms, "/tf"},
+    std::pair{Kind::transforms, "/tf"},   std::pair{Kind::metrics, "/metrics"},
 };
 
 v1::Phases phases_of(const Moment& moment) {
@@ -204,6 +206,7 @@ std::optional<std::string> Channels::bytes_of(const Channel& channel, const Mome
     case Kind::image:
     case Kind::barrier:
     case Kind::log:
+    case Kind::metrics:
       break;
   }
   return std::nullopt;
@@ -220,6 +223,15 @@ Message Channels::log(std::int64_t time_ns, Severity severity, std::string_view 
   line.set_name(v1::valid_utf8(name));
   line.set_message(v1::valid_utf8(text));
   return {id_of(Kind::log), time_ns, content_of(line.SerializeAsString()), true};
+}
+
+Message Channels::metrics(std::uint64_t tick, std::int64_t time_ns,
+                          const std::map<std::string, double>& values) {
+  v1::Metrics metrics;
+  metrics.set_tick(tick);
+  metrics.set_time_ns(time_ns);
+  for (const auto& [key, value] : values) (*metrics.mutable_values())[v1::valid_utf8(key)] = value;
+  return {id_of(Kind::metrics), time_ns, content_of(metrics.SerializeAsString())};
 }
 
 Message Channels::barrier(const wire::Status& status, std::span<const Histogram> histograms) {

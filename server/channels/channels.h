@@ -57,6 +57,9 @@ class Channels {
   /// @param name  of the robot, or `ziggurat`
   static Message log(std::int64_t time_ns, Severity severity, std::string_view name,
                      std::string_view text);
+  /// @param values  of all metrics, by ROBOT/NAME
+  static Message metrics(std::uint64_t tick, std::int64_t time_ns,
+                         const std::map<std::string, double>& values);
   static Message barrier(const wire::Status& status, std::span<const Histogram> histograms);
 
   /// Ids of channels without place.

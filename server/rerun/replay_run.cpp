@@ -122,7 +122,8 @@ void ReplayRun::show_poses() {
 }
 
 run::LiveView::Run ReplayRun::shown() {
-  run::LiveView::Run watched{world_, schedule_, file_.run().last_tick(), {}, {}, {}, {}, {}, {}};
+  run::LiveView::Run watched{world_, schedule_, file_.run().last_tick(), {}, {}, {}, {}, {},
+                             {},     {}};
   watched.connect = [this](supervision::LocalCalls calls) {
     viewer_controls_.connect(std::move(calls));
   };
@@ -130,6 +131,8 @@ run::LiveView::Run ReplayRun::shown() {
   watched.is_paused = [this] { return viewer_controls_.is_paused(); };
   watched.paused_for = [this] { return viewer_controls_.paused_for(); };
   watched.status = [this] { return status(); };
+  watched.is_replay = true;
+  watched.metrics = [this]() -> const auto& { return summary_.metrics; };
   watched.controllers = [] { return std::vector<network::Performance::Controller>(); };
   return watched;
 }
@@ -218,9 +221,11 @@ ReplayRun::End ReplayRun::repeat() {
     if (!wait()) return End::stopped;
     watch_.enter(Phase::recording);
     replay_.act();
+    const std::vector<world::Metric> measured = take_metrics();
     recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands(),
-                        take_metrics());
+                        measured);
     if (live_view_) {
+      if (!measured.empty()) live_view_->measured();
       live_view_->answered();
       live_view_->update();
       simulation.list_contacts(live_view_->wants_contacts());

@@ -35,6 +35,7 @@ view::Settings settings_of(const Options& options, const LiveView::Run& run) {
                          {"draw_labels", false},
                          {"draw_frusta", true},
                          {"phase", std::string("gathering")}};
+  if (run.is_replay) settings.parameters.push_back({"replay", true});
   return settings;
 }
 
@@ -135,7 +136,9 @@ void LiveView::tick(const timing::PhaseTimes& phases) {
 }
 
 void LiveView::answered() {
-  if (is_current_ && wants(Kind::command)) server_.show_commands(moment(), wanted_);
+  if (!is_current_) return;
+  if (wants(Kind::command)) server_.show_commands(moment(), wanted_);
+  if (has_new_metrics_ && wants(Kind::metrics)) show_metrics();
 }
 
 void LiveView::restarted() {
@@ -210,6 +213,9 @@ void LiveView::update() {
     std::ranges::set_intersection(wanted_, fresh_, std::back_inserter(still_wanted));
     fresh_.clear();
     show_all(still_wanted);
+    if (std::ranges::binary_search(still_wanted, channels::Channels::id_of(Kind::metrics))) {
+      show_metrics();
+    }
   }
   const std::chrono::duration<double> least(0.9 / frames_per_second_);
   if (!is_current_ && !wanted_.empty() && now - last_frame_ >= least) {  // while the world waits
@@ -243,6 +249,14 @@ void LiveView::show_barrier() {
                           times.counts, controllers[c].missed_ticks});
   }
   server_.show_event(channels::Channels::barrier(status, histograms));
+}
+
+void LiveView::show_metrics() {
+  has_new_metrics_ = false;
+  const std::map<std::string, double>& values = run_.metrics();
+  if (values.empty()) return;
+  const world::State& state = run_.world.simulation.state();
+  server_.show_event(channels::Channels::metrics(state.tick, state.time_ns, values));
 }
 
 void LiveView::end() {

@@ -42,6 +42,9 @@ class LiveView {
     std::function<wire::Status()> status;
     /// Performance of each controller of the scene; none: it is not known.
     std::function<std::vector<network::Performance::Controller>()> controllers;
+    /// Last values of metrics, by ROBOT/NAME.
+    std::function<const std::map<std::string, double>&()> metrics;
+    bool is_replay = false;  ///< viewers can't change its world
   };
 
   /// Listens. @throws text::UsageError, std::runtime_error
@@ -58,6 +61,8 @@ class LiveView {
   /// Takes a published tick. At most `frames_per_second_` ticks are shown in a second of wall time.
   /// @param phases  wall time of the tick before
   void tick(const timing::PhaseTimes& phases);
+  /// Some of the metrics were set at this tick.
+  void measured() { has_new_metrics_ = true; }
   /// The tick was answered: its commands are known.
   void answered();
   /// A viewer wants contacts, which the next tick must list.
@@ -85,6 +90,7 @@ class LiveView {
   /// Latched messages and commands, too.
   void show_all(const std::vector<std::uint32_t>& wanted);
   void show_barrier();
+  void show_metrics();
   bool wants(channels::Kind kind) const { return kinds_.test(channels::index_of(kind)); }
   channels::Moment moment() const;
 
@@ -101,6 +107,7 @@ class LiveView {
   double frames_per_second_ = 60;
   clock::time_point last_frame_{}, last_barrier_{}, last_fresh_{};
   bool is_current_ = false;  ///< the present tick was shown
+  bool has_new_metrics_ = false;
   bool is_gathered_ = false, is_over_ = false, shutdown_ = false;
   std::optional<wire::Status::Phase> phase_;
 };

@@ -77,7 +77,7 @@ Run::Run(const Options& options, StartPoint& start, Service service, processes::
       directing_(world_, server_, callers_, population_, console_),
       schedule_(plan_.real_time, world_.simulation.tick_length()),
       live_view_(make_showing(options_, shown(world_, server_, callers_, supervision_, schedule_,
-                                              plan_.ticks.value_or(0)))),
+                                              statistics_.summary, plan_.ticks.value_or(0)))),
       watch_({.metrics = options_.metrics,
               .insecure = options_.insecure,
               .fail_fast = options_.fail_fast,
@@ -314,6 +314,7 @@ Ending Run::run_world() {
     recorders_.exchange(simulation.state(), simulation.observations(), simulation.commands(),
                         watch_.measured());
     keep(watch_.measured(), statistics_.summary);
+    if (live_view_ && !watch_.measured().empty()) live_view_->measured();
     if (live_view_) live_view_->answered();
     statistics_.summary.result = directing_.result();
     if (is_last || statistics_.summary.result) return Ending::finished;

@@ -181,13 +181,14 @@ wire::End end_message(const reports::Summary& summary) {
 
 LiveView::Run shown(supervision::World& world, network::Server& server,
                     supervision::Callers& callers, supervision::Supervision& supervision,
-                    Schedule& schedule, std::uint64_t last_tick) {
-  LiveView::Run watched{world, schedule, last_tick, {}, {}, {}, {}, {}, {}};
+                    Schedule& schedule, const reports::Summary& summary, std::uint64_t last_tick) {
+  LiveView::Run watched{world, schedule, last_tick, {}, {}, {}, {}, {}, {}, {}};
   watched.connect = [&callers](supervision::LocalCalls calls) { callers.add(std::move(calls)); };
   watched.changes = [&callers] { return callers.changes(); };
   watched.is_paused = [&server] { return server.pause() == network::Pause::halted; };
   watched.paused_for = [&supervision] { return supervision.paused_for(); };
   watched.status = [&supervision] { return supervision.status(); };
+  watched.metrics = [&summary]() -> const auto& { return summary.metrics; };
   watched.controllers = [&server] { return server.performance().controllers; };
   return watched;
 }

@@ -61,7 +61,7 @@ wire::End end_message(const reports::Summary& summary);
 /// @param last_tick  0: until stopped
 LiveView::Run shown(supervision::World& world, network::Server& server,
                     supervision::Callers& callers, supervision::Supervision& supervision,
-                    Schedule& schedule, std::uint64_t last_tick);
+                    Schedule& schedule, const reports::Summary& summary, std::uint64_t last_tick);
 
 /// Serves viewers, if the options ask for that. Prints the addresses on stderr also if the run is
 /// to be quiet: without them nothing can be seen.

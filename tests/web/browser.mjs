@@ -3,7 +3,7 @@ import { spawn } from "node:child_process";
 import { accessSync } from "node:fs";
 import { once } from "node:events";
 import { createInterface } from "node:readline";
-import { fileURLToPath } from "node:url";
+import { fileURLToPath, pathToFileURL } from "node:url";
 
 export const root = fileURLToPath(new URL("../../", import.meta.url));
 const bin = process.env.ZIGGURAT_BIN ?? `${root}build/release/bin`;
@@ -100,6 +100,17 @@ export async function openPage(browser, address, hash = "", size = undefined) {
   }), "world in the page");
   return page;
 }
+
+/** A page from the disk, which is there when its program runs. */
+export async function openFile(browser, path, hash = "", size = undefined) {
+  const page = await newPage(browser, size);
+  await page.goto(`${pathToFileURL(path)}#${hash}`);
+  await waitFor(() => page.evaluate(() => window.ziggurat !== undefined), "page");
+  return page;
+}
+
+/** Whether a page from the disk shows its recording. */
+export function isShown(page) { return page.evaluate(() => window.ziggurat.app.recorded !== null && window.ziggurat.view.poses !== null); }
 
 /** The tick of the newest frame that the page has. */
 export function liveTick(page) { return page.evaluate(() => window.ziggurat.app.timeline.newest.tick); }

@@ -122,8 +122,17 @@ pageTest("the drop: a hundred bodies move, and the picture is that of `render`",
   assert.ok(both / any > 0.95, `${both} of ${any} pixels are shared`);
 }, "--real-time", "0.1");
 
-pageTest("a paused world that begins again stays paused, and the page shows it", drop, "", async (page) => {
-  await waitFor(async () => (await liveTick(page)) > 0, "tick 1");
+pageTest("pause stops the server, a step is one tick, resume goes on; a paused world that begins again stays paused", tags, "", async (page) => {
+  await waitFor(async () => (await liveTick(page)) >= 3, "tick 3");
+  await key(page, "Space");
+  const tick = await standing(page);
+  await page.waitForTimeout(1000); // elapsed time is the subject
+  assert.equal(await liveTick(page), tick);
+  await page.locator("#step").click();
+  await waitFor(async () => (await liveTick(page)) === tick + 1, "next tick");
+  assert.equal(await standing(page), tick + 1);
+  await page.locator("#play").click();
+  await waitFor(async () => (await liveTick(page)) > tick + 3, "further ticks");
   await key(page, "Space");
   await phaseIs(page, "paused");
   for (let i = 0; i < 3; ++i) {
@@ -138,7 +147,7 @@ pageTest("a paused world that begins again stays paused, and the page shows it",
     await page.locator("#step").click(); // the page sees a world go back only from a later tick
     await waitFor(async () => (await liveTick(page)) === 1, "tick 1");
   }
-}, "--real-time", "0.1");
+});
 
 test("a replay is watched as a run, and can't be changed", { timeout: 180_000 }, async () => {
   const file = `${folder}/replayed.mcap`;
@@ -151,7 +160,9 @@ test("a replay is watched as a run, and can't be changed", { timeout: 180_000 },
     const tick = await standing(page);
     await page.locator("#step").click();
     await waitFor(async () => (await liveTick(page)) === tick + 1, "next tick");
-    await page.locator("#reset").click(); // refused
+    for (const control of ["#tool-move", ".change"]) assert.ok(await page.locator(control).isHidden(), control);
+    assert.ok(await page.locator("#reset").isDisabled());
+    await key(page, "r"); // refused
     await waitFor(() => page.locator("#notices").innerText().then((text) => text.length > 0), "notice");
     assert.equal(await liveTick(page), tick + 1);
     await page.locator("#speed").selectOption("4");
@@ -166,20 +177,7 @@ test("a replay is watched as a run, and can't be changed", { timeout: 180_000 },
   }
 });
 
-pageTest("pause stops the server, a step is one tick, resume goes on", tags, "", async (page) => {
-  await waitFor(async () => (await liveTick(page)) >= 3, "tick 3");
-  await key(page, "Space");
-  const tick = await standing(page);
-  await page.waitForTimeout(1000); // elapsed time is the subject
-  assert.equal(await liveTick(page), tick);
-  await page.locator("#step").click();
-  await waitFor(async () => (await liveTick(page)) === tick + 1, "next tick");
-  assert.equal(await standing(page), tick + 1);
-  await page.locator("#play").click();
-  await waitFor(async () => (await liveTick(page)) > tick + 3, "further ticks");
-});
-
-pageTest("the vehicle's wheels turn with 1 rad/s, and can be plotted", vehicle, "selected=vehicle", async (page) => {
+pageTest("the vehicle's wheels turn with 1 rad/s, and can be plotted; the world pauses at a log line with a text", vehicle, "selected=vehicle", async (page) => {
   await waitFor(async () => (await liveTick(page)) >= 10, "tick 10");
   const readings = page.locator('[data-reading^="Senses/Joints/base_wheel"] .value');
   const speeds = () => readings.evaluateAll((all) => all.map((one) => Number(one.dataset.value)));
@@ -190,10 +188,15 @@ pageTest("the vehicle's wheels turn with 1 rad/s, and can be plotted", vehicle, 
   await page.locator(".plot-box canvas").waitFor();
   await waitFor(() => page.evaluate(() => window.ziggurat.app.series[0]?.values.length > 3), "plotted values");
   await waitFor(() => page.evaluate(() => location.hash.includes("plot=") && location.hash.includes("selected=vehicle")), "address");
-  await page.locator('[data-tab="log"]').click();
-  await page.locator(".log .line").first().waitFor();
   await page.locator('[data-tab="controllers"]').click();
   await page.locator(".sessions td").first().waitFor();
+  await page.locator('[data-tab="log"]').click();
+  await page.locator(".log .line .text").first().waitFor();
+  const text = (await page.locator(".log .line .text").first().textContent()).slice(0, 4);
+  await page.locator('[aria-label="Pause when a line contains"]').fill(text);
+  await page.keyboard.press("Enter");
+  await standing(page);
+  assert.match(await page.locator("#notices").textContent(), /Paused: vehicle logged/);
 }, "--real-time", "4");
 
 pageTest("scrubbing back shows old poses while the world runs on", drop, "", async (page) => {
@@ -280,7 +283,7 @@ pageTest("a tag's pattern is found by libapriltag", tags, "eye=0,-0.001,0.4&at=0
   assert.equal(await waitFor(found, "tag"), "42\n"); // the first pictures of a busy machine may be empty
 });
 
-pageTest("a block is dragged in the server", tags, fromTop, async (page) => {
+pageTest("a block is dragged in the server, what is spawned comes, what is removed goes", tags, fromTop, async (page) => {
   const start = await placeOf(page, "near");
   await key(page, "m");
   const from = await onScreen(page, [start[0], start[1], start[2] + 0.1]);
@@ -294,9 +297,7 @@ pageTest("a block is dragged in the server", tags, fromTop, async (page) => {
   assert.ok(Math.abs((await placeOf(page, "near"))[0] - start[0]) < 0.01);
   const far = await placeOf(page, "far");
   [0.25, 0.2, 0].forEach((value, i) => assert.ok(Math.abs(far[i] - value) < 0.005, String(far)));
-});
 
-pageTest("what is spawned comes, what is removed goes", tags, "", async (page) => {
   await page.locator(".change summary").click();
   await page.locator("#spawn-id").fill("guest");
   await page.locator("#spawn-place").fill("0.1, -0.3, 0.05");
@@ -374,34 +375,18 @@ test("a server that was killed and started again is found within seconds", { tim
   }
 });
 
-pageTest("the world pauses at a log line with a text", vehicle, "tab=log", async (page) => {
-  await page.locator(".log .line .text").first().waitFor();
-  const text = (await page.locator(".log .line .text").first().textContent()).slice(0, 4);
-  await page.locator('[aria-label="Pause when a line contains"]').fill(text);
-  await page.keyboard.press("Enter");
-  await standing(page);
-  assert.match(await page.locator("#notices").textContent(), /Paused: vehicle logged/);
-}, "--real-time", "1");
-
-test("a page with a wrong token says so", { timeout: 180_000 }, async () => {
+test("a page with a wrong token says so; without token it looks and changes nothing", { timeout: 180_000 }, async () => {
   const run = await Run.start(tags);
   try {
-    const page = await newPage(browser);
-    await page.goto(`${run.address.origin}/?token=not-the-one-that-was-printed`);
-    await waitFor(async () => /wrong token/.test(await page.locator("#overlay").textContent()), "sentence");
-    await page.context().close();
-  } finally {
-    await run.stop();
-  }
-});
-
-test("without token the page looks and changes nothing", { timeout: 180_000 }, async () => {
-  const run = await Run.start(tags);
-  try {
+    const wrong = await newPage(browser);
+    await wrong.goto(`${run.address.origin}/?token=not-the-one-that-was-printed`);
+    await waitFor(async () => /wrong token/.test(await wrong.locator("#overlay").textContent()), "sentence");
+    await wrong.context().close();
     const address = new URL(run.address);
     address.search = "";
-    const page = await openPage(browser, address);
+    const page = await openPage(browser, address, "selected=near");
     await waitFor(() => page.evaluate(() => document.querySelector("#play").disabled), "play that is disabled");
+    for (const control of ["#remove", "#tool-move", ".change"]) assert.ok(await page.locator(control).isHidden(), control);
     await key(page, "Space");
     await page.locator(".notice.error").waitFor();
     await waitFor(async () => (await liveTick(page)) > 3, "ticks");

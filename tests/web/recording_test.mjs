@@ -4,8 +4,7 @@ import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { after, before, test } from "node:test";
-import { pathToFileURL } from "node:url";
-import { newPage, openBrowser, pictureAtRest, placeOf, playerFile, root, shownTick, waitFor, ziggurat } from "./browser.mjs";
+import { isShown, openBrowser, openFile, pictureAtRest, placeOf, playerFile, root, shownTick, waitFor, ziggurat } from "./browser.mjs";
 
 const drop = "scenes/dynamics3d_single_body_test.argos";
 const hostileName = "<img src=x onerror=document.title=666>";
@@ -26,14 +25,6 @@ function run(scene, file) {
   execFileSync(ziggurat, ["run", scene, "--ticks", "40", "--record", file, "--quiet"], { cwd: root, stdio: "pipe" });
 }
 
-/** A page from the disk. */
-async function openFile(path, hash = "") {
-  const page = await newPage(browser);
-  await page.goto(`${pathToFileURL(path)}#${hash}`);
-  await waitFor(() => page.evaluate(() => window.ziggurat !== undefined), "page");
-  return page;
-}
-
 /** Drops a file on the page, as from a folder of the desktop. */
 async function dropFile(page, bytes, name) {
   await page.evaluate(async ([base64, fileName]) => {
@@ -43,8 +34,6 @@ async function dropFile(page, bytes, name) {
     window.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true }));
   }, [Buffer.from(bytes).toString("base64"), name]);
 }
-
-const isShown = (page) => page.evaluate(() => window.ziggurat.app.recorded !== null && window.ziggurat.view.poses !== null);
 
 /** The recording of the drop plays, stands, and is at any place. */
 async function checkPlaying(page) {
@@ -73,7 +62,7 @@ async function checkPlaying(page) {
 }
 
 test("a file that is dropped on the page plays, stands and is scrubbed", { timeout: 180_000 }, async () => {
-  const page = await openFile(playerFile);
+  const page = await openFile(browser, playerFile);
   assert.match(await page.locator("#overlay").textContent(), /Drop a recording/);
   await dropFile(page, readFileSync(recording), "drop.mcap");
   await checkPlaying(page);
@@ -83,29 +72,20 @@ test("a file that is dropped on the page plays, stands and is scrubbed", { timeo
   await page.context().close();
 });
 
-test("plots have all of the recording", { timeout: 180_000 }, async () => {
-  const page = await openFile(playerFile, "tab=plots&plot=/poses:positions.2");
-  await dropFile(page, readFileSync(recording), "drop.mcap");
-  await waitFor(() => page.evaluate(() => window.ziggurat.app.series[0]?.values.length === 41), "41 values");
-  await page.locator(".plot-box canvas").waitFor();
-  assert.deepEqual(page.problems, []);
-  await page.context().close();
-});
-
 test("the exported page plays from the disk, with nothing but itself", { timeout: 180_000 }, async () => {
   const out = `${folder}/drop.html`;
   execFileSync(ziggurat, ["export", recording, "--html", out, "--quiet"]);
   const text = readFileSync(out, "utf8");
   assert.match(text, /default-src 'none'/);
   assert.doesNotMatch(text, /unsafe-inline|unsafe-eval/);
-  const page = await openFile(out);
+  const page = await openFile(browser, out);
   await checkPlaying(page);
   await page.context().close();
 });
 
 test("damaged files give a sentence", { timeout: 180_000 }, async () => {
   const whole = readFileSync(recording);
-  const page = await openFile(playerFile);
+  const page = await openFile(browser, playerFile);
   const told = async (bytes, sentence) => {
     await page.evaluate(() => document.querySelector("#notices").replaceChildren());
     await dropFile(page, bytes, "bad.mcap");
@@ -129,7 +109,7 @@ test("names of a recording are text", { timeout: 180_000 }, async () => {
   run(scene, file);
   const out = `${folder}/names.html`;
   execFileSync(ziggurat, ["export", file, "--html", out, "--quiet"]);
-  const page = await openFile(out, `selected=${encodeURIComponent(hostileName)}`);
+  const page = await openFile(browser, out, `selected=${encodeURIComponent(hostileName)}`);
   await waitFor(() => isShown(page), "first frame");
   await waitFor(async () => (await page.locator(".tree").textContent()).includes(hostileName), "its name");
   await page.waitForTimeout(500); // elapsed time is the subject

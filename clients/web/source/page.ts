@@ -157,7 +157,7 @@ function showTab(): Panel {
 function updatePanels(): void {
   for (const panel of [header, time, ...left, showTab()]) panel.update();
   for (const tool of ["select", "move", "ruler"]) part(`tool-${tool}`).classList.toggle("on", app.tool === tool);
-  part("tool-move").hidden = !app.connection.mayControl;
+  part("tool-move").hidden = !app.mayChange;
   part("film").classList.toggle("on", film.isRunning);
   setText(filmTime, film.isRunning ? `${film.seconds.toFixed(0)} s` : "");
   canvas.dataset.tool = app.tool;

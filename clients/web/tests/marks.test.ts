@@ -53,16 +53,18 @@ test("the address has a moment and bookmarks; a moment that comes is waited for,
   assert.equal(fromAddress("#tick=1.5").tick, null);
 
   const moments = new Moments(settings);
-  assert.equal(moments.find(new Timeline()), null);
-  assert.equal(moments.find(seen(8, 2)), null);
+  assert.equal(moments.find(new Timeline(), true), null);
+  assert.equal(moments.find(seen(8, 2), true), null);
+  assert.equal(moments.find(seen(8, 4), true), null); // the newest frame would go on
+  assert.deepEqual(new Moments(settings).find(seen(8, 4), false), { sequence: 3 });
   assert.ok(moments.isWaiting);
-  assert.deepEqual(moments.find(seen(8, 6)), { sequence: 3 });
+  assert.deepEqual(moments.find(seen(8, 6), true), { sequence: 3 });
   assert.ok(!moments.isWaiting);
   assert.deepEqual(moments.bookmarks.map(({ sequence }) => sequence), [2]);
   moments.toggle(16, 4);
   assert.deepEqual(settings.bookmarks, [12, 16, 40]);
   moments.toggle(16, 4);
   assert.deepEqual(settings.bookmarks, [12, 40]);
-  const late = new Moments(settings).find(seen(30, 3));
+  const late = new Moments(settings).find(seen(30, 3), true);
   assert.match(late && "fault" in late ? late.fault : "", /Tick 14 was before this page was opened, at tick 30/);
 });

@@ -21,7 +21,10 @@ mcap::Header header_of(const Start& start) {
 
 }  // namespace
 
-bool is_recorded(Kind kind) { return kind != Kind::barrier && kind != Kind::phases; }
+bool is_recorded(Kind kind) {
+  return kind != Kind::barrier && kind != Kind::phases &&
+         kind != Kind::metrics;  // /inputs has them
+}
 
 Recording::Recording(mcap::Sink sink, mcap::Compression compression, Contents contents,
                      const Start& start)

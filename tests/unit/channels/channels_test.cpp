@@ -275,6 +275,13 @@ TEST(Channels, LinesAndLatenciesOfTheRun) {
   EXPECT_EQ(barrier.status().tick(), 4u);
   EXPECT_EQ(barrier.histograms(0).counts_size(), 3);
   EXPECT_EQ(barrier.histograms(0).missed_ticks(), 5u);
+  const Message measured = Channels::metrics(4, 800, {{"arm/blocks", 3}, {"judge/score", 0.5}});
+  v1::Metrics metrics;
+  ASSERT_TRUE(metrics.ParseFromString(measured.content->bytes()));
+  EXPECT_EQ(measured.channel, Channels::id_of(Kind::metrics));
+  EXPECT_EQ(measured.time_ns, 800);
+  EXPECT_EQ(metrics.values().at("arm/blocks"), 3);
+  EXPECT_EQ(metrics.values().at("judge/score"), 0.5);
 }
 
 TEST(Content, IsMadeOnceAndOnlyIfItIsAskedFor) {

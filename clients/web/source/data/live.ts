@@ -111,7 +111,7 @@ export class LiveSource implements Source {
       this.hasNews = true; // from the first tick on they come as the page takes them
       this.ready();
       client.subscribeParameterUpdates(["real_time_factor", "frames_per_second", "phase"]);
-      client.getParameters(["real_time_factor", "frames_per_second", "phase"]);
+      client.getParameters(["real_time_factor", "frames_per_second", "phase", "replay"]);
       this.tell({ phase: "open", text: "", mayControl: info.metadata?.["may_steer"] === "true",
                   session: info.sessionId ?? "" });
     });

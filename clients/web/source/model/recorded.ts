@@ -21,6 +21,7 @@ const mostFrames = 1e8;
 const mostPoints = 20_000; // of a plot
 const mostTold = 3; // messages that are left out; further ones are told together
 const mostLeftOut = 100_000; // that are remembered
+const longestPause = 40; // [ms] between chunks, when all of the file is read
 const mostReads = 2; // at the same time: of a drag over many chunks only some are read, and its end soon
 
 /** A series that is filled with every so many frames of the file. */
@@ -329,7 +330,8 @@ export class Recorded implements Source, Frames {
           series.add(sequence, Number(message.timeNs) * 1e-9, this.decode(message));
         }
       }
-      await new Promise((resolve) => setTimeout(resolve, performance.now() - begin)); // half of the time is for drawing
+      const pause = Math.min(performance.now() - begin, longestPause); // time for drawing
+      await new Promise((resolve) => setTimeout(resolve, pause));
     }
   }
 

@@ -70,6 +70,7 @@ export class Timeline implements Frames {
   private begin = 0; // of the frames in use; the array is cut now and then
   private bytes = 0;
   private next = 0;
+  private runBegin = 0; // frame, since the last reset
   private generation = -1;
   private worlds = new Map<number, World>();
   private lastMissed = 0;
@@ -97,15 +98,17 @@ export class Timeline implements Frames {
 
   tickOf(sequence: number): number | null { return this.at(sequence)?.tick ?? null; }
 
-  /** Of the newest run. */
+  /** Of the newest run: its ticks only grow. */
   sequenceOf(tick: number): number | null {
-    for (let s = this.last, before = Infinity; s >= this.first; --s) {
-      const found = this.at(s)?.tick ?? 0;
-      if (found > before) return null; // that was before the reset
-      if (found <= tick) return s === this.last && found < tick ? null : s;
-      before = found;
+    let low = Math.max(this.first, this.runBegin), high = this.last;
+    const at = (sequence: number): number => this.tickOf(sequence) ?? 0;
+    if (this.length === 0 || at(low) > tick || at(high) < tick) return null;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (at(middle) <= tick) low = middle;
+      else high = middle - 1;
     }
-    return null;
+    return low;
   }
 
   clear(): void {
@@ -126,6 +129,7 @@ export class Timeline implements Frames {
       if (this.worlds.size > 64) this.worlds.delete(this.worlds.keys().next().value as number);
       if (frame && message.timeNs < frame.timeNs) {
         this.mark("reset", "the world went back to its start");
+        this.runBegin = this.next;
         isNew = true;
       }
     } else if (message.topic === "/log" || message.topic === "/barrier") {

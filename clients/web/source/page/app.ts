@@ -9,7 +9,7 @@ import type { Barrier, Contacts, Entity, Log, Robot, World } from "../model/mess
 import { Playback } from "../model/playback";
 import { Recorded } from "../model/recorded";
 import { metricsTopic } from "../model/metrics";
-import { nameOf, plottable, Series, type SeriesName } from "../model/series";
+import { nameOf, Series, type SeriesName } from "../model/series";
 import type { Settings, Tab } from "../model/settings";
 import { beginning, kept } from "../model/texts";
 import { Timeline, type Frame, type Frames, type Mark } from "../model/timeline";
@@ -188,7 +188,7 @@ export class App implements Listener {
 
   /** The moment of the address, as soon as it is there. */
   private showMoment(): void {
-    const found = this.moments.find(this.timeline);
+    const found = this.moments.find(this.timeline, this.recorded === null);
     if (found && "fault" in found) this.onNotice({ level: "warning", text: found.fault });
     else if (found) this.pin(found.sequence);
   }
@@ -234,6 +234,9 @@ export class App implements Listener {
 
   /** Whether the run has ended: its world does not change any more. */
   get isOver(): boolean { return this.recorded === null && this.parameters.get("phase") === "over"; }
+
+  /** Whether the page may move, spawn and remove, and begin anew: not in a recording, nor in a replay of one. */
+  get mayChange(): boolean { return this.connection.mayControl && this.parameters.get("replay") !== true; }
 
   /** Whether time stands: that of the world, or that of the past or the recording that is shown. */
   get isPaused(): boolean { return this.isLive ? this.isOver || this.parameters.get("phase") === "paused" : !this.playback.isPlaying; }
@@ -402,26 +405,6 @@ export class App implements Listener {
     this.onSettings();
   }
 
-  /** The plotted series with all values that the page has; of a recording, all of it. */
-  async wholeSeries(): Promise<Series[]> {
-    const whole = this.series.map(({ name }) => new Series(name));
-    if (this.recorded) await Promise.all(whole.map((series) => this.recorded?.fill(series, Infinity)));
-    else for (const series of whole) series.update(this.seen, Infinity);
-    return whole;
-  }
-
-  /** What can be plotted of a topic; null: it has no message near the frame that is shown. */
-  numbersOf(topic: string): { path: string; value: number }[] | null {
-    if (this.recorded && topic === metricsTopic) return [...this.recorded.metrics].map(([path, value]) => ({ path, value }));
-    const message = this.timeline.message(topic, this.pinned ?? this.timeline.last);
-    return message && plottable(topic, message.read());
-  }
-
-  /** Of what is shown, for names of files: the scene without its folder and ending. */
-  get title(): string {
-    return beginning(this.world?.scene ?? this.source.name, 100).replace(/^.*\//, "").replace(/\.argos$/, "");
-  }
-
   applySettings(): void {
     const { settings, view } = this;
     view.shown = new Set(settings.layers);
@@ -455,8 +438,8 @@ export class App implements Listener {
     this.onSettings();
   }
 
-  /** Takes the numbers that are new into the plots; those of a recording come by themselves. */
-  updateSeries(): void {
-    if (!this.recorded) for (const series of this.series) series.update(this.seen);
+  /** Takes numbers that are new into series of a running world; those of a recording come by themselves. @param most  frames back */
+  updateSeries(list = this.series, most?: number): void {
+    if (!this.recorded) for (const series of list) series.update(this.seen, most);
   }
 }

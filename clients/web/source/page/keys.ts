@@ -53,7 +53,7 @@ function act(app: App, actions: Actions, event: KeyboardEvent): boolean {
     case "o": return done(top(app));
     case "e": return done(actions.open());
     case "v": return done(app.tool = "select");
-    case "m": return app.connection.mayControl && done(app.tool = "move");
+    case "m": return app.mayChange && done(app.tool = "move");
     case "u": return done(app.tool = app.tool === "ruler" ? "select" : "ruler");
     case "i": return done(app.toggleMotion());
     case "y": return done(app.setColoring(colorings[(colorings.indexOf(app.settings.coloring) + 1) % colorings.length]));
@@ -71,7 +71,7 @@ function act(app: App, actions: Actions, event: KeyboardEvent): boolean {
     case "f": return done(app.look(selected));
     case "g": return done(app.follow(app.settings.followed === selected ? null : selected));
     case "t": return done(app.toggleTrail(selected));
-    case "Delete": case "Backspace": return app.recorded === null && done(void app.call("/remove", { entity: selected }));
+    case "Delete": case "Backspace": return app.mayChange && done(void app.call("/remove", { entity: selected }));
   }
   return false;
 }

@@ -17,9 +17,10 @@ export class Moments {
 
   /**
    * Finds the frames of bookmarks, and of the tick that is wanted.
+   * @param isGrowing  the newest frame is that of a running world, which would go on if it was shown
    * @return the frame to show now, or why it can't be shown
    */
-  find(frames: Frames): { sequence: number } | { fault: string } | null {
+  find(frames: Frames, isGrowing: boolean): { sequence: number } | { fault: string } | null {
     for (const tick of this.settings.bookmarks) {
       const place = this.places.has(tick) ? null : frames.sequenceOf(tick);
       if (place !== null) this.places.set(tick, place);
@@ -27,6 +28,7 @@ export class Moments {
     const tick = this.wanted;
     if (tick === null || frames.length === 0) return null;
     const sequence = frames.sequenceOf(tick);
+    if (isGrowing && sequence === frames.last) return null; // time can stand there with the next one
     const oldest = frames.tickOf(frames.first), newest = frames.tickOf(frames.last);
     if (sequence === null && (oldest === null || newest === null || newest < tick)) return null; // it comes
     this.wanted = null;

@@ -1,6 +1,7 @@
 // What one sees, for others: a picture, a film, a link to the moment.
 import { toAddress } from "../model/settings";
 import type { App } from "./app";
+import { titleOf } from "./plotted";
 import { save } from "./save";
 
 const filmRate = 30; // frames per second of wall time, at most
@@ -19,7 +20,7 @@ export function savePicture(app: App): void {
   stage.aim(true);
   stage.render();
   stage.canvas.toBlob((blob) => { // a copy of the pixels is made now
-    if (blob) save(blob, `${app.title} tick ${app.frame?.tick ?? 0}.png`);
+    if (blob) save(blob, `${titleOf(app)} tick ${app.frame?.tick ?? 0}.png`);
     else app.notice("error", "The browser made no picture.");
   });
 }
@@ -84,7 +85,7 @@ export class Film {
 
   private end(): void {
     this.recorder = null;
-    save(new Blob(this.parts, { type: "video/webm" }), `${this.app.title} tick ${this.firstTick} to ${this.app.frame?.tick ?? 0}.webm`);
+    save(new Blob(this.parts, { type: "video/webm" }), `${titleOf(this.app)} tick ${this.firstTick} to ${this.app.frame?.tick ?? 0}.webm`);
     this.parts = [];
   }
 

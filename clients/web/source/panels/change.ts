@@ -54,7 +54,7 @@ export class Change implements Panel {
   }
 
   update(): void {
-    (this.element as HTMLDetailsElement).hidden = !this.app.connection.mayControl;
+    (this.element as HTMLDetailsElement).hidden = !this.app.mayChange;
     const { world } = this.app;
     if (!world || world === this.world) return;
     this.world = world;

@@ -36,13 +36,13 @@ export class Chart {
   private readonly plot: uPlot;
   private readonly values: HTMLElement[];
   private readonly time = make("span.muted.number");
-  private key = "";
+  private key = ""; // of its numbers
+  private look = ""; // of what else is drawn
   private isZoomed = false;
 
   constructor(private readonly app: App, private readonly curves: Curve[], private readonly widthNow: () => number) {
-    const unit = curves[0].label.unit;
     this.values = curves.map(() => make("span.number"));
-    this.element = make("div.plot-box", {}, make("div.title.muted", {}, make("span", {}, unit === "" ? "" : `[${unit}]`), this.time),
+    this.element = make("div.plot-box", {}, make("div.title.muted", {}, this.time),
       ...curves.map((curve, i) => this.legend(curve, this.values[i])));
     this.plot = new uPlot(this.options(), [[], ...curves.map(() => [])], this.element);
     this.plot.over.addEventListener("dblclick", () => { this.isZoomed = false; });
@@ -90,6 +90,8 @@ export class Chart {
   update(): void {
     if (this.plot.width !== this.width) this.plot.setSize({ width: this.width, height });
     const key = this.curves.map(({ series: { sequences } }) => `${sequences.length} ${sequences.at(-1)}`).join();
+    const { pinned } = this.app;
+    const look = `${pinned === null ? "" : this.app.frame?.sequence} ${document.documentElement.dataset.theme}`;
     if (key !== this.key) {
       this.key = key;
       const tables = this.curves.map(({ series }) => {
@@ -97,9 +99,10 @@ export class Chart {
         return [series.times.slice(from), series.values.slice(from)] as uPlot.AlignedData;
       });
       this.plot.setData(uPlot.join(tables), !this.isZoomed);
-    } else {
+    } else if (look !== this.look) {
       this.plot.redraw(false, false); // the line at the moment that is shown
     }
+    this.look = look;
     this.showValues();
   }
 

@@ -33,7 +33,7 @@ export class Devices implements Panel {
       return;
     }
     const groups = this.groups();
-    const shape = `${selected.entity.id}|${app.connection.mayControl}|${groups.map(([title, list]) => title + list.map(
+    const shape = `${selected.entity.id}|${app.mayChange}|${groups.map(([title, list]) => title + list.map(
       ({ device, readings }) => device + readings.map(({ label }) => label).join()).join()).join()}`;
     if (shape !== this.shape) this.rebuild(shape, groups);
     this.fill(groups.flatMap(([, list]) => list.flatMap(({ readings }) => readings)));
@@ -81,7 +81,7 @@ export class Devices implements Panel {
         make("button", { click: () => app.look(entity.id), title: "Look at it (F)" }, "Look"),
         make("button.follow", { click: () => app.follow(app.settings.followed === entity.id ? null : entity.id), title: "Move with it (G)" }, "Follow"),
         make("button.trail", { click: () => app.toggleTrail(entity.id), title: "Draw its path (T)" }, "Trail"),
-        app.connection.mayControl ? make("button.danger", { click: () => void app.call("/remove", { entity: entity.id }), title: "Remove it (Delete)",
+        app.mayChange ? make("button.danger", { click: () => void app.call("/remove", { entity: entity.id }), title: "Remove it (Delete)",
                                 id: "remove" }, "Remove") : null),
       this.pose);
     for (const [title, list] of groups) {

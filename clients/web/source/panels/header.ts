@@ -36,7 +36,7 @@ export class Header implements Panel {
     setText(this.connection, connected === "open" ? app.source.name : connected);
     this.connection.dataset.phase = connected;
     setText(this.control, connected !== "open" || !app.source.isLive ? "" : mayControl ? "may control" : "may look");
-    this.control.title = mayControl ? "The address has the token: pause, move, spawn and remove work."
+    this.control.title = mayControl ? `The address has the token: pause, step and speed work${app.mayChange ? ", and move, spawn and remove" : ""}.`
                                      : "Open the address with the token, as the server printed it, to change the world.";
     setText(this.rate, this.rateText());
   }

@@ -1,5 +1,6 @@
 // Plots of any numbers of any topic over simulated time. Series of one unit share a chart.
 import type { App } from "../page/app";
+import { numbersOf, titleOf, wholeSeries } from "../page/plotted";
 import { save } from "../page/save";
 import { chartOf, labelOf, longLabel, type Label } from "../model/labels";
 import { nameOf, type Series } from "../model/series";
@@ -9,7 +10,7 @@ import { make } from "./element";
 import type { Panel } from "./panel";
 
 // Colours that are told apart also by those who do not see some of them: Okabe and Ito's.
-const strokes = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#8c6d1f", "#7a7f87"];
+const strokes = ["#2f86d1", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#8c6d1f", "#7a7f87"];
 
 const mostTopics = 5000; // to choose from
 
@@ -19,8 +20,9 @@ export class Plots implements Panel {
   private readonly topic = make("select", { "aria-label": "Topic" }) as HTMLSelectElement;
   private readonly path = make("select", { "aria-label": "Number" }) as HTMLSelectElement;
   private readonly apart = make("input", { type: "checkbox", id: "plots-apart" }) as HTMLInputElement;
-  private readonly actions = make("div.actions", {},
-    make("button", { id: "plots-csv", title: "All values as a table, of a recording those of the whole of it", click: () => void this.saveTable() }, "CSV"),
+  private readonly table = make("button", { id: "plots-csv", title: "All values as a table, of a recording those of the whole of it",
+                                            click: () => void this.saveTable() }, "CSV") as HTMLButtonElement;
+  private readonly actions = make("div.actions", {}, this.table,
     make("button", { id: "plots-png", title: "The charts as a picture", click: () => this.savePicture() }, "PNG"),
     make("label", { title: "Otherwise series of one unit share a chart" }, this.apart, "a chart for each"));
   private charts = new Map<string, Chart>();
@@ -75,9 +77,12 @@ export class Plots implements Panel {
   }
 
   private async saveTable(): Promise<void> {
-    const series = await this.app.wholeSeries();
-    const labels = this.app.series.map((one) => longLabel(this.labelOf(one) ?? { of: one.name.topic, text: one.name.path, unit: "" }));
-    save(new Blob([csvOf(series, labels)], { type: "text/csv" }), `${this.app.title} plots.csv`);
+    const { series: shown } = this.app;
+    this.table.disabled = true; // all of a recording is read now
+    const series = await wholeSeries(this.app);
+    this.table.disabled = false;
+    const labels = shown.map((one) => longLabel(this.labelOf(one) ?? { of: one.name.topic, text: one.name.path, unit: "" }));
+    save(new Blob([csvOf(series, labels)], { type: "text/csv" }), `${titleOf(this.app)} plots.csv`);
   }
 
   private savePicture(): void {
@@ -90,7 +95,7 @@ export class Plots implements Panel {
     draw.fillRect(0, 0, canvas.width, canvas.height);
     let top = 0;
     for (const chart of charts) top += chart.paint(draw, top, ratio);
-    canvas.toBlob((blob) => { if (blob) save(blob, `${this.app.title} plots.png`); });
+    canvas.toBlob((blob) => { if (blob) save(blob, `${titleOf(this.app)} plots.png`); });
   }
 
   private listTopics(): void {
@@ -106,7 +111,7 @@ export class Plots implements Panel {
 
   private listNumbers(): void {
     const { value: topic } = this.topic;
-    const numbers = this.app.numbersOf(topic);
+    const numbers = numbersOf(this.app, topic);
     this.path.replaceChildren(make("option", { value: "" }, numbers || topic === "" ? "Number …"
       : "not shown now: switch its layer on, or select its robot"),
       ...(numbers ?? []).map(({ path, value }) => make("option", { value: path }, `${path} = ${value.toPrecision(4)}`)));

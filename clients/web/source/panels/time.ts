@@ -11,7 +11,7 @@ export class TimeBar implements Panel {
   readonly element = make("div.time");
   private readonly play = make("button.play", { id: "play", title: "Play or pause (space)", click: () => this.app.playOrPause() });
   private readonly step = make("button", { id: "step", title: "One tick (n)", click: () => this.app.step() }, icon("step"));
-  private readonly reset = make("button", { id: "reset", title: "Back to the start (r)", click: () => this.app.restart() }, icon("reset"));
+  private readonly reset = make("button", { id: "reset", title: "Back to the start (r)", click: () => this.app.restart() }, icon("reset")) as HTMLButtonElement;
   private readonly speed = make("select", { id: "speed", title: "Simulated seconds per second ([ and ])" }) as HTMLSelectElement;
   private readonly line: Lanes;
   private readonly clock = make("span.clock.number", { id: "clock" });
@@ -46,6 +46,7 @@ export class TimeBar implements Panel {
     const { app } = this;
     const mayPlay = !app.isLive || (app.connection.mayControl && !app.isOver);
     for (const control of [this.play, this.step, this.reset, this.speed]) (control as HTMLButtonElement).disabled = !mayPlay;
+    this.reset.disabled ||= app.isLive && !app.mayChange;
     if (app.isPaused !== this.wasPaused) {
       this.wasPaused = app.isPaused;
       this.play.replaceChildren(icon(app.isPaused ? "play" : "pause"));

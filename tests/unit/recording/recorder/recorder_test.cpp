@@ -167,6 +167,7 @@ TEST(Recorder, TimesNeverFallAndEachTickHasItsMessages) {
   EXPECT_FALSE(states[1].is_complete());
   EXPECT_TRUE(states[2].is_complete());
   EXPECT_EQ(reader.contents().channel_of("/phases"), nullptr);
+  EXPECT_EQ(reader.contents().channel_of("/metrics"), nullptr);  // /inputs has them
   const Overview seen = overview(reader);
   EXPECT_EQ(seen.epochs, 2u);
   EXPECT_EQ(seen.states, 3u);
