@@ -18,6 +18,7 @@ import { newestMessage, type Frame, type Frames, type Mark } from "./timeline";
 const mostBytes = 192 * 1024 * 1024; // of frames in memory
 const mostFrames = 1e8;
 const mostPoints = 6000; // of a plot
+const untilDrawn = 400; // [ms], for the first frame, before all is read
 const mostTold = 3; // messages that are left out; further ones are told together
 const mostLeftOut = 100_000; // that are remembered
 const ofMessage = 300; // memory beside its bytes
@@ -101,7 +102,7 @@ export class Recorded implements Source, Frames {
         + "is shown. `ziggurat info FILE --repair OUT` writes a whole file of it.");
     }
     this.at(0);
-    void this.readAll();
+    setTimeout(() => void this.readAll(), untilDrawn);
   }
 
   want(): void { /* all of it is there */ }
