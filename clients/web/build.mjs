@@ -1,12 +1,14 @@
 // Bundles the page, or its unit tests.
 //
-// usage: node build.mjs FOLDER          the page: index.html, page.js, page.css; and player.html, the same in one file
+// usage: node build.mjs FOLDER          the page: index.html, page-HASH.js, page-HASH.css, each in gzip, too; and player.html, the
+//                                       same in one file
 //        node build.mjs --tests FOLDER  one program for `node --test` per file of tests/
 import { build } from "esbuild";
 import { createHash } from "node:crypto";
-import { copyFile, mkdir, readFile, readdir, writeFile } from "node:fs/promises";
-import { dirname, join } from "node:path";
+import { mkdir, readFile, readdir, rm, writeFile } from "node:fs/promises";
+import { basename, dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const isTests = process.argv[2] === "--tests";
@@ -30,9 +32,11 @@ if (isTests) {
     logLevel: "warning",
   });
 } else {
+  for (const name of await readdir(folder)) if (/^page[-.\w]*\.(js|css)(\.gz)?$/.test(name)) await rm(join(folder, name));
   const { metafile } = await build({
     entryPoints: [join(here, "source/page.ts"), join(here, "source/worker.ts"), join(here, "source/page.css")],
     outdir: folder,
+    entryNames: "[name]-[hash]", // browsers keep what has another name when it changes
     bundle: true,
     minify: true,
     format: "esm",
@@ -42,8 +46,24 @@ if (isTests) {
     logLevel: "warning",
   });
   await writeFile(join(folder, "licences.txt"), await licencesOf(metafile));
-  await copyFile(join(here, "source/index.html"), join(folder, "index.html"));
-  await writeFile(join(folder, "player.html"), await makePlayer(folder));
+  const names = Object.keys(metafile.outputs).map((path) => basename(path));
+  const [script, style] = [".js", ".css"].map((ending) => names.find((name) => name.endsWith(ending)));
+  await writeFile(join(folder, "index.html"), await makePage(script, style));
+  for (const name of ["index.html", script, style]) {
+    await writeFile(join(folder, `${name}.gz`), gzipSync(await readFile(join(folder, name)), { level: 9 }));
+  }
+  await writeFile(join(folder, "player.html"), await makePlayer(folder, script, style));
+}
+
+function replaced(text, from, to) {
+  if (!from.test(text)) throw new Error(`index.html has no ${from}`);
+  return text.replace(from, () => to);
+}
+
+/** The page with the names of its files. */
+async function makePage(script, style) {
+  const page = replaced(await readFile(join(here, "source/index.html"), "utf8"), /(?<=href=")page\.css/, style);
+  return replaced(page, /(?<=src=")page\.js/, script);
 }
 
 /** The licences of all libraries that are in the bundle. */
@@ -61,25 +81,19 @@ async function licencesOf({ inputs }) {
 
 /**
  * The page in one file, which plays a recording without a server: `ziggurat export --html` puts the recording in the
- * place of @RECORDING@, and its name in that of @NAME@. Its security policy allows its own script and style, by their
- * hashes, and no network.
+ * place of @RECORDING@. Its security policy allows its own script and style, by their hashes, and no network.
  */
-async function makePlayer(folder) {
+async function makePlayer(folder, scriptName, styleName) {
   // In a script element, only "</script" and "<!--" end or change it.
-  const script = (await readFile(join(folder, "page.js"), "utf8")).replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
-  const style = await readFile(join(folder, "page.css"), "utf8");
+  const script = (await readFile(join(folder, scriptName), "utf8")).replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
+  const style = await readFile(join(folder, styleName), "utf8");
   const hash = (text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`;
   const policy = `default-src 'none'; script-src ${hash(script)}; style-src ${hash(style)}; img-src data: blob:; `
     + "base-uri 'none'; form-action 'none'";
   const page = await readFile(join(here, "source/index.html"), "utf8");
-  const replaced = (text, from, to) => {
-    if (!from.test(text)) throw new Error(`index.html has no ${from}`);
-    return text.replace(from, () => to);
-  };
   let player = replaced(page, /(?<=Security-Policy" content=")[^"]*/, policy);
   player = replaced(player, /<link rel="stylesheet"[^>]*>/, `<style>${style}</style>`);
   return replaced(player, /<script type="module"[^>]*><\/script>/,
-    '<script type="application/octet-stream" id="recording" data-name="@NAME@">@RECORDING@</script>\n'
-    + `<script type="module">${script}</script>\n`
+    `<!--@RECORDING@-->\n<script type="module">${script}</script>\n`
     + `<!--\n${(await readFile(join(folder, "licences.txt"), "utf8")).replaceAll(/-{2,}|[<>]/g, " ")}-->`);
 }

@@ -4,8 +4,9 @@
 #   sbatch --nodes=3 --ntasks-per-node=1 scenes/cluster/world.sh SCENE [OPTION-OF-SERVE...]
 #
 # Each other node runs CONTROLLER once (default: ziggurat-lua). It finds the server by ZIGGURAT_ENDPOINT, and
-# is let in by keys that are made for this job; SLURM_PROCID tells it which of them it is. The world's hash at
-# each tick, for example, is an option of serve: --hash-file FILE.
+# is let in by keys that are made for this job; SLURM_PROCID tells it which of them it is. The
+# scene's directors run beside the server. The world's hash at each tick, for example, is an option of serve:
+# --hash-file FILE.
 #
 # Environment: CONTROLLER, PORT (default: 20000 to 29999, by the number of the job).
 set -eu

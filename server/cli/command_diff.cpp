@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <boost/program_options/value_semantic.hpp>
 #include <sstream>
 #include <string>
@@ -47,7 +49,8 @@ most.
   ziggurat diff before.mcap after.mcap --plot apart.svg
       with - instead of a file the picture goes to stdout, and the table to stderr
 
-Exit codes: 0 all states are the same; 5 they differ; 1 fault of arguments or recordings.
+Exit codes: 0 all states are the same; 5 they differ; 1 fault of arguments or recordings, or no states
+to compare.
 
 )" << diff_options();
   return text.str();
@@ -63,6 +66,12 @@ int execute_diff(const Arguments& arguments) {
   if (!out.empty()) check_plot(out, parsed.positional, as_json);
   const replay::RecordingFile a(parsed.positional[0]), b(parsed.positional[1]);
   const rerun::Divergence divergence = rerun::compare(a, b);
+  if (divergence.compared == 0) {
+    throw text::UsageError(fmt::format(
+        "there are no states to compare: {} has {}, {} has {}, and none of them has the "
+        "same tick; 'ziggurat info FILE' tells what each has",
+        a.path(), divergence.only_a, b.path(), divergence.only_b));
+  }
   reports::Console console;
   for (const auto* file : {&a, &b}) {
     if (const auto missing = file->shortcoming(); !missing.empty()) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/program_options/value_semantic.hpp>
+#include <filesystem>
 #include <sstream>
 #include <vector>
 
@@ -47,8 +48,9 @@ std::string to_jsonl(const Order& order) {
   return fmt::format("{} messages", messages);
 }
 std::string to_html(const Order& order) {
-  const auto size =
-      export_html(run::shared_folder("web") + "/player.html", order.file.path(), order.out);
+  const auto size = export_html(run::shared_folder("web") + "/player.html",
+                                std::filesystem::path(order.file.path()).filename().string(),
+                                order.file.reader(), order.out);
   return fmt::format("{} kB, opens in any browser", (size + 999) / 1000);
 }
 

@@ -10,7 +10,8 @@ std::string help_serve() {
   return R"(usage: ziggurat serve SCENE [OPTION]...
 
 Runs a scene for controllers that connect from outside, also Lua controllers. The server waits for
-them forever, prints which robots it waits for, and ends after the scene's length.
+them forever, prints which robots it waits for, and ends after the scene's length. Directors of the scene
+that have a script or a command are started as by 'ziggurat run'; --without-directors starts none.
 
   ziggurat serve vehicle.argos
       listens on a socket in $XDG_RUNTIME_DIR/ziggurat, otherwise in /tmp/ziggurat-UID, that only this user

@@ -23,7 +23,7 @@ po::options_description try_options() {
       ("script", text("FILE.lua"), "of a Lua robot: the script, instead of a command")  //
       ("until", text("TICK"), "end after this tick")                                    //
       ("differences", text("N"), "print the first N ticks that differ; default 1")      //
-      ("quiet", "no progress and no notices");
+      ("quiet", "the verdict alone: no progress, no notices, no lines of the controller");
   return options;
 }
 
@@ -42,7 +42,9 @@ against a run that was good.
   ziggurat try run.mcap --robot r0 --script new.lua --differences 10
 
 COMMAND is started as the scene's `command` would be: with ZIGGURAT_ENDPOINT and ZIGGURAT_CONTROLLER
-in its environment. Prints each difference with tick, device and both values, or `identical: …`.
+in its environment. Prints each difference as `differs: ` with tick, device and both values, or
+`identical: …`; after differences, what may have caused them: restarts and missed deadlines of the
+recorded run. With --quiet nothing else is printed, also no line that the controller logs.
 
 Exit codes: 0 identical; 5 a command differs; 3 the controller failed or ended; 1 fault of
 arguments or recording; 130 interrupted.

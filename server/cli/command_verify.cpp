@@ -32,8 +32,9 @@ Prints one line on stdout:
 A difference is followed by what may have caused it: another version, compiler or C library, other
 instructions of the processor.
 
-With --controllers the first command that differs is named. A controller that does not compute the same
-from the same readings is found so. Commands that the recording names are never started by themselves.
+With --controllers the first command that differs is named, and the restarts and missed deadlines of the
+recorded run as likely causes. A controller that does not compute the same from the same readings is
+found so. With --quiet lines that controllers log are left out. Commands that the recording names are never started by themselves.
 
 Exit codes: 0 identical; 5 differs; 6 damaged; 3 a controller failed or ended; 1 fault of arguments or recording; 130 interrupted.
 )";

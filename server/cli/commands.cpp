@@ -14,6 +14,8 @@ namespace {
 
 constexpr Command table[] = {
     {"run", "run a scene with its controllers", help_run, execute_run, run::by_run},
+    {"view", "show a scene, a recording or a folder of scenes in a browser", help_view,
+     execute_view},
     {"serve", "run a scene for controllers that connect from outside", help_serve, execute_serve,
      run::by_serve},
     {"check", "report every fault and notice of scene files", help_check, execute_check,

@@ -57,6 +57,7 @@ std::string help_magnetism();
 std::string help_ctl();
 std::string help_top();
 std::string help_help();
+std::string help_view();
 
 int execute_run(const Arguments& arguments, processes::Signals& signals);
 int execute_serve(const Arguments& arguments, processes::Signals& signals);
@@ -77,5 +78,6 @@ int execute_magnetism(const Arguments& arguments);
 int execute_ctl(const Arguments& arguments);
 int execute_top(const Arguments& arguments, processes::Signals& signals);
 int execute_help(const Arguments& arguments);
+int execute_view(const Arguments& arguments, processes::Signals& signals);
 
 }  // namespace ziggurat::cli

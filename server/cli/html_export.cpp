@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -12,6 +13,7 @@
 #include <stdexcept>
 
 #include "cli/atomic_file.h"
+#include "recording/mcap/repair.h"
 #include "text/printable.h"
 
 namespace ziggurat::cli {
@@ -19,11 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view magic("\x89MCAP0\r\n", 8);
-constexpr std::string_view name_place = "@NAME@", recording_place = "@RECORDING@";
-/// Browsers hold the text of an element in one string, of at most 512 MiB.
-constexpr std::uint64_t largest = std::uint64_t{350} << 20;
-constexpr std::size_t block = std::size_t{3} << 20;  ///< a multiple of three: nothing is padded
+constexpr std::string_view place = "<!--@RECORDING@-->";
+/// Browsers hold all of a page in memory.
+constexpr std::size_t largest = std::size_t{350} << 20;
+/// The recording is cut into parts of that size [bytes], a multiple of three.
+constexpr std::size_t part_size = std::size_t{768} << 10;
+/// For repeating the run, and for other viewers: the page shows the same by /poses.
+constexpr std::array<std::string_view, 3> unused{"/state", "/scene", "/tf"};
 
 [[noreturn]] void fail(const std::string& text) { throw std::runtime_error(text); }
 
@@ -45,9 +49,9 @@ std::string escaped(std::string_view text) {
   return all;
 }
 
-/// The page around the recording: up to its name, up to its bytes, and the rest.
+/// The page around the recording.
 struct Template {
-  std::string before_name, before_recording, rest;
+  std::string begin, rest;
 };
 
 Template read_template(const std::string& player) {
@@ -57,59 +61,52 @@ Template read_template(const std::string& player) {
   }
   std::ifstream file = open(player);
   const std::string all{std::istreambuf_iterator<char>(file), {}};
-  const auto name = all.find(name_place);
-  const auto recording = all.find(recording_place);
-  if (name == std::string::npos || recording == std::string::npos || recording < name) {
+  const auto found = all.find(place);
+  if (found == std::string::npos) {
     fail(fmt::format("{} has no place for a recording; build the page again", player));
   }
-  const auto after_name = name + name_place.size();
-  return {all.substr(0, name), all.substr(after_name, recording - after_name),
-          all.substr(recording + recording_place.size())};
+  return {all.substr(0, found), all.substr(found + place.size())};
 }
 
-/// @return what was written [bytes]
-std::uint64_t copy_as_base64(std::ifstream& from, std::ostream& to) {
-  std::uint64_t size = 0;
-  std::string bytes(block, '\0');
-  while (from) {
-    from.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    const std::string letters = to_base64({bytes.data(), static_cast<std::size_t>(from.gcount())});
-    to << letters;
-    size += letters.size();
-  }
-  return size;
+/// Messages that the page shows, as an MCAP file.
+std::string shown_of(const std::string& name, const mcap::Reader& recording) {
+  std::string bytes;
+  const auto keep = [&](std::string_view more) {
+    if (bytes.size() + more.size() > largest) {
+      fail(
+          fmt::format("{} is too large: a page holds at most {} MB; record fewer topics "
+                      "(--record-topics), or drop the file on the page of --view",
+                      name, largest / 1'000'000));
+    }
+    bytes += more;
+  };
+  const auto is_shown = [](const std::string& topic) {
+    return std::ranges::find(unused, topic) == unused.end();
+  };
+  mcap::repair(recording, keep, mcap::Compression::zstd,
+               {.topics = is_shown, .messages_alone = true});
+  return bytes;
 }
 
-/// @return what was written [bytes]
-std::uint64_t write_page(const Template& page, const std::string& name, std::ifstream& recording,
+/// @return  what was written [bytes]
+std::uint64_t write_page(const Template& page, const std::string& name, std::string_view recording,
                          std::ostream& to) {
-  const std::string begin = page.before_name + escaped(name) + page.before_recording;
-  to << begin;
-  const std::uint64_t size = copy_as_base64(recording, to);
-  to << page.rest;
-  return begin.size() + size + page.rest.size();
-}
-
-std::ifstream open_recording(const std::string& path) {
-  std::error_code error;
-  const auto size = fs::file_size(path, error);
-  if (error) fail(fmt::format("{} can't be read: {}", path, error.message()));
-  if (size > largest) {
-    fail(
-        fmt::format("{} has {} MB, and a page holds at most {} MB; record fewer topics "
-                    "(--record-topics), or drop "
-                    "the file on the page of --view",
-                    path, size / 1'000'000, largest / 1'000'000));
+  std::uint64_t size = 0;
+  const auto write = [&](const std::string& text) {
+    to << text;
+    size += text.size();
+  };
+  write(page.begin);
+  write(
+      fmt::format("<template id=\"recording\" data-name=\"{}\" data-size=\"{}\" data-part=\"{}\">"
+                  "</template>\n",
+                  escaped(name), recording.size(), part_size));
+  for (std::size_t at = 0, number = 0; at < recording.size(); at += part_size, ++number) {
+    write(fmt::format("<script type=\"application/octet-stream\" id=\"part{}\">{}</script>\n",
+                      number, to_base64(recording.substr(at, part_size))));
   }
-  std::ifstream file = open(path);
-  std::array<char, magic.size()> begin{};
-  file.read(begin.data(), begin.size());
-  if (std::string_view(begin.data(), begin.size()) != magic) {
-    fail(fmt::format("{} is no recording: it does not begin as an MCAP file does", path));
-  }
-  file.clear();
-  file.seekg(0);
-  return file;
+  write(page.rest);
+  return size;
 }
 
 }  // namespace
@@ -131,11 +128,10 @@ std::string to_base64(std::string_view bytes) {
   return text;
 }
 
-std::uint64_t export_html(const std::string& player, const std::string& recording,
-                          const std::string& out) {
+std::uint64_t export_html(const std::string& player, const std::string& name,
+                          const mcap::Reader& recording, const std::string& out) {
   const Template page = read_template(player);
-  const std::string name = fs::path(recording).filename().string();
-  std::ifstream bytes = open_recording(recording);
+  const std::string bytes = shown_of(name, recording);
   if (out == "-") {
     const std::uint64_t size = write_page(page, name, bytes, std::cout);
     if (!std::cout.flush()) fail(fmt::format("stdout can't be written: {}", std::strerror(errno)));
@@ -145,7 +141,7 @@ std::uint64_t export_html(const std::string& player, const std::string& recordin
   std::ofstream file(whole.path(), std::ios::binary | std::ios::trunc);
   const std::uint64_t size = write_page(page, name, bytes, file);
   file.close();
-  if (!file || bytes.bad()) fail(fmt::format("{} can't be written: {}", out, std::strerror(errno)));
+  if (!file) fail(fmt::format("{} can't be written: {}", out, std::strerror(errno)));
   whole.commit();
   return size;
 }

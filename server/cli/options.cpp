@@ -98,6 +98,7 @@ void check_effects(const GivenOptions& given, run::Commands command, const run::
   check_apart(own, "without-controllers",
               {"controller", "script", "restart", "trust-scripts", "trust-recorded-commands",
                "lua-processes", "lua-memory", "lua-instructions", "lua-time"});
+  check_apart(own, "start-directors", {"without-directors"});
   const auto is_tcp = [](const std::string& endpoint) { return endpoint.starts_with("tcp://"); };
   const bool has_address =
       std::ranges::any_of(options.endpoints, is_tcp) || options.view || !options.metrics.empty();

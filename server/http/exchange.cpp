@@ -1,5 +1,6 @@
 #include "http/exchange.h"
 
+#include <boost/beast/http/rfc7230.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <cstdint>
 #include <limits>
@@ -14,6 +15,23 @@ namespace {
 namespace beast = boost::beast;
 using Field = beast::http::field;
 
+/// Whether the client takes bodies in gzip (RFC 9110, section 12.5.3).
+bool takes_gzip(const Request& request) {
+  for (const auto& [name, parameters] : beast::http::ext_list(request[Field::accept_encoding])) {
+    if (!beast::iequals(name, "gzip")) continue;
+    for (const auto& [key, value] : beast::http::param_list(parameters)) {
+      if (beast::iequals(key, "q") && value.find_first_of("123456789") == value.npos) return false;
+    }
+    return true;
+  }
+  return false;
+}
+
+const char* cache_control(const Answer& answer) {
+  if (answer.etag.empty()) return "no-store";
+  return answer.is_immutable ? "public, max-age=31536000, immutable" : "no-cache";
+}
+
 /// @param request  may be half read
 /// It closes the connection.
 Response make_response(const Request& request, Answer from) {
@@ -21,8 +39,16 @@ Response make_response(const Request& request, Answer from) {
   response.set(Field::server, "ziggurat");
   response.set(Field::content_type, from.type);
   response.set("X-Content-Type-Options", "nosniff");
-  response.set(Field::cache_control, from.etag.empty() ? "no-store" : "no-cache");
+  response.set(Field::cache_control, cache_control(from));
   if (!from.etag.empty()) response.set(Field::etag, from.etag);
+  if (!from.location.empty()) response.set(Field::location, from.location);
+  if (!from.gzipped.empty()) {
+    response.set(Field::vary, "Accept-Encoding");
+    if (takes_gzip(request)) {
+      response.set(Field::content_encoding, "gzip");
+      from.body = std::move(from.gzipped);
+    }
+  }
   response.keep_alive(false);
   const std::size_t size = from.body.size();
   if (request.method() != beast::http::verb::head) response.body() = std::move(from.body);

@@ -43,6 +43,7 @@ Console::~Console() {
 
 void Console::log_line(std::uint64_t tick, std::string_view robot, std::string_view text,
                        bool error) {
+  if (style_.mutes_controllers) return;
   const bool color = error ? color_error_ : color_out_;
   const auto begin = color ? (error ? red : dim) : std::string_view();
   const auto end = color ? plain : std::string_view();

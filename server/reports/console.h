@@ -21,8 +21,9 @@ class ConsoleError : public std::runtime_error {
 class Console {
  public:
   struct Style {
-    bool quiet = false;  ///< no notices, no progress
-    bool json = false;   ///< messages are JSON objects, one a line; no progress
+    bool quiet = false;              ///< no notices, no progress
+    bool json = false;               ///< messages are JSON objects, one a line; no progress
+    bool mutes_controllers = false;  ///< no lines that controllers log
   };
   explicit Console(Style style);
 

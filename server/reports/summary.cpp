@@ -142,8 +142,9 @@ std::string to_text(const Summary& summary) {
         fmt::format("  shut down by a supervisor: {}\n", text::indented(summary.shutdown_reason));
   }
   if (summary.result) {
-    text += fmt::format("  director '{}' ended the run: {}\n", summary.result->director,
-                        text::indented(summary.result->text));
+    const std::string& result = summary.result->text;
+    text += fmt::format("  director '{}' ended the run{}{}\n", summary.result->director,
+                        result.empty() ? "" : ": ", text::indented(result));
   }
   for (const auto& each : summary.missed) {
     text += fmt::format("  controller '{}' missed its deadline at {} tick{}\n", each.controller,

@@ -7,6 +7,7 @@
 
 #include "processes/python_package.h"
 #include "processes/scripts.h"
+#include "recording/replay/recorded_log.h"
 #include "recording/replay/recording_file.h"
 #include "rerun/embedded_scripts.h"
 #include "rerun/recorded_world.h"
@@ -31,7 +32,7 @@ std::size_t robot_named(const world::Layout& layout, const std::string& id) {
 ControllerCheck::ControllerCheck(const ControllerCheckOptions& options, processes::Signals& signals)
     : options_(options),
       signals_(signals),
-      console_({.quiet = options.quiet}),
+      console_({.quiet = options.quiet, .mutes_controllers = options.quiet}),
       file_(options.recording),
       folder_(signals.guardian()),
       world_(build_world()),
@@ -172,8 +173,8 @@ std::optional<ControllerCheck::Ending> ControllerCheck::repeat() {
   const auto tell = [this](std::uint64_t tick, const std::string& robot,
                            const replay::CommandDifference& found) {
     if (told_++ >= options_.most_told) return;
-    console_.result(fmt::format("tick {}: '{}': {} is {} in the recording, {} now", tick, robot,
-                                found.device, found.recorded, found.now));
+    console_.result(fmt::format("differs: tick {}: '{}': {} is {} in the recording, {} now", tick,
+                                robot, found.device, found.recorded, found.now));
   };
   controller_replay_.emplace(file_, world_, world_, std::function<void()>(),
                              ControllerReplay::Services{server_, controllers_, watch_}, gone_,
@@ -195,7 +196,10 @@ int ControllerCheck::tell(const std::optional<Ending>& ending) {
     return reports::exit_code::interrupted;
   }
   if (ending || !failures.empty()) return reports::exit_code::controller_failed;
-  if (!controller_replay_->differences().empty()) return reports::exit_code::differs;
+  if (!controller_replay_->differences().empty()) {
+    for (const auto& cause : replay::causes_of_commands(file_)) console_.result("  " + cause);
+    return reports::exit_code::differs;
+  }
   if (controller_replay_->ticks() == 0) {
     console_.fault(
         "nothing was compared: in the recorded run no such robot with a controller was stepped");

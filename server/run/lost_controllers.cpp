@@ -160,8 +160,8 @@ bool LostControllers::restart(const processes::ControllerProcess& ended, const s
       !may_restart(ended, settings_.restarts, world_.simulation.layout()))
     return false;
   const auto& started = controllers_.restart(ended, status[*robot].token);
-  console_.notice(fmt::format("{}; started again (restart {}) as process {}", end, started.restarts,
-                              started.process.id()));
+  peers_.notice(fmt::format("{}; started again (restart {}) as process {}", end, started.restarts,
+                            started.process.id()));
   restarted_.insert(restarted_.end(), started.robots.begin(), started.robots.end());
   return true;
 }

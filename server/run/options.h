@@ -53,7 +53,8 @@ struct Options {
   std::optional<std::string> view;       ///< serve viewers: host:port, or empty for the usual one
   std::string view_token;                ///< the user's own; empty = a random one
   bool allows_directors = false;         ///< also those that the scene does not name
-  bool starts_directors = false;         ///< serve: the scene's
+  bool starts_all_directors = false;     ///< serve: one without a program is a fault
+  bool starts_no_directors = false;      ///< serve: all of the scene's connect from outside
   bool insecure = false;                 ///< endpoints may be reached from other machines
 
   bool quiet = false;

@@ -58,6 +58,9 @@ class PeerReports {
   /// Failures of all controllers: sorted by tick, then by scene order of the robots.
   std::vector<reports::Summary::Failure> failures() const;
 
+  /// A notice of the run, which viewers and recordings get as a warning.
+  void notice(const std::string& text);
+
  private:
   /// A line of the present tick. The robot may be gone, by a reset, before it is printed.
   struct Line {
@@ -65,7 +68,6 @@ class PeerReports {
     std::string robot;  ///< its id
   };
 
-  void notice(const std::string& text);
   void take_departures(const std::vector<network::Departure>& departures,
                        network::Notices::Time now);
 

@@ -157,7 +157,7 @@ network::Config Run::complete_config() {
   check_client_options(options_, clients, config_);
   check_gate(options_.gate, {std::span(config_.deadlines).first(controllers.size()),
                              clients.can_connect, plan_.real_time.has_value()});
-  if (service_ == Service::run || options_.starts_directors)
+  if (service_ == Service::run || starts_directors(options_, world_.scene))
     config_.private_endpoint = "ipc://" + folder_.path() + "/run";
   return config_;
 }
@@ -190,8 +190,9 @@ processes::Controllers Run::start_controllers() {
   run.directors = programs_.directors;
   server_.open(std::move(run), complete_config());
   server_.remove_robots(robots_without_controller());
-  if (options_.starts_directors) check_programs(world_.scene);
-  if (!with_controllers_ || (service_ == Service::serve && !options_.starts_directors)) return {};
+  if (options_.starts_all_directors) check_programs(world_.scene);
+  const bool starts_none = service_ == Service::serve && !starts_directors(options_, world_.scene);
+  if (!with_controllers_ || starts_none) return {};
   return {world_.scene, world_.simulation.layout(), programs_.scripts, launch_settings()};
 }
 

@@ -31,6 +31,10 @@ scene::DeadlinePolicy usual_policy(const Options& options, const scene::Scene& s
           static_cast<std::uint32_t>(std::max(1.0, std::floor(0.9 * tick_ms))), 0};
 }
 
+bool has_program(const scene::Director& director) {
+  return !director.script.empty() || !director.command.empty();
+}
+
 }  // namespace
 
 network::Config network_config(const Options& options, bool is_serve, LocalEndpoints& local) {
@@ -109,7 +113,7 @@ void tell_how_to_connect(const Options& options, const std::string& endpoint,
             : program("ZIGGURAT_CONTROLLER", controller.id, controller.command));
   }
   for (const scene::Director& director : world.scene.directors) {
-    if (options.starts_directors) break;
+    if (has_program(director) && !options.starts_no_directors) continue;
     add(director.script.empty() ? program("ZIGGURAT_DIRECTOR", director.id, director.command)
                                 : lua + " --director " + text::shell_word(director.id));
   }
@@ -129,10 +133,15 @@ wire::Run description_of(const supervision::World& world, const std::vector<std:
   return run;
 }
 
+bool starts_directors(const Options& options, const scene::Scene& scene) {
+  return options.starts_all_directors ||
+         (!options.starts_no_directors && std::ranges::any_of(scene.directors, has_program));
+}
+
 void check_programs(const scene::Scene& scene) {
   std::vector<scene::Problem> problems;
   for (const scene::Director& director : scene.directors) {
-    if (!director.script.empty() || !director.command.empty()) continue;
+    if (has_program(director)) continue;
     problems.push_back(
         {scene::Problem::Severity::fault, scene::file_of(scene, director.where), director.where,
          fmt::format(

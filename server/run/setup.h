@@ -41,8 +41,11 @@ void tell_how_to_connect(const Options& options, const std::string& endpoint,
 /// @param scripts  per robot of the scene; empty = none
 wire::Run description_of(const supervision::World& world, const std::vector<std::string>& scripts);
 
-/// Checks that directors can be started. @throws scene::SceneError that names those without script
-/// and command
+/// Whether serve starts a director of the scene.
+bool starts_directors(const Options& options, const scene::Scene& scene);
+
+/// Checks that all directors can be started. @throws scene::SceneError that names those without
+/// script and command
 void check_programs(const scene::Scene& scene);
 
 /// Number of threads for the physics: what the options say, else as many as bodies that move are

@@ -62,6 +62,16 @@ std::string type_of(const std::filesystem::path& path) {
   return "application/octet-stream";
 }
 
+/// Whether the build put a hash of the content into the name: `page-J3BWKQOH.js`.
+bool has_hash(const std::filesystem::path& path) {
+  constexpr std::size_t letters = 8;
+  const std::string name = path.stem().string();
+  const auto dash = name.rfind('-');
+  return dash != std::string::npos && name.size() - dash - 1 == letters &&
+         name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789", dash + 1) ==
+             std::string::npos;
+}
+
 }  // namespace
 
 http::Answer Page::get(std::string_view target, std::string_view known_etag) const {
@@ -76,9 +86,17 @@ http::Answer Page::get(std::string_view target, std::string_view known_etag) con
   if (!content) return {404, http::Answer().type, {}, "There is no such file.\n"};
   math::Hash hash;
   hash.add(std::string_view(*content));
-  const std::string etag = "\"" + math::to_hex(hash.digest()) + "\"";
-  if (etag == known_etag) return {304, type_of(path), etag, {}};
-  return {200, type_of(path), etag, *std::move(content)};
+  // Weak: the same for the body in gzip.
+  const std::string etag = "W/\"" + math::to_hex(hash.digest()) + "\"";
+  http::Answer answer{200, type_of(path), etag, {}};
+  answer.is_immutable = has_hash(path);
+  if (etag == known_etag) {
+    answer.status = 304;
+    return answer;
+  }
+  answer.gzipped = read(folder_ + path + ".gz").value_or("");
+  answer.body = *std::move(content);
+  return answer;
 }
 
 std::string content_security_policy(std::string_view host) {

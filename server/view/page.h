@@ -10,7 +10,8 @@ namespace ziggurat::view {
 
 class Page {
  public:
-  /// @param folder  where the files are; if it has no index.html, a text says so
+  /// @param folder  where the files are, some with the same in gzip as `FILE.gz` beside them; if it
+  /// has no index.html, a text says so
   explicit Page(std::string folder) : folder_(std::move(folder)) {}
 
   /// @param target  path and query

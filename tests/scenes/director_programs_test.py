@@ -67,6 +67,44 @@ class Programs(Directing):
             self.assert_is_sentence(self.run_scene(option, value, code=FAULT),
                                     f"{option}: the scene has no controller or director 'juge'; did you mean 'judge'")
 
+    def serve(self, *arguments):
+        self.run = self.start("serve", self.scene, "--endpoint", self.endpoint, "--real-time", "1000", "--record", self.record,
+                              "--hash", "--summary", self.folder / "summary.json", *arguments)
+
+    def test_a_server_starts_what_a_run_starts(self):
+        self.write("judge.lua", "function post_step(k) if k == 3 then world.finish('done by ' .. world.id) end end")
+        self.write_scene('<director id="judge" script="judge.lua" />')
+        self.serve()
+        self.assertEqual(self.end()["result"], "done by judge")
+        ran = self.run_scene("--hash")
+        self.assertEqual(self.outcome.lines[-1], ran.lines[-1])
+        command = self.program("with ziggurat.direct() as world:\n    next(world)\n    world.finish('a program')\n")
+        self.write_scene(f'<director id="judge" {command} />')
+        self.serve()
+        self.assertEqual(self.end()["result"], "a program")
+
+    def test_a_server_that_starts_no_directors_waits_for_them(self):
+        self.write("judge.lua", "function post_step(k) world.finish('inside') end")
+        for element, options in (('<director id="judge" script="judge.lua" />', ("--without-directors",)),
+                                 ('<director id="judge" />', ())):
+            self.write_scene(element)
+            self.serve(*options)
+            self.wait_for((self.folder / "e").exists, bool, "socket")
+            with self.direct() as world:
+                next(world)
+                world.finish("outside")
+            self.assertEqual(self.end()["result"], "outside")
+            self.assertRegex(self.outcome.err, "connect with: .*judge")
+            os.remove(self.record)
+        self.write_scene('<director id="judge" />')
+        self.assert_is_sentence(self.ziggurat("serve", self.scene, "--start-directors"),
+                                "director 'judge' has no program that can be started; write script=")
+
+    def test_an_empty_result_has_no_colon(self):
+        self.write("judge.lua", "function post_step(k) world.finish() end")
+        self.write_scene('<director id="judge" script="judge.lua" />')
+        self.assertRegex(self.run_scene().err, r"(?m)director 'judge' ended the run$")
+
     def test_an_empty_script_is_a_director_from_outside(self):
         self.write_scene('<director id="judge" script="nothere.lua" />')
         self.begin("--set", "director/@script=")

@@ -155,7 +155,7 @@ class Experiments(SceneTest):
             function post_step(tick) log("marker ", world.entities.marker.position.x) end
         """)
         url = f"ipc://{self.runtime}/s"
-        server = self.start("serve", self.scene, "--endpoint", url, "--ticks", "1000000", "--real-time", "2")
+        server = self.start("serve", self.scene, "--endpoint", url, "--ticks", "1000000", "--real-time", "2", "--without-directors")
         programs = [subprocess.Popen([LUA, "--connect", url, "--quiet", *more], env=self.environment, cwd=self.folder,
                                      stdout=subprocess.PIPE, text=True) for more in ((), ("--director", "judge", "--echo"))]
         self.started += programs

@@ -103,6 +103,9 @@ class SlurmTest(SweepTest):
         self.assertEqual({run: after[run] for run in before}, before, "rows from before are left alone")
 
     def test_a_world_whose_controllers_are_on_another_node(self):
+        """Its director is started beside the server, as `ziggurat run` starts it."""
+        self.write("judge.lua", "function post_step(k) if k == 12 then world.finish('enough') end end")
+        self.change("</framework>", '</framework><director id="judge" script="judge.lua" />')
         hashes, log = self.folder / "hashes", self.folder / "world.log"
         script = HERE.parents[1] / "scenes/cluster/world.sh"
         self.environment["PATH"] = f"{BIN}:{self.environment['PATH']}"
@@ -112,6 +115,7 @@ class SlurmTest(SweepTest):
         self.assertIn("ExitCode=0:0", self.cluster.ask("scontrol", "show", "job", job), log.read_text())
         self.assertIn("NumNodes=2", self.cluster.ask("scontrol", "show", "job", job))
         self.assertEqual(hashes.read_text().splitlines()[-1], self.hash_of("--ticks", 20), log.read_text())
+        self.assertIn("director 'judge' ended the run: enough", log.read_text())
 
     def start_job(self, *arguments):
         done = subprocess.run(["sbatch", "--parsable", *map(str, arguments)], env=self.environment, text=True,

@@ -1,6 +1,7 @@
 """What tells how a recorded run and another differ: other builds, changed files, other recordings, other controllers."""
 
 import json
+import pathlib
 import re
 import struct
 
@@ -87,6 +88,15 @@ class Compare(Recorded):
         self.assertEqual(len(result["distances"]), 21)
         self.assertFalse(result["identical"])
 
+    def test_recordings_without_states_are_not_identical(self):
+        a, _ = self.record("--ticks", "5", name="a.mcap")
+        b = self.folder / "b.mcap"
+        self.run_scene("--controller", "swing=exit 4", "--record", b, code=CONTROLLER_FAILED)
+        for pair, told in (((b, b), "b.mcap has 0, .*b.mcap has 0"), ((a, b), "a.mcap has 6, .*b.mcap has 0")):
+            outcome = self.ask("diff", *pair, code=FAULT)
+            self.assert_is_sentence(outcome, "there are no states to compare: .*" + told)
+            self.assertEqual(outcome.out, "")
+
     def test_diff_compares_commands_that_hold(self):
         """A recording has those that changed, and all of them where it begins or an epoch does."""
         whole, _ = self.record("--ticks", "20", name="whole.mcap")
@@ -127,7 +137,23 @@ class Controllers(Recorded):
         recording, _ = self.record("--ticks", "20")
         (self.folder / "swing.lua").unlink()  # the embedded one is started
         outcome = self.ask("verify", recording, "--controllers", "--quiet")
-        self.assertRegex(outcome.lines[-1], r"^identical: the commands of 20 ticks")
+        self.assertRegex(outcome.out, r"^identical: the commands of 20 ticks are as recorded\n$")
+        self.assertEqual(outcome.err, "")
+
+    def test_restarts_and_missed_deadlines_of_the_recorded_run_are_told_as_causes(self):
+        script = self.folder / "swing.lua"
+        script.write_text(script.read_text().replace("function step()", """function step()
+  if robot.id == "r1" and steps == 8 and robot.first_tick == 0 then os.execute("kill -9 $PPID") end
+  if robot.id == "r2" and steps == 8 then os.execute("sleep 0.5") end"""))
+        recording, _ = self.record("--ticks", "30", "--lua-processes", "0", "--restart", "1", "--trust-scripts",
+                                   "--deadline", "hold:100")
+        script.write_text((pathlib.Path(__file__).parent / "swing.lua").read_text())
+        for robot, cause in (("r1", r"a controller was restarted then.*robot r1;.*started again \(restart 1\)"),
+                             ("r2", r"a deadline was missed then.*\(r2\) missed its deadline of 100 ms")):
+            outcome = self.ask("try", recording, "--robot", robot, "--script", "swing.lua", "--quiet", code=DIFFERS)
+            self.assertRegex(outcome.lines[0], rf"^differs: tick \d+: '{robot}': .* is .* in the recording, .* now$")
+            self.assertRegex(outcome.out, "\n  likely cause: " + cause)
+            self.assertEqual((len(outcome.lines), outcome.err), (3, ""))
 
     def test_another_script_is_told_from_the_recorded_one(self):
         recording, _ = self.record("--ticks", "20")
@@ -137,7 +163,7 @@ class Controllers(Recorded):
                                         "function reset() end\nfunction destroy() end\n")
         outcome = self.ask("try", recording, "--robot", robot, "--script", other, "--quiet",
                            code=DIFFERS)
-        self.assertRegex(outcome.out, rf"tick \d+: '{robot}': .* is .* in the recording, .* now")
+        self.assertRegex(outcome.out, rf"^differs: tick \d+: '{robot}': .* is .* in the recording, .* now\n$")
 
     def test_embedded_scripts_are_sandboxed(self):
         """The recorded run trusted them; `verify --controllers`, `try` and `fork` do not."""

@@ -44,8 +44,11 @@ export class Run {
   /** The same of `ziggurat replay`. */
   static replay(recording, ...options) { return Run.launch("replay", recording, options); }
 
-  static async launch(command, file, options) {
-    const child = spawn(ziggurat, [command, file, "--quiet", ...(options.some((option) => option.startsWith("--view"))
+  /** The same of `ziggurat view` for a folder of scenes. */
+  static view(folder, ...options) { return Run.launch("view", folder, options, []); }
+
+  static async launch(command, file, options, quiet = ["--quiet"]) {
+    const child = spawn(ziggurat, [command, file, ...quiet, ...(options.some((option) => option.startsWith("--view"))
       ? options : ["--view=127.0.0.1:0", ...options])], { cwd: root, stdio: ["ignore", "ignore", "pipe"] });
     const told = [];
     for await (const line of createInterface({ input: child.stderr })) {

@@ -1,4 +1,5 @@
 // The page: makes its parts and connects them.
+import { embedded } from "./data/embedded";
 import { GeneratedSource } from "./data/generated";
 import { LiveSource } from "./data/live";
 import { NoSource } from "./data/nothing";
@@ -7,7 +8,7 @@ import { View } from "./drawing/view";
 import { fromAddress, toAddress, type Tab } from "./model/settings";
 import { App } from "./page/app";
 import { listenToKeys } from "./page/keys";
-import { embedded, listenToFiles, openRecording } from "./page/open";
+import { listenToFiles, openRecording } from "./page/open";
 import { Pointer } from "./page/pointer";
 import { copyLink, Film, savePicture } from "./page/share";
 import { CameraPanel } from "./panels/camera";

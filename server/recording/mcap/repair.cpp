@@ -11,12 +11,13 @@ namespace {
 using Ids = std::map<std::uint16_t, std::uint16_t>;  // in the old file, in the new one
 
 /// Channels with their new ids.
-Ids copy_definitions(const Contents& contents, Writer& to) {
+Ids copy_definitions(const Contents& contents, const Kept& kept, Writer& to) {
   Ids schemas, channels;
   for (const auto& [id, schema] : contents.schemas) {
     schemas[id] = to.add_schema(schema.name, schema.encoding, schema.data);
   }
   for (const auto& [id, channel] : contents.channels) {
+    if (kept.topics && !kept.topics(channel.topic)) continue;
     const auto schema = schemas.find(channel.schema);
     channels[id] = to.add_channel(schema == schemas.end() ? 0 : schema->second, channel.topic,
                                   channel.encoding, channel.metadata);
@@ -55,12 +56,9 @@ void copy_messages(const Reader& reader, const Ids& channels, Writer& to, Repair
   }
 }
 
-}  // namespace
-
-Repaired repair(const Reader& reader, Sink sink, Compression compression) {
+/// Metadata and attachments.
+void copy_others(const Reader& reader, Writer& writer, Repaired& repaired) {
   const Contents& contents = reader.contents();
-  Writer writer(std::move(sink), contents.header, compression);
-  Repaired repaired;
   for (const MetadataIndex& index : contents.metadata) {
     save(repaired.lost, [&] {
       const Metadata metadata = reader.metadata(index);
@@ -74,7 +72,17 @@ Repaired repair(const Reader& reader, Sink sink, Compression compression) {
       ++repaired.attachments;
     });
   }
-  copy_messages(reader, copy_definitions(contents, writer), writer, repaired);
+}
+
+}  // namespace
+
+Repaired repair(const Reader& reader, Sink sink, Compression compression, const Kept& kept) {
+  const Contents& contents = reader.contents();
+  Writer writer(std::move(sink), contents.header, compression,
+                kept.messages_alone ? MessageIndexes::left_out : MessageIndexes::written);
+  Repaired repaired;
+  if (!kept.messages_alone) copy_others(reader, writer, repaired);
+  copy_messages(reader, copy_definitions(contents, kept, writer), writer, repaired);
   writer.close();
   repaired.chunks = writer.chunks();
   return repaired;

@@ -2,6 +2,8 @@
 // A new, whole file from what is intact in another one.
 
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "recording/mcap/reader.h"
@@ -14,7 +16,14 @@ struct Repaired {
   std::vector<Fault> lost;                                  ///< chunks and attachments
 };
 
+/// Parts of a file that a copy has.
+struct Kept {
+  std::function<bool(const std::string& topic)> topics = {};  ///< empty: all
+  bool messages_alone = false;  ///< no attachments, metadata and message indexes
+};
+
 /// Damaged chunks and attachments are left out.
-Repaired repair(const Reader& reader, Sink sink, Compression compression = Compression::zstd);
+Repaired repair(const Reader& reader, Sink sink, Compression compression = Compression::zstd,
+                const Kept& kept = {});
 
 }  // namespace ziggurat::mcap

@@ -10,8 +10,8 @@
 
 namespace ziggurat::mcap {
 
-Writer::Writer(Sink sink, const Header& header, Compression compression)
-    : sink_(std::move(sink)), compressor_(compression), states_(1) {
+Writer::Writer(Sink sink, const Header& header, Compression compression, MessageIndexes indexes)
+    : sink_(std::move(sink)), compressor_(compression), indexes_(indexes), states_(1) {
   std::string bytes(magic);
   append(header, bytes);
   give(bytes);
@@ -97,9 +97,11 @@ void Writer::write_indexes(ChunkIndex& index, std::uint64_t chunk_end, std::stri
   const std::size_t begin = to.size();
   for (const std::uint16_t channel : used_) {
     ChannelState& state = states_[channel];
-    index.message_index_offsets.emplace_back(channel, chunk_end + to.size() - begin);
-    std::ranges::stable_sort(state.index, {}, [](const auto& entry) { return entry.first; });
-    append_message_index(channel, state.index, to);
+    if (indexes_ == MessageIndexes::written) {
+      index.message_index_offsets.emplace_back(channel, chunk_end + to.size() - begin);
+      std::ranges::stable_sort(state.index, {}, [](const auto& entry) { return entry.first; });
+      append_message_index(channel, state.index, to);
+    }
     state.messages += state.index.size();
     statistics_.messages += state.index.size();
     state.index.clear();

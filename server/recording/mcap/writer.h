@@ -20,10 +20,14 @@ namespace ziggurat::mcap {
 /// not be used any more.
 using Sink = std::function<void(std::string_view)>;
 
+/// Places of the messages of a chunk, for readers of single channels.
+enum class MessageIndexes { written, left_out };
+
 class Writer {
  public:
   /// Writes the magic and the header.
-  Writer(Sink sink, const Header& header, Compression compression);
+  Writer(Sink sink, const Header& header, Compression compression,
+         MessageIndexes indexes = MessageIndexes::written);
 
   /// @return  its id
   std::uint16_t add_schema(std::string_view name, std::string_view encoding, std::string_view data);
@@ -67,6 +71,7 @@ class Writer {
 
   Sink sink_;
   Compressor compressor_;
+  MessageIndexes indexes_;
   std::uint64_t size_ = 0;
   std::uint32_t crc_ = 0;           // of all bytes so far
   std::string schemas_, channels_;  // records, for the summary

@@ -81,8 +81,11 @@ constexpr Option controller_options[] = {
      "start CMD for the controller ID"},
     {"without-controllers", nullptr, by_fork | by_render, common, command_line,
      &Options::without_controllers, "start no controllers; the robots do nothing"},
-    {"start-directors", nullptr, by_serve, common, settings, &Options::starts_directors,
-     "start the scene's directors, as 'ziggurat run' does; controllers connect from outside"},
+    {"start-directors", nullptr, by_serve, rare, settings, &Options::starts_all_directors,
+     "a director of the scene that has no program to start is a fault; without it such a director "
+     "connects from outside"},
+    {"without-directors", nullptr, by_serve, rare, settings, &Options::starts_no_directors,
+     "start no directors of the scene: they connect from outside, as controllers do"},
     {"restart", "[ID=]N", by_run | by_render, common, settings, Each{add_restart},
      "a process of the scene's controller ID (of any, without ID) that dies is started again, up "
      "to N times: it resumes its session at the present tick"},
@@ -103,14 +106,14 @@ constexpr Option lua_options[] = {
     {"lua-processes", "N", of_lua, common, scene, read_lua_processes,
      "share the Lua robots among N processes; default 1, 0 is one for each robot; spawned Lua "
      "robots share as many others, at most 16"},
-    {"trust-scripts", nullptr, by_run | by_render, common, settings, trust_scripts,
+    {"trust-scripts", nullptr, by_run | by_serve | by_render, common, settings, trust_scripts,
      "Lua scripts may start programs and use all of Lua and all files; otherwise they use only "
      "files below the folders of the scene, its includes and its scripts"},
-    {"lua-memory", "MIB", of_lua, rare, scene, read_lua_memory,
+    {"lua-memory", "MIB", of_lua | by_serve, rare, scene, read_lua_memory,
      "largest memory of a robot's Lua script; default 256"},
-    {"lua-instructions", "MILLIONS", of_lua, rare, scene, read_lua_instructions,
+    {"lua-instructions", "MILLIONS", of_lua | by_serve, rare, scene, read_lua_instructions,
      "most Lua instructions of a robot at one tick, in millions; default 1000"},
-    {"lua-time", "SECONDS", of_lua, rare, scene, read_lua_time,
+    {"lua-time", "SECONDS", of_lua | by_serve, rare, scene, read_lua_time,
      "most processor time of a robot's Lua script at one tick; default 20"},
 };
 

@@ -7,6 +7,7 @@ import socket
 import sys
 import time
 import unittest
+import urllib.request
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
@@ -203,7 +204,9 @@ class HostileViewers(SceneTest):
         self.assert_unharmed()
 
     def test_pages_that_are_not_read(self):
-        request = b"GET /page.js HTTP/1.1\r\nHost: localhost\r\n\r\n"
+        with urllib.request.urlopen(f"http://127.0.0.1:{self.port}/", timeout=60) as page:
+            script = re.search(rb"page-\w+\.js", page.read())[0]
+        request = b"GET /" + script + b" HTTP/1.1\r\nHost: localhost\r\n\r\n"
         connections = []
         for _ in range(300):
             each = socket.socket()

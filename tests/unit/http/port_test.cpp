@@ -40,6 +40,47 @@ TEST(Port, AnswersHeadWithoutTheText) {
   EXPECT_NE(head.find("Content-Length: 10\r\n"), std::string::npos) << head;
 }
 
+TEST(Port, GivesGzipToThoseThatTakeIt) {
+  const auto read_page = [](std::string_view) {
+    Answer page{200, "text/plain", "\"tag\"", "0123456789"};
+    page.gzipped = "zip";
+    return page;
+  };
+  const auto asked = [&](const std::string& accepted) {
+    return answer_at_port("GET / HTTP/1.1\r\nAccept-Encoding: " + accepted + "\r\n\r\n",
+                          "127.0.0.1", read_page);
+  };
+  for (const char* accepted : {"gzip", "br, GZIP;q=0.5, deflate", "gzip;q=0.001", "gzip;level=1"}) {
+    const std::string page = asked(accepted);
+    EXPECT_TRUE(page.ends_with("\r\n\r\nzip")) << page;
+    EXPECT_NE(page.find("Content-Encoding: gzip\r\n"), std::string::npos) << page;
+    EXPECT_NE(page.find("Content-Length: 3\r\n"), std::string::npos) << page;
+  }
+  for (const char* accepted : {"", "br", "gzip;q=0", "gzip;q=0.000", "xgzip", "deflate;x=gzip"}) {
+    const std::string page = asked(accepted);
+    EXPECT_TRUE(page.ends_with("\r\n\r\n0123456789")) << page;
+    EXPECT_EQ(page.find("Content-Encoding"), std::string::npos) << page;
+    EXPECT_NE(page.find("Vary: Accept-Encoding\r\n"), std::string::npos) << page;
+  }
+}
+
+TEST(Port, TellsHowLongAnAnswerStays) {
+  Answer given{200, "text/plain", {}, "0123456789"};
+  const auto told = [&](const char* what) {
+    return answer_at_port("GET / HTTP/1.1\r\n\r\n", "127.0.0.1", [&](auto) {
+             return given;
+           }).find(what) != std::string::npos;
+  };
+  EXPECT_TRUE(told("Cache-Control: no-store\r\n"));
+  given.etag = "\"tag\"";
+  EXPECT_TRUE(told("Cache-Control: no-cache\r\n"));
+  given.is_immutable = true;
+  EXPECT_TRUE(told("Cache-Control: public, max-age=31536000, immutable\r\n"));
+  EXPECT_FALSE(told("Location"));
+  given.location = "/there";
+  EXPECT_TRUE(told("Location: /there\r\n"));
+}
+
 TEST(Port, EndsTheConnectionAfterAnAnswer) {
   EXPECT_NE(answer("GET / HTTP/1.1\r\n\r\n").find("Connection: close\r\n"), std::string::npos);
 }

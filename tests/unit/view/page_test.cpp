@@ -44,6 +44,24 @@ TEST_F(Folder, HasTypesAndTags) {
   EXPECT_EQ(page_.get("/assets/page.js", script.etag).body, "walk()");
 }
 
+TEST_F(Folder, FilesWithTheHashOfTheirContentStay) {
+  write("web/page-J3BWKQ0H.js", "run()");
+  write("web/page-j3bwkq0h.js", "run()");
+  write("web/page-J3BWKQ0HX.js", "run()");
+  EXPECT_TRUE(page_.get("/page-J3BWKQ0H.js", {}).is_immutable);
+  for (const char* other : {"/page-j3bwkq0h.js", "/page-J3BWKQ0HX.js", "/assets/page.js", "/"}) {
+    EXPECT_FALSE(page_.get(other, {}).is_immutable) << other;
+  }
+}
+
+TEST_F(Folder, HasTheSameInGzip) {
+  write("web/assets/page.js.gz", "zip");
+  const http::Answer script = page_.get("/assets/page.js", {});
+  EXPECT_EQ(script.body, "run()");
+  EXPECT_EQ(script.gzipped, "zip");
+  EXPECT_TRUE(page_.get("/", {}).gzipped.empty());
+}
+
 TEST_F(Folder, IsNotLeft) {
   for (const char* target :
        {"/../secret", "/assets/../../secret", "/..", "//secret", "/.hidden", "/%2e%2e/secret",

@@ -24,7 +24,7 @@ export interface Channel { topic: string; encoding: string; schema: number }
 export interface Schema { name: string; encoding: string; data: Uint8Array }
 export interface RawMessage { channel: number; timeNs: bigint; data: Uint8Array }
 
-/** A file that is dropped on the page, or bytes inside of the page. */
+/** A file of the disk. */
 export function readable(file: Blob): IReadable {
   return {
     size: () => Promise.resolve(BigInt(file.size)),
@@ -93,7 +93,7 @@ export class Container {
       const [offset, length] = [Number(index.chunkStartOffset), Number(index.chunkLength)];
       if (offset + length > size || index.messageEndTime < index.messageStartTime) throw new Error("its index is wrong");
       this.chunks.push({ offset, length, startNs: index.messageStartTime, endNs: index.messageEndTime,
-                         channels: new Set(index.messageIndexOffsets.keys()) });
+                         channels: index.messageIndexOffsets.size > 0 ? new Set(index.messageIndexOffsets.keys()) : null });
     }
     for (const [id, { topic, messageEncoding, schemaId }] of reader.channelsById) {
       this.channels.set(id, { topic, encoding: messageEncoding, schema: schemaId });

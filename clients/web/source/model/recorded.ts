@@ -19,6 +19,7 @@ import { newestMessage, type Frame, type Frames, type Mark } from "./timeline";
 
 const mostFrames = 1e8;
 const mostPoints = 20_000; // of a plot
+const untilDrawn = 400; // [ms], for the first frame, before all is read
 const mostTold = 3; // messages that are left out; further ones are told together
 const mostLeftOut = 100_000; // that are remembered
 const longestPause = 40; // [ms] between chunks, when all of the file is read
@@ -96,7 +97,7 @@ export class Recorded implements Source, Frames {
         + "is shown. `ziggurat info FILE --repair OUT` writes a whole file of it.");
     }
     this.at(0);
-    void this.readAll();
+    setTimeout(() => void this.readAll(), untilDrawn);
   }
 
   want(): void { /* all of it is there */ }
