@@ -115,6 +115,7 @@ Addition Additions::read_element(std::string text, const Scene& scene, std::size
   draft.model_ids = parts_->model_ids;
   draft.uses = parts_->uses;
   draft.media = parts_->media;
+  draft.may_add_media = false;
   draft.controllers = parts_->controllers;
   draft.parameters = parts_->parameters;
   try {

@@ -132,11 +132,16 @@ bool is(const Entity& entity) {
   return entity.kind == kind;
 }
 
+bool has_wifi(const Entity& entity) {
+  return is_robot(entity.kind) && std::ranges::find(entity.devices.radios, "wifi", &Radio::id) !=
+                                      entity.devices.radios.end();
+}
+
 constexpr auto robot_components = std::to_array<Component>({
     {"differential_steering", [](const Entity& e) { return e.axle_length.has_value(); }, ""},
     {"footbot_turret", [](const Entity& e) { return e.turret.has_value(); }, ""},
     {"footbot_turret_encoder", [](const Entity& e) { return e.turret.has_value(); }, ""},
-    {"wifi", is<EntityKind::foot_bot>, ""},
+    {"wifi", has_wifi, ""},
     {"footbot_proximity", is<EntityKind::foot_bot>, ""},
     {"epuck_wheels", is<EntityKind::e_puck>, ""},
     {"epuck_leds", is<EntityKind::e_puck>, ""},
@@ -265,10 +270,14 @@ struct Check {
         const auto component = std::ranges::find(components, device.name, &Component::device);
         std::vector<std::string_view> causes{"devices"};
         if (component != components.end()) causes.push_back(component->element);
-        blame(device.where,
-              fmt::format("{} {} enabled for entity {}, which {}", device.name,
-                          device.name.ends_with('s') ? "are" : "is", in_quotes(entity.id), *what),
-              std::move(causes));
+        std::string text =
+            fmt::format("{} {} enabled for entity {}, which {}", device.name,
+                        device.name.ends_with('s') ? "are" : "is", in_quotes(entity.id), *what);
+        if (!draft.options.lenient) {
+          blame(device.where, std::move(text), std::move(causes));
+        } else if (draft.blamed.insert(device.where).second) {
+          draft.report.notice(device.where, text + "; it goes without");
+        }
       }
     }
   }

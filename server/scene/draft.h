@@ -98,8 +98,9 @@ struct Draft {
   std::unordered_map<std::string, std::size_t> model_ids;  ///< id -> index
   BodyDefaults defaults;
   bool has_engine = false;
-  std::vector<ControllerUse> uses;                           ///< of Scene::controllers, same order
-  std::unordered_map<std::string, std::size_t> media;        ///< id -> index
+  std::vector<ControllerUse> uses;                     ///< of Scene::controllers, same order
+  std::unordered_map<std::string, std::size_t> media;  ///< id -> index
+  bool may_add_media = true;  ///< of a scene: one that misses, if it is lenient
   std::unordered_map<std::string, std::size_t> controllers;  ///< id -> index
   std::set<Location> blamed;  ///< what entities have in common and is reported once already
   Ids entity_ids;

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <iterator>
 #include <system_error>
@@ -259,7 +260,10 @@ void Element::unknown_in(std::string_view parent, std::span<const std::string_vi
   }
   const auto why = unsupported_element(name());
   const auto robot = robot_of_device(name());
-  const bool is_plugin = why || robot || parent == "actuators" || parent == "sensors";
+  constexpr std::array<std::string_view, 5> plugin_lists{"actuators", "sensors", "arena", "entity",
+                                                         "media"};
+  const bool is_plugin =
+      why || robot || std::ranges::find(plugin_lists, parent) != plugin_lists.end();
   if (document_->lenient() && is_plugin) {
     return report().notice(
         where(), fmt::format("<{}> in <{}> is not known here, and is left out", name(), parent));
@@ -292,7 +296,8 @@ void Element::unknown_in(std::string_view parent, std::span<const std::string_vi
       where(),
       known.empty()
           ? fmt::format("unknown element <{}> in <{}>, which has no elements", name(), parent)
-          : fmt::format("unknown element <{}> in <{}>; {}", name(), parent, advice(name(), known)));
+          : fmt::format("unknown element <{}> in <{}>; {}{}", name(), parent, advice(name(), known),
+                        is_plugin ? " (--lenient leaves it out)" : ""));
   if (meant) report().left_out(*meant);
 }
 

@@ -15,6 +15,7 @@ constexpr unsigned many_iterations = 10'000;     // beyond which a scene is doub
 constexpr double strong_gravity = 1000;          // likewise [m/s^2]
 constexpr double usual_gravity = 10.0;           // [m/s^2], the dialect's default of `g`
 constexpr std::array<std::string_view, 3> engine_names{"dynamics3d", "dynamics2d", "pointmass3d"};
+constexpr std::string_view other_engine = "physx";  // one of rigid bodies, too
 
 void read_floor(Draft& draft, Element floor) {
   Floor& out = draft.scene.physics.floor.emplace();
@@ -118,9 +119,9 @@ void read_pointmass3d(Draft& draft, Element& engine) {
 }
 
 void read_engine(Draft& draft, Element& engine) {
-  if (engine.name() == "dynamics3d") return read_dynamics3d(draft, engine);
   if (engine.name() == "dynamics2d") return read_dynamics2d(draft, engine);
-  read_pointmass3d(draft, engine);
+  if (engine.name() == "pointmass3d") return read_pointmass3d(draft, engine);
+  read_dynamics3d(draft, engine);
 }
 
 }  // namespace
@@ -156,8 +157,16 @@ void read_engines(Draft& draft, Element& root) {
   Ids ids;
   bool has_dynamics3d = false;
   for (Element& engine : engines->children()) {
-    const bool three = engine.name() == "dynamics3d";
-    if (std::ranges::find(engine_names, engine.name()) == engine_names.end()) {
+    const bool stands_in = engine.name() == other_engine;
+    const bool three = engine.name() == "dynamics3d" || stands_in;
+    if (stands_in && !draft.options.lenient) {
+      engine.fault("is not supported; use <dynamics3d> (--lenient reads it as one)");
+      continue;
+    }
+    if (stands_in) {
+      draft.report.notice(engine.where(),
+                          fmt::format("<{}> is read as <dynamics3d>", other_engine));
+    } else if (std::ranges::find(engine_names, engine.name()) == engine_names.end()) {
       engine.unknown_in(engines->name(), engine_names);
       continue;
     }
@@ -170,8 +179,17 @@ void read_engines(Draft& draft, Element& root) {
                           "are so many substeps of each tick, which takes long; write 10 to 1000"));
     }
     take_id(engine, ids, id, "engine");
+    if (three && has_dynamics3d && !draft.options.lenient) {
+      engine.fault(
+          "is the second of its kind; there is one world, so write one <dynamics3d> (--lenient "
+          "leaves this one out)");
+      continue;
+    }
     if (three && has_dynamics3d) {
-      engine.fault("is the second of its kind; there is one world, so write one <dynamics3d>");
+      draft.report.notice(engine.where(),
+                          fmt::format("this <{}> is left out: there is one world, and the engine "
+                                      "before says how it is simulated",
+                                      engine.name()));
       continue;
     }
     if (three || !draft.has_engine) {

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "scene/draft.h"
+#include "scene/robots/robots.h"
 
 namespace ziggurat::scene {
 namespace {
@@ -19,7 +20,11 @@ std::optional<MediumKind> kind_of(std::string_view name) {
 
 void read_medium_element(Draft& draft, Element& element, MediumKind kind) {
   Medium medium{.id = element.required("id", identifier), .kind = kind, .where = element.where()};
-  element.optional("index", Words{"grid"});
+  if (draft.options.lenient) {
+    element.without_effect("index", text, "devices are found by their place anyway");
+  } else {
+    element.optional("index", Words{"grid"});
+  }
   element.without_effect("grid_size", cells, "media need no grid, and devices may leave the arena");
   if (kind == MediumKind::range_and_bearing) {
     medium.checks_occlusions = element.optional("check_occlusions", boolean, true);
@@ -38,7 +43,7 @@ std::span<const std::string_view> media_names() { return medium_names; }
 std::string_view to_string(MediumKind kind) { return medium_names[static_cast<std::size_t>(kind)]; }
 
 void read_media(Draft& draft, Element& root) {
-  auto media = root.required_child("media");
+  auto media = draft.options.lenient ? root.child("media") : root.required_child("media");
   if (!media) return;
   for (Element& element : media->children()) {
     if (const auto kind = kind_of(element.name())) {
@@ -50,7 +55,36 @@ void read_media(Draft& draft, Element& root) {
   media->done();
 }
 
+namespace {
+
+/// For a lenient scene that names no medium that is there: the first of its type, or a new one.
+std::size_t stand_in(Draft& draft, Element& element, MediumKind kind) {
+  std::string id = element.optional("medium", text, std::string());
+  draft.report.notice(
+      element.where(),
+      fmt::format("<{}> names no medium of type {} that is there: the first one, or "
+                  "a new one, counts",
+                  element.name(), to_string(kind)));
+  if (const auto first = first_medium(draft.scene, kind)) return *first;
+  if (id.empty()) id = to_string(kind);
+  while (draft.media.contains(id)) id += '_';
+  draft.media.emplace(id, draft.scene.media.size());
+  draft.scene.media.push_back({.id = id, .kind = kind, .where = element.where()});
+  return draft.scene.media.size() - 1;
+}
+
+/// Whether an element names a medium that is there.
+bool names_medium(const Draft& draft, const Element& element, MediumKind kind) {
+  const auto found = draft.media.find(std::string(written(element, "medium")));
+  return found != draft.media.end() && draft.scene.media[found->second].kind == kind;
+}
+
+}  // namespace
+
 std::optional<std::size_t> read_medium(Draft& draft, Element& element, MediumKind kind) {
+  const bool may_stand_in = draft.options.lenient && !draft.missing_parts &&
+                            (draft.may_add_media || first_medium(draft.scene, kind));
+  if (may_stand_in && !names_medium(draft, element, kind)) return stand_in(draft, element, kind);
   const std::string id = element.required("medium", identifier);
   if (id.empty()) return std::nullopt;
   const auto found = draft.media.find(id);

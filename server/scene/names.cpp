@@ -26,7 +26,6 @@ constexpr auto element_reasons = std::to_array<Reason>({
     {"thymio", "write <e-puck>, or model it as a <prototype>"},
     {"pi-puck", "write <pipuck>"},
     {"drone", "write <spiri> with <quadrotor_position> or <quadrotor_speed>"},
-    {"physx", "use <dynamics3d>"},
     {"srocs", "use <magnetism>"},
     {"simple_radio", "use <radio>"},
     {"simple_radios", "use <radios>"},

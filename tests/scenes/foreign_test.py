@@ -75,6 +75,26 @@ class Foreign(SceneTest):
         _, places = self.places("--lenient", "--ticks", "60")
         self.assertGreater(math.dist(places["fb1"][0], places["fb1"][-1]), 0.2)
 
+    def test_engines_that_are_not_there_are_told_and_stood_in_for_if_lenient(self):
+        self.take("engines")
+        outcome = self.ziggurat("check", self.scene)
+        self.assertEqual(outcome.code, FAULT)
+        self.assertRegex(outcome.err, r":33:5: <physx> is not supported; use <dynamics3d> \(--lenient reads it as one\)")
+        outcome, places = self.places("--lenient")
+        self.assertEqual(outcome.code, FINISHED, outcome.err)
+        self.assertRegex(outcome.err, r":33:5: <physx> is read as <dynamics3d>")
+        self.assertRegex(outcome.err, r":37:5: this <dynamics3d> is left out: there is one world")
+        self.assertAlmostEqual(places["p1"][-1][2], 0, delta=1e-3, msg="it stands on the engine's floor")
+
+    def test_media_that_nothing_names_stand_in_if_lenient(self):
+        self.take("older")
+        self.assertEqual(self.ziggurat("check", self.scene).code, FAULT)
+        outcome = self.run_scene("--lenient", "--ticks", "5")
+        self.assertEqual(outcome.code, FINISHED, outcome.err)
+        self.assertRegex(outcome.err, r":12:9: <leds> names no medium of type led that is there")
+        self.assertRegex(outcome.err, r":15:9: quadrotor_speed is enabled for entity \"a\", which .*; it goes without")
+        self.assertIn("[5 a] heard 7 red 1 yellow 0 light 1", outcome.lines)
+
 
 if __name__ == "__main__":
     main()

@@ -20,7 +20,7 @@ void make_wheels(lua_State* state, Robot& robot) {
   Wheels& wheels = *robot.wheels();
   lua_createtable(state, 0, 6);
   if (wheels.drives()) set_function<set_velocity>(state, "set_velocity", &wheels);
-  if (wheels.measures()) set_number(state, "axis_length", wheels.axle_length() * centimetres);
+  set_number(state, "axis_length", wheels.axle_length() * centimetres);
 }
 
 void fill_wheels(lua_State* state, Robot& robot) {

@@ -188,7 +188,7 @@ TEST_F(Devices, WheelsAndTurretHaveTheEnabledParts) {
   robot_.mutable_turret()->set_drives(false);
   EXPECT_RUNS(start(R"lua(
     assert(robot.wheels.set_velocity and not robot.wheels.velocity_left)
-    assert(not robot.wheels.axis_length)
+    assert(robot.wheels.axis_length > 0)
     assert(robot.turret.rotation == 0 and not robot.turret.set_rotation)
     assert(not robot.turret.set_passive_mode)
     function step() assert(robot.wheels.velocity_left == nil and robot.turret.rotation == -2) end

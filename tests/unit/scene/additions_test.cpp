@@ -52,6 +52,17 @@ class Additions : public ::testing::Test {
   ReadResult scene_;
 };
 
+TEST_F(Additions, ALenientSceneLendsTheMediumThatTheyDoNotName) {
+  const Addition light =
+      add(R"(<light id="l" position="0,0,1" color="red" intensity="1" medium="none"/>)");
+  ASSERT_TRUE(light.ok());
+  EXPECT_EQ(light.entity.devices.led_medium, 1u);
+  const std::string why = fault(R"(<prototype id="p"><body/><links ref="a"><link id="a" )"
+                                R"(geometry="sphere" radius="1" mass="1"/></links><devices>)"
+                                R"(<radios medium="none"/></devices></prototype>)");
+  EXPECT_NE(why.find("names no medium"), std::string::npos) << why;
+}
+
 TEST_F(Additions, ABoxIsReadAsInTheArena) {
   const Addition addition = add("\n  " + box);
   ASSERT_TRUE(addition.ok());

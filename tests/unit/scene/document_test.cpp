@@ -328,7 +328,8 @@ TEST(Text, DepthAndNumberOfElementsAreLimited) {
 
 TEST(Lenient, UnknownAttributesAreNoticesAndElementsStayFaults) {
   SceneText text;
-  text.arena = R"(<arena size="1,1,1" colour="red"><blob/></arena>)";
+  text.arena = R"(<arena size="1,1,1" colour="red"/>)";
+  text.engines = R"(<physics_engines><dynamics3d id="d"><blob/></dynamics3d></physics_engines>)";
   EXPECT_EQ(faults(text.read()).size(), 2u);
   ReadOptions options;
   options.lenient = true;
@@ -342,14 +343,15 @@ TEST(Lenient, LeavesOutDevicesAndRobotsOfPlugIns) {
   text.controllers =
       R"(<controllers><my_controller id="c"><actuators><jump implementation="default"/></actuators>)"
       R"(<sensors><drone_nose implementation="default"/></sensors></my_controller></controllers>)";
-  text.arena =
-      arena_with(R"(<thymio id="t"/><foot-bot id="f"><body/><controller config="c"/></foot-bot>)");
-  EXPECT_EQ(faults(text.read()).size(), 3u) << all_problems(text.read());
+  text.arena = arena_with(
+      R"(<thymio id="t"/><ramp id="r"/><foot-bot id="f"><body/><controller config="c"/></foot-bot>)");
+  text.media = "<media><ether id=\"e\"/></media>";
+  EXPECT_EQ(faults(text.read()).size(), 5u) << all_problems(text.read());
   ReadOptions options;
   options.lenient = true;
   const ReadResult result = text.read(options);
   EXPECT_TRUE(result.ok()) << all_problems(result);
-  EXPECT_EQ(count_containing(notices(result), "is not known here, and is left out"), 3u);
+  EXPECT_EQ(count_containing(notices(result), "is not known here, and is left out"), 5u);
   EXPECT_EQ(result.scene.entities.size(), 1u);
 }
 

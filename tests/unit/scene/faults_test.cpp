@@ -230,7 +230,7 @@ constexpr Row engine_rows[] = {
     {"E7_engine", Part::engines, R"(<physics_engines><dynamics3D id="d"/></physics_engines>)",
      R"(5:18: unknown element <dynamics3D> in <physics_engines>; did you mean "dynamics3d"?)"},
     {"Physx", Part::engines, R"(<physics_engines><physx id="d"/></physics_engines>)",
-     "5:18: <physx> is not supported; use <dynamics3d>"},
+     "5:18: <physx> is not supported; use <dynamics3d> (--lenient reads it as one)"},
     {"E7_plug_in", Part::engines,
      R"(<physics_engines><dynamics3d id="d"><gravty g="1"/></dynamics3d></physics_engines>)",
      R"(unknown element <gravty> in <dynamics3d>; did you mean "gravity"?)"},

@@ -229,6 +229,8 @@ TEST(Robots, HaveOnlyTheirOwnDevices) {
   EXPECT_EQ(lacks("footbot_turret", "e-puck"), 1u);
   EXPECT_EQ(lacks("radios", "e-puck"), 1u);
   EXPECT_EQ(lacks("wifi", "foot-bot"), 0u);
+  EXPECT_EQ(lacks("wifi", "pipuck"), 0u);
+  EXPECT_EQ(lacks("wifi", "builderbot"), 0u);
   EXPECT_EQ(lacks("wifi", "e-puck"), 1u);
   EXPECT_EQ(lacks("quadrotor_speed", "foot-bot"), 1u);
   EXPECT_EQ(lacks("quadrotor_speed", "spiri"), 0u);

@@ -33,6 +33,14 @@ void expect_equal(const math::Pose& a, const math::Pose& b, const std::string& w
   EXPECT_LT(a.orientation.angularDistance(b.orientation), 1e-6) << what;
 }
 
+TEST(Block, ShowsTheColourThatItsElementHas) {
+  const ReadResult result = with(R"(<block id="b" init_led_color="orange"><body/></block>)").read();
+  ASSERT_TRUE(result.ok()) << all_problems(result);
+  const Devices& devices = result.scene.entities.at(0).devices;
+  ASSERT_FALSE(devices.directional_leds.empty());
+  for (const DirectionalLed& led : devices.directional_leds) EXPECT_EQ(led.color.red, 255);
+}
+
 TEST(Block, HasThePartsOfItsModel) {
   const ReadResult result =
       with(R"(<prototype id="m"><body/>)" + parts_of_model() + R"(</prototype>)" +
