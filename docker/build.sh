@@ -7,7 +7,7 @@
 #   --base     default: debian:bookworm-slim from its registry; with buildah `debootstrap` makes one instead, from
 #              where apt of this machine has packages: it needs root, and no registry
 #
-# Packages are those of packaging/debian/build, which runs first if there are none. For docker/compose.yaml it makes
+# Packages are those of tools/packaging/debian/build, which runs first if there are none. For docker/compose.yaml it makes
 # keys in docker/keys, unless they are there.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -79,7 +79,7 @@ make_keys() {
   [[ $(id -u) -ne 0 ]] || chown -R "$image_user" docker/keys
 }
 
-compgen -G "$packages/ziggurat_*.deb" >/dev/null || packaging/debian/build
+compgen -G "$packages/ziggurat_*.deb" >/dev/null || tools/packaging/debian/build
 local_name=localhost
 if [[ $engine == docker ]]; then local_name=docker.io/library; fi
 if [[ $engine == buildah && $base == debian:bookworm-slim ]]; then

@@ -9,7 +9,7 @@ import time
 import unittest
 
 BUILD = pathlib.Path(os.environ["ZIGGURAT_BUILD"])
-WORDS = BUILD / "packaging/completion"
+WORDS = BUILD / "tools/packaging/completion"
 BASH = f"""source {WORDS}/ziggurat
 COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _ziggurat; printf '%s\\n' "${{COMPREPLY[@]}}" """
 ZSH = f"""_describe() {{ print -rl -- ${{(P)2}} }}; _files() {{ print FILES }}

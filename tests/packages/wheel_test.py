@@ -73,7 +73,7 @@ class Wheel(unittest.TestCase):
             self.assertRegex(out, r"\(1, \d+\)")
 
     def scene(self, folder):
-        text = (ROOT / "templates/python/scene.argos").read_text().replace(' command="python3 controller.py"', "")
+        text = (ROOT / "clients/templates/python/scene.argos").read_text().replace(' command="python3 controller.py"', "")
         (pathlib.Path(folder) / "drive.argos").write_text(text)
         return folder
 

@@ -1,5 +1,5 @@
 # Debian packages by CPack: ziggurat, libziggurat0, libziggurat-dev, python3-ziggurat. The preset `package` has the layout
-# of Debian's /usr; packaging/debian/build makes all of it.
+# of Debian's /usr; tools/packaging/debian/build makes all of it.
 set(ZIGGURAT_MAINTAINER "The Ziggurat authors <ziggurat@example.org>" CACHE STRING "who makes the packages")
 set(ZIGGURAT_DEBIAN_REVISION 1 CACHE STRING "of the packages, behind the version")
 
