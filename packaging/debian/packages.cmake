@@ -35,32 +35,32 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS libosmesa6)  # it is loaded with the first picture
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "python3-ziggurat, libziggurat-dev, ffmpeg")
-set(CPACK_COMPONENT_PROGRAMS_DESCRIPTION "simulation of robots in lock-step with their controllers
- Ziggurat runs scenes of robots: bodies in contact, joints, magnets, radios and
- cameras. Controllers are Lua scripts or programs of their own, which connect
- over ZeroMQ; the world waits for each of them at every tick, so that equal
- seeds give equal runs.
- .
- This package has the server, the runner of Lua controllers, a module for
- other Lua programs, the page that shows a running world, scenes and examples.")
+set(CPACK_DEBIAN_PROGRAMS_DESCRIPTION "simulation of robots in lock-step with their controllers
+Ziggurat runs scenes of robots: bodies in contact, joints, magnets, radios and
+cameras. Controllers are Lua scripts or programs of their own, which connect
+over ZeroMQ; the world waits for each of them at every tick, so that equal
+seeds give equal runs.
+
+This package has the server, the runner of Lua controllers, a module for
+other Lua programs, the page that shows a running world, scenes and examples.")
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libziggurat0)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA
     "${CMAKE_CURRENT_SOURCE_DIR}/debian/shlibs;${CMAKE_CURRENT_SOURCE_DIR}/debian/triggers")
-set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "controllers for robots of a Ziggurat server, shared library
- Programs in C++ connect with it to a simulation server, read the sensors of
- their robots and set their actuators at every tick.")
+set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "controllers for robots of a Ziggurat server, shared library
+Programs in C++ connect with it to a simulation server, read the sensors of
+their robots and set their actuators at every tick.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libziggurat-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libziggurat0 (= ${full}), libprotobuf-dev, libzmq3-dev, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "cmake, g++")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "controllers for robots of a Ziggurat server, development files
- Headers of the C++ library, its shared and its static form, files for CMake
- and pkg-config, and the messages of the protocol for other languages.")
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "controllers for robots of a Ziggurat server, development files
+Headers of the C++ library, its shared and its static form, files for CMake
+and pkg-config, and the messages of the protocol for other languages.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-ziggurat)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
@@ -69,9 +69,9 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3:any, python3-protobuf, python3-
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-numpy, ziggurat")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
     "${CMAKE_CURRENT_SOURCE_DIR}/debian/postinst;${CMAKE_CURRENT_SOURCE_DIR}/debian/prerm")
-set(CPACK_COMPONENT_PYTHON_DESCRIPTION "controllers for robots of a Ziggurat server, in Python
- Programs in Python connect with it to a simulation server, as controllers,
- directors or supervisors, or train policies in many worlds at once.
- .
- The conformance kit proves a server or a client of the protocol right.")
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "controllers for robots of a Ziggurat server, in Python
+Programs in Python connect with it to a simulation server, as controllers,
+directors or supervisors, or train policies in many worlds at once.
+
+The conformance kit proves a server or a client of the protocol right.")
 include(CPack)

@@ -10,6 +10,9 @@
 namespace ziggurat::cli {
 namespace {
 
+/// Any file that is there: options are read without its content.
+const std::string scene = "/dev/null";
+
 run::Options run(const Arguments& arguments) { return parse_options(arguments, run::by_run); }
 
 TEST(Options, DefaultsAreThoseOfTheHelp) {
@@ -23,7 +26,7 @@ TEST(Options, DefaultsAreThoseOfTheHelp) {
 }
 
 TEST(Options, AreTakenFromTheCommandLine) {
-  const auto options = run({"s",
+  const auto options = run({scene,
                             "--ticks",
                             "7",
                             "--seed=0",
@@ -78,7 +81,7 @@ TEST(Options, WrongValuesAreRefused) {
 }
 
 TEST(Options, ServeStartsNoProcesses) {
-  EXPECT_THROW(parse_options({"s", "--lua-processes", "2"}, run::by_serve), text::UsageError);
+  EXPECT_THROW(parse_options({scene, "--lua-processes", "2"}, run::by_serve), text::UsageError);
 }
 
 TEST(Options, ExactlyOneSceneIsAllowed) {
@@ -88,12 +91,13 @@ TEST(Options, ExactlyOneSceneIsAllowed) {
 
 TEST(Options, InsecureNeedsAnAddressThatOthersCanReach) {
   for (const Arguments& arguments :
-       {Arguments{"s", "--insecure"}, Arguments{"s", "--insecure", "--endpoint", "ipc:///tmp/x"}}) {
+       {Arguments{scene, "--insecure"},
+        Arguments{scene, "--insecure", "--endpoint", "ipc:///tmp/x"}}) {
     EXPECT_THROW(run(arguments), text::UsageError);
   }
   for (const Arguments& more : {Arguments{"--endpoint", "tcp://127.0.0.1:1"}, Arguments{"--view"},
                                 Arguments{"--metrics", "127.0.0.1:0"}}) {
-    Arguments arguments{"s", "--insecure"};
+    Arguments arguments{scene, "--insecure"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     EXPECT_TRUE(run(arguments).insecure) << more.front();
   }
@@ -108,10 +112,10 @@ TEST(Options, WhatIsGivenTwiceForTheSameIsRefused) {
         std::array{"--restart", "1", "2"},
         std::array{"--inject", "latency=1ms", "commands:loss=1%"}}) {
     EXPECT_TRUE(fails_with<text::UsageError>(std::string(option) + " is given twice for ", [&] {
-      run({"s", option, first, option, second});
+      run({scene, option, first, option, second});
     }));
   }
-  EXPECT_EQ(run({"s", "--deadline", "hold:50", "--deadline", "a=wait", "--inject",
+  EXPECT_EQ(run({scene, "--deadline", "hold:50", "--deadline", "a=wait", "--inject",
                  "a=commands:loss=1%", "--inject", "a=observations:loss=2%", "--restart", "1",
                  "--restart", "a=2", "--param", "a=1", "--param", "b=1"})
                 .deadlines.size(),
@@ -119,10 +123,10 @@ TEST(Options, WhatIsGivenTwiceForTheSameIsRefused) {
 }
 
 TEST(Options, KeysNeedEachOther) {
-  EXPECT_THROW(parse_options({"s", "--curve-secret", "x"}, run::by_serve), text::UsageError);
-  EXPECT_THROW(parse_options({"s", "--curve-clients", "x"}, run::by_run), text::UsageError);
-  EXPECT_EQ(parse_options({"s", "--lease", "2.5"}, run::by_serve).lease, 2.5);
-  EXPECT_THROW(parse_options({"s", "--lease", "-1"}, run::by_run), text::UsageError);
+  EXPECT_THROW(parse_options({scene, "--curve-secret", "x"}, run::by_serve), text::UsageError);
+  EXPECT_THROW(parse_options({scene, "--curve-clients", "x"}, run::by_run), text::UsageError);
+  EXPECT_EQ(parse_options({scene, "--lease", "2.5"}, run::by_serve).lease, 2.5);
+  EXPECT_THROW(parse_options({scene, "--lease", "-1"}, run::by_run), text::UsageError);
 }
 
 }  // namespace
