@@ -20,7 +20,7 @@ while [[ $# -gt 0 ]]; do
   case $1 in
     --engine) engine=${2:?--engine needs a name}; shift 2 ;;
     --base) base=${2:?--base needs an image}; shift 2 ;;
-    -h | --help) sed -n 's/^# \{0,1\}//p' "$0" | sed 1d; exit ;;
+    -h | --help) sed -n '/^# SPDX/d; s/^# \{0,1\}//p' "$0" | sed 1d; exit ;;
     server | controller | dev) images+=("$1"); shift ;;
     *) echo "docker/build.sh: there is no '$1'; see docker/build.sh --help" >&2; exit 2 ;;
   esac
