@@ -46,7 +46,11 @@ class Folder:
         for given in ("all", name_of(page)):
             if (HERE / "folders" / given).is_dir():
                 shutil.copytree(HERE / "folders" / given, self.work, dirs_exist_ok=True)
-        self.environment = self.installed()
+        try:
+            self.environment = self.installed()
+        except Fault:
+            self.remove()
+            raise
 
     def installed(self):
         """The environment of a user whose system has Ziggurat's packages."""
