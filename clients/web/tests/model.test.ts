@@ -145,7 +145,7 @@ test("readings by device have names, limits and places", () => {
 test("LEDs of a robot that is far are one point for each colour, and none for those that are off", () => {
   const mount = { link: 0, position: [0, 0, 0], orientation: [1, 0, 0, 0] };
   const lights = new Lights();
-  lights.setWorld({ leds: Array(12).fill({ mount, entity: 0 }), directionalLeds: [] } as unknown as World);
+  lights.setWorld({ entities: [{ kind: 5 }], leds: Array(12).fill({ mount, entity: 0 }), directionalLeds: [] } as unknown as World);
   const points = (detail: Detail, ledColors: number[]): number => {
     const poses = { positions: [0, 0, 0], orientations: [1, 0, 0, 0], ledColors, directionalLedColors: [] } as unknown as Poses;
     lights.setPoses(poses, Uint8Array.of(detail));

@@ -71,6 +71,8 @@ export class Decoding {
     this.worker.postMessage(task, [task.buffer]);
   }
 
+  get isBusy(): boolean { return this.waiting.length > 0; }
+
   /** What was given so far does not come any more. */
   forget(): void { for (const each of this.waiting) each.take = each.fail = () => undefined; }
 

@@ -8,7 +8,7 @@ import type { Listener, Source, Status, Value } from "./source";
 const firstDelay = 250; // [ms] before the first new attempt; doubles up to
 const longestDelay = 2000;
 const leastPause = 25; // [ms] between two signs that the page is ready: who may only look sends at most fifty a second
-const hiddenPause = 1000; // [ms] between those of a page that is not drawn
+const longestPause = 200; // [ms] until the next one, drawn or not: what waits longer at the server is lost
 
 /** Why there is no connection, and what to do, for users. */
 function explain(url: URL, hadWorld: boolean): string {
@@ -45,7 +45,7 @@ export class LiveSource implements Source {
   private socket: WebSocket | null = null; // of a server that waits until the page is ready
   private hasNews = false; // messages came since the page was ready
   private readyAt = -Infinity; // [ms]
-  private readonly hiddenTimer: ReturnType<typeof setInterval>;
+  private readonly readyTimer: ReturnType<typeof setInterval>;
   private readonly decoding = new Decoding(pageWorker());
   private isClosed = false;
   private wasOpen = false;
@@ -54,7 +54,7 @@ export class LiveSource implements Source {
   /** @param url  of the WebSocket, with its token */
   constructor(private readonly url: URL) {
     this.name = url.host;
-    this.hiddenTimer = setInterval(() => { if (performance.now() - this.readyAt >= hiddenPause) this.ready(); }, hiddenPause);
+    this.readyTimer = setInterval(() => { if (performance.now() - this.readyAt >= longestPause) this.ready(); }, longestPause);
   }
 
   start(listener: Listener): void {
@@ -65,7 +65,7 @@ export class LiveSource implements Source {
   close(): void {
     this.isClosed = true;
     clearTimeout(this.timer);
-    clearInterval(this.hiddenTimer);
+    clearInterval(this.readyTimer);
     this.client?.close();
   }
 
@@ -90,7 +90,7 @@ export class LiveSource implements Source {
 
   ready(): void {
     const now = performance.now();
-    if (!this.hasNews || !this.socket || now - this.readyAt < leastPause) return;
+    if (!this.hasNews || this.decoding.isBusy || !this.socket || now - this.readyAt < leastPause) return;
     this.hasNews = false;
     this.readyAt = now;
     this.socket.send(JSON.stringify({ op: "ready" }));
@@ -142,12 +142,13 @@ export class LiveSource implements Source {
       this.subscribe();
       this.tellTopics();
     });
+    client.on("time", () => { this.hasNews = true; }); // also of a tick of which nothing else is wanted
     client.on("message", ({ subscriptionId, timestamp, data }) => {
+      this.hasNews = true;
       const held = this.bySubscription.get(subscriptionId);
       if (!held) return;
       const { topic, decoder } = held;
       this.decoding.decode(decoder, data as DataView, (bytes, value) => {
-        this.hasNews = true;
         this.listener.message(new Held(topic, timestamp, bytes, decoder, value));
       }, (fault) => this.leaveOut(topic, timestamp, fault));
     });
@@ -169,7 +170,6 @@ export class LiveSource implements Source {
 
   /** A message can't be read, which is told once for each topic. */
   private leaveOut(topic: string, timeNs: bigint, fault: string): void {
-    this.hasNews = true;
     if (!this.unread.has(topic)) {
       this.listener.notice("warning", `${topic} at ${(Number(timeNs) * 1e-9).toFixed(2)} s ${fault}. It is left out.`);
     }

@@ -1,6 +1,6 @@
 // LEDs: discs that glow in their colour, all in one call and seen from far; directional ones also as cones of light.
 import * as three from "three";
-import type { Led, Poses, World } from "../model/messages";
+import { Kind, type Led, type Poses, type World } from "../model/messages";
 import { packed, place } from "../model/pose";
 import { Detail } from "./detail";
 import { writeMatrix } from "./matrix";
@@ -15,7 +15,7 @@ const unlit = new three.Color(0x3a3d42);
 
 // A point has room for the glow; one that is off is as large as its disc. Very far ones share a pixel.
 const vertexShader = `
-  attribute vec4 color;  // its last is 0 if it is off, 1 if it is lit, 2 if it stands for all of a robot that is far
+  attribute vec4 color;  // its last is 0 if it is off, 1 if it is lit, 2 if it is a lamp or stands for all of a robot that is far
   uniform float pixels;  // of a metre at a depth of one metre
   uniform float least;
   varying vec4 vColor;
@@ -111,7 +111,7 @@ export class Lights {
       if (isFar && (rgb === 0 || (led.entity === entityBefore && rgb === colorBefore))) return;
       entityBefore = led.entity;
       colorBefore = rgb;
-      this.place(led, i, rgb, poses, count++, isFar ? 2 : 1);
+      this.place(led, i, rgb, poses, count++, isFar || world.entities[led.entity].kind === Kind.light ? 2 : 1);
     });
     world.directionalLeds.forEach((led, i) => {
       const rgb = poses.directionalLedColors[i] ?? 0, isThere = details[led.entity] !== Detail.none;
