@@ -132,11 +132,16 @@ bool is(const Entity& entity) {
   return entity.kind == kind;
 }
 
+bool has_wifi(const Entity& entity) {
+  return is_robot(entity.kind) &&
+         std::ranges::find(entity.devices.radios, "wifi", &Radio::id) != entity.devices.radios.end();
+}
+
 constexpr auto robot_components = std::to_array<Component>({
     {"differential_steering", [](const Entity& e) { return e.axle_length.has_value(); }, ""},
     {"footbot_turret", [](const Entity& e) { return e.turret.has_value(); }, ""},
     {"footbot_turret_encoder", [](const Entity& e) { return e.turret.has_value(); }, ""},
-    {"wifi", is<EntityKind::foot_bot>, ""},
+    {"wifi", has_wifi, ""},
     {"footbot_proximity", is<EntityKind::foot_bot>, ""},
     {"epuck_wheels", is<EntityKind::e_puck>, ""},
     {"epuck_leds", is<EntityKind::e_puck>, ""},
@@ -147,6 +152,8 @@ constexpr auto robot_components = std::to_array<Component>({
     {"builderbot_leds", is<EntityKind::builderbot>, ""},
     {"builderbot_electromagnet_system", is<EntityKind::builderbot>, ""},
     {"builderbot_camera_system", is<EntityKind::builderbot>, ""},
+    {"kheperaiv_leds", is<EntityKind::khepera>, ""},
+    {"kheperaiv_proximity", is<EntityKind::khepera>, ""},
     {"builderbot_nfc", is<EntityKind::builderbot>, ""},
 });
 

@@ -40,10 +40,14 @@ void read_blob_cameras(Element& element, Entity& entity) {
   foot_bot::add_blob_cameras(entity, cameras);
 }
 
+void read_wifi(Element& element, Entity& entity) {
+  constexpr double usual_range = 10;  // [m]
+  add_wifi(entity, element.optional("wifi_range", positive, usual_range));
+}
+
 void read_foot_bot(Element& element, Entity& entity) {
   read_blob_cameras(element, entity);
-  constexpr double usual_range = 10;  // [m]
-  foot_bot::add_wifi(entity, element.optional("wifi_range", positive, usual_range));
+  read_wifi(element, entity);
 }
 
 /// The e-puck has no such camera.
@@ -51,6 +55,11 @@ void ignore_blob_cameras(Element& element, Entity&) {
   element.optional("perspective_camera_aperture", half_angle);
   element.optional("perspective_camera_focal_length", positive);
   element.optional("perspective_camera_range", positive);
+}
+
+void read_pi_puck(Element& element, Entity& entity) {
+  ignore_blob_cameras(element, entity);
+  read_wifi(element, entity);
 }
 
 void read_flying_camera(Element& element, Entity& entity, double usual_range) {
@@ -85,14 +94,15 @@ struct Robot {
   void (*read)(Element& element, Entity& entity);  ///< what only this robot's element may have
 };
 
-constexpr std::array<Robot, 8> robots{{
+constexpr std::array<Robot, 9> robots{{
     {EntityKind::foot_bot, foot_bot::equip, read_foot_bot},
     {EntityKind::e_puck, e_puck::equip, ignore_blob_cameras},
     {EntityKind::eye_bot, flying::equip_eye_bot, read_eye_bot_camera},
     {EntityKind::spiri, flying::equip_spiri, read_spiri_camera},
     {EntityKind::kilobot, kilobot::equip, read_kilobot},
-    {EntityKind::pi_puck, pi_puck::equip, ignore_blob_cameras},
-    {EntityKind::builderbot, builderbot::equip, read_nothing},
+    {EntityKind::pi_puck, pi_puck::equip, read_pi_puck},
+    {EntityKind::builderbot, builderbot::equip, read_wifi},
+    {EntityKind::khepera, khepera::equip, read_nothing},
     {EntityKind::mini_quadrotor, flying::equip_mini_quadrotor, read_nothing},
 }};
 
@@ -133,6 +143,9 @@ std::optional<std::size_t> first_medium(const Scene& scene, MediumKind kind) {
 void read_block(Draft& draft, Element& element, Entity& entity) {
   block::equip(entity);
   entity.movable = element.optional("movable", boolean, true);
+  const Color at_first = element.optional("init_led_color", color, Color{});
+  for (DirectionalLed& led : entity.devices.directional_leds) led.color = at_first;
+  for (Led& led : entity.devices.leds) led.color = at_first;
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
     entity.links[i].where = element.where();
     draft.anchors.emplace(entity.links[i].id, i);

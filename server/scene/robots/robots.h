@@ -19,8 +19,6 @@ struct BlobCameras {
 };
 /// After equip().
 void add_blob_cameras(Entity& entity, const BlobCameras& cameras);
-/// Adds its radio. @param range  [m]
-void add_wifi(Entity& entity, double range);
 }  // namespace foot_bot
 
 /// An e-puck: anchor `base`, two wheels, 10 LEDs, 8 proximity sensors, range and bearing.
@@ -66,6 +64,11 @@ void equip(Entity& entity);
 Camera camera();
 }  // namespace builderbot
 
+/// A Khepera IV: a body on two wheels, infrared and ultrasound, ground sensors, LEDs.
+namespace khepera {
+void equip(Entity& entity);
+}
+
 /// A block of the construction kit: a cube with magnets, tags, radios and LEDs.
 namespace block {
 void equip(Entity& entity);
@@ -98,6 +101,9 @@ DevicePlace& add_place(Entity& entity, std::string_view name, const math::Vector
 /// A ring of LEDs around the body's axis, counter-clockwise, numbered on from those it has.
 /// @param first  bearing of the first one [rad];  @param radius, height  [m]
 void add_led_ring(Entity& entity, unsigned count, double first, double radius, double height);
+
+/// Adds the radio of robots with Wi-Fi. @param range  [m]
+void add_wifi(Entity& entity, double range);
 
 /// A range-and-bearing device on the body's axis, level.
 /// @param height, range  [m];  @param data_size  [bytes]

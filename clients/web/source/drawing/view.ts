@@ -7,8 +7,9 @@ import { Bodies } from "./bodies";
 import { Floor } from "./floor";
 import { Lights } from "./lights";
 import { Lines } from "./lines";
+import { Labels } from "./labels";
 import {
-  drawContacts, drawFrusta, drawMagnets, drawRays, drawSelection, drawTrail, RadioFlashes, typicalSize,
+  drawContacts, drawFrusta, drawMagnets, drawMarkers, drawRays, drawSelection, drawTrail, RadioFlashes, typicalSize,
 } from "./overlays";
 import { Stage } from "./stage";
 import { Tags } from "./tags";
@@ -62,6 +63,7 @@ export class View {
   private readonly lines = new Lines();
   private readonly inside = new Lines(true); // seen through bodies
   private readonly flashes = new RadioFlashes();
+  private readonly labels = new Labels(); // texts that robots drew
   private world: World | null = null;
   private frame: Frame | null = null;
   private trails = new Map<string, Vector[]>();
@@ -83,7 +85,7 @@ export class View {
     this.bodies = new Bodies(this.stage.isSlow);
     this.hasFramed = keepsLook;
     this.stage.scene.add(this.floor.group, this.bodies.group, this.tags.group, this.lights.group, this.lines.object,
-                         this.inside.object);
+                         this.inside.object, this.labels.group);
   }
 
   /** Forgets the world, before that of another source is shown. */
@@ -184,8 +186,11 @@ export class View {
       if (this.selected.length > 0) drawSelection(world, poses, this.selected, lines);
       if (this.shown.has("magnets")) drawMagnets(world, poses, this.arrow, inside);
       if (this.shown.has("frusta")) drawFrusta(world, poses, lines);
-      const rays = frame.messages.get("/rays");
-      if (rays && this.shown.has("rays")) drawRays(rays.read<Rays>(), lines);
+      const rays = this.shown.has("rays") ? frame.messages.get("/rays")?.read<Rays>() : undefined;
+      const originOf = (robot: number): Pose | null => this.originOf(world.robots[robot]?.entity ?? -1);
+      if (rays) drawRays(rays, lines);
+      if (rays?.markers) drawMarkers(rays.markers, originOf, lines);
+      this.labels.show(rays?.markers ?? [], originOf);
       const contacts = frame.messages.get("/contacts");
       if (contacts && this.shown.has("contacts")) drawContacts(contacts.read<Contacts>(), this.reference, this.arrow, lines);
       const radio = frame.messages.get("/radio");
@@ -205,7 +210,7 @@ export class View {
   /** Draws the world without lines and decorations from another camera; pixels are linear light, rows from the bottom. */
   renderFrom(eye: three.Camera, target: three.WebGLRenderTarget, pixels: Uint8Array): void {
     const { renderer, scene } = this.stage;
-    const hidden = [this.lines.object, this.inside.object, this.bodies.decorations];
+    const hidden = [this.lines.object, this.inside.object, this.labels.group, this.bodies.decorations];
     for (const object of hidden) object.visible = false;
     renderer.setRenderTarget(target);
     renderer.render(scene, eye);
