@@ -133,8 +133,8 @@ bool is(const Entity& entity) {
 }
 
 bool has_wifi(const Entity& entity) {
-  return is_robot(entity.kind) &&
-         std::ranges::find(entity.devices.radios, "wifi", &Radio::id) != entity.devices.radios.end();
+  return is_robot(entity.kind) && std::ranges::find(entity.devices.radios, "wifi", &Radio::id) !=
+                                      entity.devices.radios.end();
 }
 
 constexpr auto robot_components = std::to_array<Component>({

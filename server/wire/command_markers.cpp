@@ -47,10 +47,10 @@ std::optional<Fault> check(const v1::Marker& marker, const Roster& roster,
         robot.id);
   }
   if (!robot.draws_markers) {
-    return make_fault(ErrorCode::unknown_device, field,
-                      fmt::format("Robot '{}' can't draw: its controller has no actuator 'debug'.",
-                                  robot.id),
-                      robot.id);
+    return make_fault(
+        ErrorCode::unknown_device, field,
+        fmt::format("Robot '{}' can't draw: its controller has no actuator 'debug'.", robot.id),
+        robot.id);
   }
   const auto read_marker = read(marker);
   if (read_marker && is_valid(*read_marker)) return std::nullopt;

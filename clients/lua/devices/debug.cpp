@@ -61,7 +61,8 @@ bool read_numbers(std::string_view text, std::span<double> to) {
     if (end == std::string_view::npos) return false;
     std::string_view number = trimmed(text.substr(0, end));
     if (!number.empty() && number.front() == '+') number.remove_prefix(1);
-    const auto [after, error] = std::from_chars(number.data(), number.data() + number.size(), to[i]);
+    const auto [after, error] =
+        std::from_chars(number.data(), number.data() + number.size(), to[i]);
     if (error != std::errc() || after != number.data() + number.size()) return false;
     if (!std::isfinite(to[i])) return false;
     text.remove_prefix(is_last ? end : end + 1);
@@ -159,7 +160,8 @@ int draw(lua_State* state) {
   }
   const std::string_view text = check_text(state, 1);
   if (!draw_text(upvalue<Robot>(state), text)) {
-    luaL_argerror(state, 1, lua_pushfstring(state, "'%s': %s; %s", text.data(), usage, color_usage));
+    luaL_argerror(state, 1,
+                  lua_pushfstring(state, "'%s': %s; %s", text.data(), usage, color_usage));
   }
   return 0;
 }
