@@ -45,6 +45,7 @@ std::size_t size_of(const TickCopy& copy) {
   size += sensed.radio_messages.bytes.size() + copy.commands.radio_messages.bytes.size();
   size += sensed.range_and_bearing_data.size();
   size += copy.contacts.size() * sizeof(world::Contact);
+  size += (copy.state.markers.size() + copy.commands.markers.size()) * sizeof(world::Marker);
   return size;
 }
 

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "channels/packing.h"
+#include "wire/command.h"
 #include "wire/devices.h"
 #include "wire/observation.h"
 
@@ -46,6 +47,9 @@ void fill(const Moment& moment, v1::Rays& rays) {
     add(ray.start, *rays.mutable_segments());
     add(ray.end, *rays.mutable_segments());
     rays.add_hits(ray.hit);
+  }
+  for (const world::Marker& marker : moment.state.markers) {
+    wire::write(marker, marker.robot, *rays.add_markers());
   }
 }
 
@@ -120,6 +124,9 @@ void fill(const wire::Roster& robot, const world::Layout& layout, const Moment& 
     message.set_radio(index(entry.radio - radios.begin));
     const auto payload = sent.payload(entry);
     message.set_payload(payload.data(), payload.size());
+  }
+  for (const world::Marker& marker : moment.state.markers) {
+    if (marker.robot == robot.robots.front()) wire::write(marker, 0, *command.add_markers());
   }
 }
 

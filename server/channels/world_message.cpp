@@ -41,6 +41,8 @@ Entity::Kind kind_of(scene::EntityKind kind) {
       return Entity::PI_PUCK;
     case scene::EntityKind::builderbot:
       return Entity::BUILDERBOT;
+    case scene::EntityKind::khepera:
+      return Entity::KHEPERA;
     case scene::EntityKind::light:
       break;
   }

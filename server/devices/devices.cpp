@@ -40,6 +40,7 @@ std::unique_ptr<Kind> make_kilobot_communication();
 std::unique_ptr<Kind> make_differential_drive();
 std::unique_ptr<Kind> make_rangefinders();
 std::unique_ptr<Kind> make_lift_system();
+std::unique_ptr<Kind> make_ultrasound();
 
 Devices::Devices() {
   constexpr std::array kinds{make_joints,
@@ -73,7 +74,8 @@ Devices::Devices() {
                              make_kilobot_communication,
                              make_differential_drive,
                              make_rangefinders,
-                             make_lift_system};
+                             make_lift_system,
+                             make_ultrasound};
   for (const auto make : kinds) kinds_.push_back(make());
   list_substep_kinds();
 }

@@ -234,6 +234,31 @@ std::optional<std::string> read_floor_paints(const Commands& from,
   return std::nullopt;
 }
 
+std::optional<std::string> read_markers(const Commands& from, const world::Layout& layout,
+                                        std::vector<world::Marker>& to) {
+  to.clear();
+  std::vector<std::size_t> counts(from.markers().empty() ? 0 : layout.robots.size());
+  for (const auto& read : from.markers()) {
+    const auto& v = read.values();
+    if (read.robot() >= layout.robots.size() || !layout.robots[read.robot()].draws_markers) {
+      return fmt::format("the robot number {} can't draw", read.robot());
+    }
+    world::Marker marker{.robot = read.robot(), .color = read.color(), .text = read.text()};
+    marker.shape = static_cast<world::Marker::Shape>(std::min(read.shape(), 2U));
+    if (v.size() == 7) {
+      marker.at = {v[0], v[1], v[2]};
+      marker.to = {v[3], v[4], v[5]};
+      marker.radius = v[6];
+    }
+    const std::size_t count = ++counts[read.robot()];
+    if (v.size() != 7 || !is_valid(marker) || count > world::most_markers_per_robot) {
+      return "a marker has no valid place, size, text or color, or there are too many";
+    }
+    to.push_back(std::move(marker));
+  }
+  return std::nullopt;
+}
+
 // --- states -------------------------------------------------------------------------------------
 
 constexpr std::size_t link_width = 13;
@@ -290,6 +315,16 @@ void CommandPacker::pack(const world::Commands& commands, v1::Commands& to) {
     for (const double value : region.center) written.add_values(value);
     for (const double value : region.half_size) written.add_values(value);
   }
+  for (const world::Marker& marker : commands.markers) {
+    auto& written = *to.add_markers();
+    written.set_robot(static_cast<std::uint32_t>(marker.robot));
+    written.set_shape(static_cast<std::uint32_t>(marker.shape));
+    for (const double value : marker.at) written.add_values(value);
+    for (const double value : marker.to) written.add_values(value);
+    written.add_values(marker.radius);
+    written.set_color(marker.color);
+    written.set_text(marker.text);
+  }
   is_first_ = false;
 }
 
@@ -311,6 +346,7 @@ std::optional<std::string> unpack(const v1::Commands& from, const world::Layout&
   if (!fault) fault = read_radio_messages(from, layout, state, to.radio_messages);
   if (!fault) fault = read_pushes(from, layout, state, to.pushes);
   if (!fault) fault = read_floor_paints(from, to.floor_paints);
+  if (!fault) fault = read_markers(from, layout, to.markers);
   for (std::size_t i = 0; !fault && i < to.device_commands.size(); ++i) {
     const world::DeviceCommand& field = *layout.device_commands[i];
     if (to.device_commands[i] >= field.least && to.device_commands[i] <= field.most) continue;

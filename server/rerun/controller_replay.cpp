@@ -55,7 +55,7 @@ std::optional<Ending> ControllerReplay::tell(const std::function<bool(std::uint6
                             simulation.observations(), simulation.contacts()};
     services_.server.publish(simulation.observations(), simulation.state().tag_payloads, &truth);
     has_told_ = true;
-    answered_.radio_messages.clear();
+    world::forget_sent(answered_);
     if (const auto ending = services_.watch.collect(answered_, tick)) return ending;
     const bool has_commands = replay_.inputs().has_commands();
     replay_.act();
@@ -102,7 +102,7 @@ bool ControllerReplay::skip(const std::function<bool(std::uint64_t)>& is_end,
 std::optional<Ending> ControllerReplay::restart() {
   is_restarted_ = false;
   answered_ = recorded_.simulation.commands();
-  answered_.radio_messages.clear();
+  world::forget_sent(answered_);
   return services_.watch.gather();
 }
 
@@ -119,7 +119,7 @@ void ControllerReplay::take(const v1::Act& act) {
 /// Controllers that were told nothing yet are not told of a reset either.
 void ControllerReplay::take_reset() {
   answered_ = recorded_.simulation.commands();
-  answered_.radio_messages.clear();
+  world::forget_sent(answered_);
   const std::size_t robots = told_world_.simulation.layout().robots.size();
   const bool has_fewer = robots < gone_.size();
   gone_.resize(robots);
@@ -142,7 +142,7 @@ void ControllerReplay::take_restore(const std::string& snapshot) {
   simulation::Simulation& simulation = recorded_.simulation;
   const std::size_t robots = replay_.common_robots();
   answered_ = simulation.commands();
-  answered_.radio_messages.clear();
+  world::forget_sent(answered_);
   services_.server.restart(
       {recorded_.seed, {}, {{snapshot, simulation.state().tick, &answered_, robots}}});
   services_.controllers.forget_robots(robots);

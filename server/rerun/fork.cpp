@@ -232,7 +232,7 @@ std::optional<Ending> Fork::reach(const Parts& parts) {
   follow();
   if (const world::Commands* commanded = controller_replay.commanded()) {
     world.simulation.commands() = *commanded;  // values stay until a controller changes them
-    world.simulation.commands().radio_messages.clear();
+    world::forget_sent(world.simulation.commands());
     world.simulation.commands().pushes.clear();
     world.simulation.commands().floor_paints.clear();
   }

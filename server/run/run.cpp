@@ -70,9 +70,9 @@ Run::Run(const Options& options, StartPoint& start, Service service, processes::
       recorded_(start.is_reached() ? start_recording() : nullptr),
       controllers_(start_controllers()),
       callers_(server_),
-      population_(
-          {options_.scene_file.max_size, with_controllers_, options_.spawned_script_folders},
-          world_, server_, callers_, controllers_, console_),
+      population_({options_.scene_file.max_size, with_controllers_, leaves_libraries(),
+                   options_.spawned_script_folders},
+                  world_, server_, callers_, controllers_, console_),
       supervision_(supervision_settings(), world_, server_, callers_, population_),
       directing_(world_, server_, callers_, population_, console_),
       schedule_(plan_.real_time, world_.simulation.tick_length()),
@@ -164,8 +164,11 @@ network::Config Run::complete_config() {
 
 /// Whether nothing is in place of its library, and no client can be.
 bool Run::is_left_alone(const scene::Controller& controller) const {
-  return options_.scene_file.lenient && service_ == Service::run && options_.endpoints.empty() &&
-         scene::is_library(controller) && controller.command.empty();
+  return leaves_libraries() && scene::is_library(controller) && controller.command.empty();
+}
+
+bool Run::leaves_libraries() const {
+  return options_.scene_file.lenient && service_ == Service::run && options_.endpoints.empty();
 }
 
 /// Robots whose Lua controller names no script, or that are left alone, or all robots if

@@ -75,6 +75,7 @@ class Run {
   std::unique_ptr<supervision::World> load_world();
   Plan make_plan() const;
   network::Config complete_config();
+  bool leaves_libraries() const;
   bool is_left_alone(const scene::Controller& controller) const;
   std::vector<std::size_t> robots_without_controller() const;
   processes::Controllers start_controllers();

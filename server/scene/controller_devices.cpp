@@ -57,6 +57,7 @@ void enable_tags(const Enabling& e) {
 }
 
 void enable_magnets(const Enabling& e) { e.devices.magnets = true; }
+void enable_markers(const Enabling& e) { e.devices.draws_markers = true; }
 
 /// <proximity> or <footbot_proximity>: both make the same table of a robot.
 ProximityUse& enable_rays(const Enabling& e, std::string_view other) {
@@ -252,6 +253,7 @@ constexpr auto actuator_rows = std::to_array<DeviceRow>({
     {"directional_leds", "default", enable_directional_leds},
     {"tags", "default", enable_tags},
     {"magnets", "default", enable_magnets},
+    {"debug", "default", enable_markers, false},
     {"differential_steering", "default", enable_wheels},
     {"gripper", "default", enable_gripper, true, "gripper"},
     {"range_and_bearing", "default", enable_range_and_bearing_actuator},
@@ -270,6 +272,7 @@ constexpr auto actuator_rows = std::to_array<DeviceRow>({
     {"builderbot_lift_system", "default", enable_nothing, true, lift, lift},
     {"builderbot_electromagnet_system", "default", enable_magnets},
     {"builderbot_nfc", "default", enable_radios_actuator},
+    {"kheperaiv_leds", "default", enable_leds_of_robot},
     {"wifi", "default", enable_radios_actuator},
     {"epuck_wheels", "default|rot_z_only|medium", enable_epuck_wheels},
     {"epuck_leds", "default|rot_z_only|medium", enable_leds},
@@ -313,6 +316,12 @@ constexpr auto sensor_rows = std::to_array<DeviceRow>({
     {"builderbot_electromagnet_system", "default", enable_magnets},
     {"builderbot_camera_system", "default", enable_builderbot_camera},
     {"builderbot_nfc", "default", enable_radios_sensor},
+    {"kheperaiv_proximity", "default|rot_z_only", enable_footbot_proximity},
+    {"kheperaiv_light", "default|rot_z_only", enable_rays_and_noise, true, "light",
+     "footbot_light"},
+    {"kheperaiv_ground", "default|rot_z_only", enable_rays_and_noise, true, "ground",
+     "epuck_ground"},
+    {"kheperaiv_ultrasound", "default|rot_z_only", enable_rays_and_noise, true, "ultrasound"},
     {"footbot_distance_scanner", "rot_z_only", enable_scanner, true, "footbot_distance_scanner"},
     {"wifi", "default", enable_radios_sensor},
     {"epuck_wheels", "default|rot_z_only|medium", enable_wheel_encoders},

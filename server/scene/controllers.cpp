@@ -152,6 +152,8 @@ constexpr auto robot_components = std::to_array<Component>({
     {"builderbot_leds", is<EntityKind::builderbot>, ""},
     {"builderbot_electromagnet_system", is<EntityKind::builderbot>, ""},
     {"builderbot_camera_system", is<EntityKind::builderbot>, ""},
+    {"kheperaiv_leds", is<EntityKind::khepera>, ""},
+    {"kheperaiv_proximity", is<EntityKind::khepera>, ""},
     {"builderbot_nfc", is<EntityKind::builderbot>, ""},
 });
 

@@ -296,6 +296,7 @@ struct ControllerDevices {
   bool directional_leds = false;
   bool tags = false;
   bool magnets = false;
+  bool draws_markers = false;  ///< the actuator `debug`
   std::optional<ProximityUse> proximity;
   std::optional<RangeAndBearingUse> range_and_bearing;
   std::optional<PositioningUse> positioning;

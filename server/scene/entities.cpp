@@ -17,7 +17,7 @@ constexpr Damping single_body_damping{0.0, 0.0};
 /// A prototype that comes as it is.
 constexpr std::string_view block_element = "block";
 
-constexpr std::array<std::pair<std::string_view, EntityKind>, 14> kinds{{
+constexpr std::array<std::pair<std::string_view, EntityKind>, 15> kinds{{
     {"box", EntityKind::box},
     {"cylinder", EntityKind::cylinder},
     {"sphere", EntityKind::sphere},
@@ -31,6 +31,7 @@ constexpr std::array<std::pair<std::string_view, EntityKind>, 14> kinds{{
     {"kilobot", EntityKind::kilobot},
     {"pipuck", EntityKind::pi_puck},
     {"builderbot", EntityKind::builderbot},
+    {"kheperaiv", EntityKind::khepera},
     {block_element, EntityKind::prototype},
 }};
 

@@ -20,7 +20,7 @@ using Reasons = std::span<const Reason>;
 constexpr auto element_reasons = std::to_array<Reason>({
     {"loop_functions", "write <director id=\"…\" script=\"…\"/> under the root"},
     {"quadrotor", "write <mini-quadrotor>, <spiri> or <eye-bot>"},
-    {"kheperaiv", "write <e-puck> or <foot-bot>, or model it as a <prototype>"},
+    {"khepera", "write <kheperaiv>"},
     {"e-puck2", "write <e-puck>"},
     {"crazyflie", "write <mini-quadrotor>"},
     {"thymio", "write <e-puck>, or model it as a <prototype>"},
@@ -49,6 +49,7 @@ constexpr auto homes = std::to_array<Reason>({
     {"kilobot", "arena"},
     {"pipuck", "arena"},
     {"builderbot", "arena"},
+    {"kheperaiv", "arena"},
     {"block", "arena"},
     {"link", "links"},
     {"joint", "joints"},
@@ -74,7 +75,7 @@ constexpr auto foreign_robots = std::to_array<Reason>({
     {"epuck_", "e-puck of another plug-in"},
     {"epuck2_", "e-puck2"},
     {"drone_", "drone"},
-    {"kheperaiv_", "kheperaiv"},
+    {"kheperaiv_", "kheperaiv of another plug-in"},
     {"crazyflie_", "crazyflie"},
     {"thymio_", "thymio"},
 });

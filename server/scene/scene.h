@@ -126,6 +126,7 @@ enum class EntityKind {
   kilobot,
   pi_puck,
   builderbot,
+  khepera,
 };
 
 /// The name of its element.

@@ -20,6 +20,7 @@ void append(const scene::Scene& scene, const scene::Entity& entity, const device
   robot.id = entity.id;
   robot.entity = index;
   robot.controller = *entity.controller;
+  robot.draws_markers = controller->devices.draws_markers;
   robot.params = entity.overrides_params ? entity.params : controller->params;
   layout.robots.push_back(std::move(robot));
 }

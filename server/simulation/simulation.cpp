@@ -141,6 +141,11 @@ void Parts::remove(std::size_t entity) {
   });
   std::erase_if(commands.pushes,
                 [&](const auto& push) { return layout.links[push.link].entity == entity; });
+  const auto is_of_entity = [&](const world::Marker& marker) {
+    return layout.robots[marker.robot].entity == entity;
+  };
+  std::erase_if(commands.markers, is_of_entity);
+  std::erase_if(state.markers, is_of_entity);
   looks_are_old = true;
 }
 
@@ -237,6 +242,8 @@ void Parts::step(timing::Stopwatch* watch) {
   devices::Tick now = tick();
   for (const world::FloorPaint& region : commands.floor_paints) world::paint(state.floor, region);
   commands.floor_paints.clear();
+  state.markers.swap(commands.markers);
+  commands.markers.clear();
   state.rays.clear();
   all_rays.clear();
   state.frusta.clear();

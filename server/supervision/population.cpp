@@ -223,8 +223,11 @@ void Population::add_controllers(std::size_t first, std::span<const std::string>
   server_.add_robots(scripts, simulation.observations(), simulation.state().tag_payloads);
   for (std::size_t i = first; i < robots.size(); ++i) {
     const std::array robot{i};
-    const bool is_lua = processes::runs_script(world_.scene.controllers[robots[i].controller]);
-    if (!settings_.with_controllers || (is_lua && scripts[i - first].empty()) ||
+    const scene::Controller& controller = world_.scene.controllers[robots[i].controller];
+    const bool is_lua = processes::runs_script(controller);
+    const bool is_left_alone =
+        settings_.leaves_libraries && scene::is_library(controller) && controller.command.empty();
+    if (!settings_.with_controllers || (is_lua && scripts[i - first].empty()) || is_left_alone ||
         simulation.state().is_absent(robots[i].entity)) {
       server_.remove_robots(robot);
       continue;

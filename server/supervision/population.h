@@ -41,8 +41,9 @@ struct EarlierSpawns {
 class Population {
  public:
   struct Settings {
-    std::size_t max_size = 0;      ///< of all spawned elements, models written out [bytes]
-    bool with_controllers = true;  ///< otherwise spawned robots have no controller either
+    std::size_t max_size = 0;       ///< of all spawned elements, models written out [bytes]
+    bool with_controllers = true;   ///< otherwise spawned robots have no controller either
+    bool leaves_libraries = false;  ///< robots whose controller is a library have none
     std::vector<std::string> script_folders;  ///< whose files spawned robots may use, too
   };
 

@@ -90,7 +90,7 @@ bool Supervision::restart() {
   wire::Restart restart{world_.seed};
   simulation::Simulation& simulation = world_.simulation;
   if (restoring_) {
-    simulation.commands().radio_messages.clear();  // controllers send them again
+    world::forget_sent(simulation.commands());  // controllers send it again
     restart.snapshot = {resetting_->request.text, simulation.state().tick, &simulation.commands(),
                         common};
   }

@@ -53,6 +53,7 @@ std::optional<Fault> check(const v1::Command& command, const Roster& roster,
   if (auto found = check_positions(command.robots(), roster, layout)) return found;
   if (auto found = check_channels(command, roster, layout)) return found;
   if (auto found = check_radio_messages(command, roster, layout)) return found;
+  if (auto found = check_markers(command, roster, layout)) return found;
   return check(command.log(), roster);
 }
 
@@ -69,6 +70,7 @@ std::optional<Fault> check(const v1::Leave& leave, const Roster& roster,
 void apply(const v1::Command& command, const Roster& roster, world::Commands& commands) {
   apply_channels(command, roster, commands);
   apply_radio_messages(command, roster, commands.radio_messages);
+  apply_markers(command, roster, commands.markers);
 }
 
 void append(const google::protobuf::RepeatedPtrField<v1::LogLine>& log, const Roster& roster,

@@ -1,7 +1,7 @@
 #pragma once
 // Command -> world::Commands, Leave, and the commands of robots that left. A message is checked
 // whole before anything of it has effect. The part of radios is in command_radios.cpp, that of
-// channels in devices.cpp.
+// channels in devices.cpp, that of markers in command_markers.cpp.
 
 #include <cstddef>
 #include <optional>
@@ -42,6 +42,15 @@ std::optional<Fault> check_radio_messages(const v1::Command& command, const Rost
 void apply_radio_messages(const v1::Command& command, const Roster& roster,
                           world::RadioMessages& messages);
 
+/// The same for markers.
+std::optional<Fault> check_markers(const v1::Command& command, const Roster& roster,
+                                   const world::Layout& layout);
+void apply_markers(const v1::Command& command, const Roster& roster,
+                   std::vector<world::Marker>& markers);
+
+/// @param robot  its number in the message
+void write(const world::Marker& marker, std::size_t robot, v1::Marker& to);
+
 /// Joint targets, currents of magnets, speeds of wheels and turrets and data of range and bearing
 /// become 0. LEDs, tags and a turret's mode stay as they are.
 /// @param robot  into the layout's robots
@@ -49,6 +58,8 @@ void reset_commands(const world::Layout& layout, std::size_t robot, world::Comma
 
 /// Takes back the radio messages that the robots of a session have sent at this tick.
 void forget_radio_messages(const Roster& roster, world::RadioMessages& messages);
+/// The same for markers.
+void forget_markers(const Roster& roster, std::vector<world::Marker>& markers);
 
 /// Checks the metrics of a session.
 std::optional<Fault> check(const google::protobuf::RepeatedPtrField<v1::Metric>& metrics,

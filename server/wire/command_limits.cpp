@@ -18,6 +18,8 @@ constexpr std::size_t bytes_per_robot =
     2 * kibibyte + metrics_per_robot * bytes_per_metric;     // 2 KiB: log lines
 constexpr std::size_t radio_bytes_per_robot = 4 * kibibyte;  // of those that send
 constexpr std::size_t radio_bytes_per_field = 64;
+constexpr std::size_t bytes_per_marker = 256;  // in either form, and of its fields
+constexpr std::size_t markers_per_robot = 16, markers_of_all = 2048;  // of those that draw
 constexpr std::size_t longest_json = 24 * mebibyte;
 
 /// Size of the parts that all robots of a session share [bytes].
@@ -52,14 +54,16 @@ bool sends(const world::RobotLayout& robot, const world::Layout& layout) {
 CommandLimits command_limits(const Roster& roster, const world::Layout& layout, Encoding encoding) {
   const bool is_json = encoding == Encoding::json;
   const Shared& shared = is_json ? shared_in_json : shared_in_binary;
-  std::size_t senders = 0, tags = 0, bytes = shared.any;
+  std::size_t senders = 0, drawers = 0, tags = 0, bytes = shared.any;
   for (const std::size_t index : roster.robots) {
     const world::RobotLayout& robot = layout.robots[index];
     senders += sends(robot, layout) ? 1 : 0;
+    drawers += robot.draws_markers ? 1 : 0;
     tags += robot.tags.count;
     bytes += bytes_of(robot, layout);
   }
   if (tags > 0) bytes += world::most_tag_payload_bytes;
+  if (drawers > 0) bytes += bytes_per_marker * (markers_of_all + drawers * markers_per_robot);
   std::size_t by_radio = senders > 0 ? shared.radios + senders * radio_bytes_per_robot : 0;
   if (is_json) {  // base64
     bytes += bytes / 3;

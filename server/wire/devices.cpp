@@ -265,6 +265,7 @@ void describe(const Run& run, std::size_t robot, v1::RobotDescription& descripti
   }
   description.set_positioning(layout.positioning.count > 0);
   description.set_battery(layout.batteries.count > 0);
+  description.set_draws_markers(layout.draws_markers);
 }
 
 bool fit_into_welcome(const Run& run, std::span<const std::size_t> robots) {

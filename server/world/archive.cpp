@@ -57,10 +57,23 @@ void archive_floor(math::Archive& archive, std::string_view name, std::vector<Fl
       most_floor_paints);
 }
 
+void archive_markers(math::Archive& archive, const Layout& layout, std::vector<Marker>& markers) {
+  archive.list("markers", markers, [&](Marker& marker) {
+    math::archive_index(archive, "robot", marker.robot, layout.robots.size());
+    math::archive_choice(archive, "shape", marker.shape, Marker::Shape::text);
+    archive("at", marker.at);
+    archive("to", marker.to);
+    archive("radius", marker.radius);
+    archive("color", marker.color);
+    archive("text", marker.text);
+    archive.require(is_valid(marker), "is no marker");
+  });
+}
+
 }  // namespace
 
 void archive(math::Archive& archive, const Layout& layout, State& state) {
-  static_assert(field_count<State>() == 13);
+  static_assert(field_count<State>() == 14);
   archive("tick", state.tick);
   archive("time_ns", state.time_ns);
   archive("origins", state.origins);
@@ -84,6 +97,7 @@ void archive(math::Archive& archive, const Layout& layout, State& state) {
     math::archive_index(archive, "camera", frustum.camera, layout.cameras.size());
     archive("corners", frustum.corners);
   });
+  archive_markers(archive, layout, state.markers);
 }
 
 namespace {
@@ -169,7 +183,7 @@ void archive(math::Archive& archive, const Layout& layout, const State& state,
 }
 
 void archive(math::Archive& archive, const Layout& layout, Commands& commands) {
-  static_assert(field_count<Commands>() == 14);
+  static_assert(field_count<Commands>() == 15);
   archive("joint_targets", commands.joint_targets);
   archive("led_colors", commands.led_colors);
   archive("directional_led_colors", commands.directional_led_colors);
@@ -189,6 +203,7 @@ void archive(math::Archive& archive, const Layout& layout, Commands& commands) {
     archive("torque", push.torque);
   });
   archive_floor(archive, "floor_paints", commands.floor_paints);
+  archive_markers(archive, layout, commands.markers);
   archive("device_commands", commands.device_commands);
 }
 

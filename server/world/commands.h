@@ -12,6 +12,7 @@
 #include "world/devices.h"
 #include "world/floor.h"
 #include "world/limits.h"
+#include "world/marker.h"
 #include "world/radio_messages.h"
 
 namespace ziggurat::world {
@@ -50,8 +51,17 @@ struct Commands {
   std::vector<Push> pushes;
   /// By directors, before the next tick, which empties it; no robot sets any.
   std::vector<FloorPaint> floor_paints;
+  /// Drawn by robots; the next tick moves them to State::markers. Those of one robot in the order
+  /// of drawing.
+  std::vector<Marker> markers;
   std::vector<double> device_commands;  ///< within the limits of Layout::device_commands
 };
+
+/// Forgets what controllers send once.
+inline void forget_sent(Commands& commands) {
+  commands.radio_messages.clear();
+  commands.markers.clear();
+}
 
 /// The bytes that a robot broadcasts, if its controller has the actuator.
 inline Range broadcast_bytes(const DeviceLists& lists, const DeviceRanges& robot) {
@@ -114,6 +124,7 @@ inline constexpr std::tuple commanded{
     ByHand{&Commands::radio_messages, Hashed::no},
     ByHand{&Commands::pushes, Hashed::no},
     ByHand{&Commands::floor_paints, Hashed::no},
+    ByHand{&Commands::markers, Hashed::no},
     Commanded<double>{&Commands::device_commands, "device_commands", nullptr,
         "command of a device", "commands of devices",
         all<&Ranges::device_commands>, nullptr, finite, Released::described},

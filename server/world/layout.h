@@ -31,6 +31,7 @@ struct RobotLayout : DeviceRanges {
   std::string id;
   std::size_t entity = 0;      ///< into Layout::entities
   std::size_t controller = 0;  ///< into scene::Scene::controllers
+  bool draws_markers = false;  ///< its controller has the actuator
   std::vector<std::pair<std::string, std::string>> params;
 };
 

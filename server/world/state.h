@@ -13,6 +13,7 @@
 #include "world/channel.h"
 #include "world/floor.h"
 #include "world/layout.h"
+#include "world/marker.h"
 
 namespace ziggurat::world {
 
@@ -65,6 +66,7 @@ struct State {
 
   std::vector<Ray> rays;
   std::vector<Frustum> frusta;
+  std::vector<Marker> markers;  ///< drawn with the last commands
 
   bool is_absent(std::size_t entity) const { return entity < absent.size() && absent[entity]; }
 };
@@ -84,6 +86,7 @@ inline constexpr std::tuple state_fields{
     ByHand{&State::floor, Hashed::second},
     ByHand{&State::rays, Hashed::no},
     ByHand{&State::frusta, Hashed::no},
+    ByHand{&State::markers, Hashed::no},
 };
 
 /// X_WD of a device.

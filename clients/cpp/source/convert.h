@@ -22,10 +22,15 @@ void copy(const google::protobuf::RepeatedField<double>& from, std::array<double
   std::copy_n(from.begin(), std::min(n, size(from.size())), to.begin());
 }
 
-/// @param packed  0xRRGGBB
-inline Color color_of(std::uint32_t packed) {
-  return {static_cast<std::uint8_t>(packed >> 16), static_cast<std::uint8_t>(packed >> 8),
-          static_cast<std::uint8_t>(packed)};
+/// @param value  0xRRGGBB
+inline Color color_of(std::uint32_t value) {
+  return {static_cast<std::uint8_t>(value >> 16), static_cast<std::uint8_t>(value >> 8),
+          static_cast<std::uint8_t>(value)};
+}
+
+/// 0xRRGGBB
+inline std::uint32_t packed(Color color) {
+  return std::uint32_t{color.red} << 16 | std::uint32_t{color.green} << 8 | color.blue;
 }
 
 inline Bytes bytes_of(const std::string& text) {

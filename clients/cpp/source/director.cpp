@@ -29,10 +29,6 @@ struct Director::State {
 
 namespace {
 
-std::uint32_t packed(Color color) {
-  return std::uint32_t{color.red} << 16 | std::uint32_t{color.green} << 8 | color.blue;
-}
-
 template <typename Numbers>
 void add_numbers(const Numbers& from, const char* what, std::string_view entity,
                  google::protobuf::RepeatedField<double>& to) {

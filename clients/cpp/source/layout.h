@@ -29,6 +29,7 @@ struct Layout {
     add_joints();
     add_leds();
     add_magnets();
+    add_markers();
     add_positioning();
     add_proximity_sensors();
     add_radios();
@@ -47,6 +48,7 @@ struct Layout {
   void add_joints();
   void add_leds();
   void add_magnets();
+  void add_markers();
   void add_positioning();
   void add_proximity_sensors();
   void add_radios();

@@ -125,6 +125,7 @@ constexpr Shape shapes[] = {
     {"quadrotor", "quadrotor", {}, quadrotor_functions},
     {"kilobot_differential_drive", "motors", {}, motor_functions},
     {"kilobot_communication", "communication", message, message_functions},
+    {"kheperaiv_ultrasound", "ultrasound", distances},
     {"differential_drive", "differential_drive", {}, drive_functions},
     {"lift_system", "lift_system", {}, lift_functions},
 };

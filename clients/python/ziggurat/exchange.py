@@ -24,6 +24,7 @@ class Exchange:
         self.values: Dict[str, List[Any]] = defaultdict(list)
         self.data = bytearray()  # of all range-and-bearing actuators
         self.messages: List[Tuple[int, bytes]] = []
+        self.markers: List[v1.Marker] = []
         self.log: List[v1.LogLine] = []
         self.metrics = Metrics()
         self._places: Counter[str] = Counter()
@@ -58,6 +59,7 @@ class Exchange:
             self.values[field][:] = values
         self.data[:] = bytes(len(self.data))
         self.messages.clear()
+        self.markers.clear()
         self._new.clear()
         self._used.clear()
 
@@ -134,6 +136,7 @@ class Exchange:
             command.range_and_bearing_data = bytes(self.data)
         for radio, payload in self.messages:
             command.radio_messages.add(radio=radio, payload=payload)
+        command.markers.extend(self.markers)
         command.log.extend(self.log)
         command.metrics.extend(self.metrics.take())
         return message
@@ -143,6 +146,7 @@ class Exchange:
         self._used |= self._new
         self._new.clear()
         self.messages.clear()
+        self.markers.clear()
         self.log.clear()
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Callable, Dict, Optional
+from typing import Any, Callable, Dict, Optional, Sequence, Tuple
 
 from . import protocol_pb2 as v1
 from .devices import Camera, DevicesByKind, Joint, Led, Magnet, Radio, RangeAndBearing, Sensors, Tag, Turret, \
     Wheels
 from .devices.joint import joints_of
+from .devices.led import OFF, number_of
 from .exchange import Exchange
 from .named import Listed
 
@@ -33,6 +34,7 @@ class Robot(Sensors):
         self.gone = False  # it has left the run, or another client has taken it over
         super().__init__(exchange, given)
         self._position = position
+        self.draws = given.draws_markers
         self._find_leave = find_leave
 
         # Devices that describe themselves, by kind: robot.devices["light"][0].value.
@@ -51,6 +53,24 @@ class Robot(Sensors):
             Wheels(exchange, given.wheels) if given.HasField("wheels") else None
         self.turret: Optional[Turret] = \
             Turret(exchange, given.turret) if given.HasField("turret") else None
+
+    def draw_arrow(self, start: Sequence[float], end: Sequence[float], color: Tuple[int, int, int] = OFF) -> None:
+        """Draws for people, for one tick: x, y, z in the frame of the robot's origin [m]; a color is (red,
+        green, blue). Needs the actuator `debug`; at most 1000 markers a tick."""
+        self._draw(at=start, to=end, color=color)
+
+    def draw_ring(self, center: Sequence[float], radius: float, color: Tuple[int, int, int] = OFF) -> None:
+        """Likewise, in the robot's xy plane."""
+        self._draw(at=center, radius=radius, color=color)
+
+    def draw_text(self, place: Sequence[float], text: str, color: Tuple[int, int, int] = OFF) -> None:
+        """Likewise: 1 to 100 bytes."""
+        self._draw(at=place, text=text, color=color)
+
+    def _draw(self, color: Tuple[int, int, int], **what: Any) -> None:
+        if not self.draws:
+            raise AttributeError(f"robot {self.id!r} does not draw: its controller's <actuators> have no debug")
+        self._exchange.markers.append(v1.Marker(robot=self._position, color=number_of(color), **what))
 
     def log(self, text: str, error: bool = False) -> None:
         """Sends a line to the server's log with the command of this tick."""

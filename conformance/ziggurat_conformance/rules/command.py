@@ -13,6 +13,7 @@ LONGEST_RADIO_MESSAGE = 1 << 20  # [bytes]
 LONGEST_RADIO_MESSAGES = 16 << 20  # [bytes] of a robot at a tick
 MOST_RADIO_MESSAGES = 1 << 16  # of a robot at a tick
 _BRIGHTEST = 0xFFFFFF
+_LARGEST_MARKER, _LONGEST_MARKER = 1e6, 100  # [m], [bytes]
 _METRIC = re.compile("[A-Za-z0-9_.-]{1,64}")
 _MODES = (protocol.TURRET_PASSIVE, protocol.TURRET_POSITION, protocol.TURRET_SPEED)
 
@@ -55,7 +56,7 @@ def command_faults(robots: list, left: Collection[int], command: protocol.Comman
         spoken_for = [robots[position] for position in command.robots] or robots
         faults += [*_length_faults(spoken_for, command), *_radio_faults(robots, left, command),
                    *_limit_faults(spoken_for, command)]
-    return [*faults, *_value_faults(command), *log_faults(len(robots), command.log)]
+    return [*faults, *_value_faults(command), *_marker_faults(command), *log_faults(len(robots), command.log)]
 
 
 def leave_faults(count: int, left: Collection[int], leave: protocol.Leave) -> list:
@@ -112,6 +113,20 @@ def _limit_faults(spoken_for: list, command: protocol.Command) -> Iterator[Fault
     fields = [field for robot in spoken_for for field in _device_commands(robot)]
     if any(not field.least <= value <= field.most for field, value in zip(fields, command.device_commands)):
         yield Fault("D13", "a value of device_commands is beyond its limits", "BAD_VALUE", "device_commands")
+
+
+def _is_marker(marker: protocol.Marker) -> bool:
+    shapes = [len(marker.to) > 0, marker.radius != 0, marker.text != ""]
+    numbers = [*marker.at, *marker.to, marker.radius]
+    return (len(marker.at) == 3 and len(marker.to) in (0, 3) and sum(shapes) == 1 and marker.radius >= 0
+            and all(abs(number) <= _LARGEST_MARKER for number in numbers)
+            and len(marker.text.encode()) <= _LONGEST_MARKER and marker.color <= _BRIGHTEST)
+
+
+def _marker_faults(command: protocol.Command) -> Iterator[Fault]:
+    for marker in command.markers:
+        if not _is_marker(marker):
+            yield Fault("D14", "a marker has no place, shape or colour", "BAD_VALUE", "markers")
 
 
 def _value_faults(command: protocol.Command) -> Iterator[Fault]:

@@ -151,6 +151,7 @@ bool handle_command(Barrier& barrier, Session& session, world::Commands* command
   }
   if (session.pending_answer.is_resent) {
     wire::forget_radio_messages(session.roster, commands->radio_messages);
+    wire::forget_markers(session.roster, commands->markers);
   }
   barrier.inbox.apply(session.roster, *commands);
   barrier.inbox.append_log(session.roster, barrier.journal.log());

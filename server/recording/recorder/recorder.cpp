@@ -196,7 +196,8 @@ void Recorder::step(const world::Commands& commands, std::vector<world::Metric> 
         to.step(copied->commands);
         shared->give_back(std::move(*copied));
       },
-      sizeof(channels::TickCopy) + commands.radio_messages.bytes.size() + metrics_size,
+      sizeof(channels::TickCopy) + commands.radio_messages.bytes.size() +
+          commands.markers.size() * sizeof(world::Marker) + metrics_size,
       Task::Kind::step);
 }
 

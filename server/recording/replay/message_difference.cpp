@@ -120,6 +120,7 @@ void take_over(const v1::Commands& from, v1::Commands& held) {
   held.clear_radio_messages();
   held.clear_pushes();
   held.clear_floor_paints();
+  held.clear_markers();
   std::vector<const FieldDescriptor*> changed;
   from.GetReflection()->ListFields(from, &changed);
   for (const FieldDescriptor* field : changed) held.GetReflection()->ClearField(&held, field);

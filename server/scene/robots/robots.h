@@ -66,6 +66,11 @@ void equip(Entity& entity);
 Camera camera();
 }  // namespace builderbot
 
+/// A Khepera IV: a body on two wheels, infrared and ultrasound, ground sensors, LEDs.
+namespace khepera {
+void equip(Entity& entity);
+}
+
 /// A block of the construction kit: a cube with magnets, tags, radios and LEDs.
 namespace block {
 void equip(Entity& entity);

@@ -1,6 +1,7 @@
 #pragma once
 // A robot of a session.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -24,6 +25,8 @@
 #include "ziggurat/wheels.h"
 
 namespace ziggurat {
+
+class Markers;
 
 /// A handle into its session, valid while the session lives. Look up devices by id once, before
 /// the loop, and keep the references.
@@ -71,6 +74,20 @@ class Robot : public Sensors {
   std::span<Device> devices(std::string_view kind) noexcept;
   Device& device(std::string_view kind, std::string_view id);
 
+  /// Its controller has the actuator `debug`: it may draw markers for people, which pages and
+  /// recordings show for one tick.
+  bool draws() const noexcept { return markers_ != nullptr; }
+  static constexpr std::size_t max_markers = 1000;           ///< of a robot at one tick
+  static constexpr std::size_t max_marker_text_bytes = 100;  ///< at least 1
+  // Places are x, y, z in the frame of the robot's origin, each within ±1e6 [m]. Markers are sent
+  // with the answer to this tick.
+  // @throws std::logic_error if it does not draw; std::length_error beyond max_markers;
+  // std::invalid_argument if a place, a radius or a text is not as it must be
+  void draw_arrow(const std::array<double, 3>& from, const std::array<double, 3>& to, Color color);
+  /// @param radius  above 0 [m]; the ring lies in the xy plane
+  void draw_ring(const std::array<double, 3>& center, double radius, Color color);
+  void draw_text(const std::array<double, 3>& at, std::string_view text, Color color);
+
   /// Adds a line to the server's log, without a line feed at its end; sent with the answer to this
   /// tick. `log` goes to the server's standard output, `log_error` to its standard error.
   /// @throws std::length_error if the session logs more at one tick than a message can hold
@@ -112,6 +129,7 @@ class Robot : public Sensors {
         metrics;  // by position in the session and name
   };
   void add_line(Severity severity, std::string_view text);
+  Markers& markers();
 
   std::string id_;
   std::string controller_;
@@ -129,6 +147,7 @@ class Robot : public Sensors {
   std::optional<Turret> turret_;
   std::vector<DeviceKind> device_kinds_;
   std::vector<Device> devices_;
+  Markers* markers_ = nullptr;  // the session's
   std::uint32_t position_ = 0;  // in the session
   bool failed_ = false;
   bool is_gone_ = false;

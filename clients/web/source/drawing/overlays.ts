@@ -1,7 +1,7 @@
 // What devices do, as lines: magnets' moments, frusta, rays, radio messages, contact forces, trails.
 import * as three from "three";
-import type { Camera, Contacts, Link, Mount, Poses, RadioTraffic, Rays, World } from "../model/messages";
-import { compose, poseAt, transform, type Vector } from "../model/pose";
+import type { Camera, Contacts, Link, Marker, Mount, Poses, RadioTraffic, Rays, World } from "../model/messages";
+import { compose, poseAt, transform, type Pose, type Vector } from "../model/pose";
 import type { Lines } from "./lines";
 
 function at(poses: Poses, mount: Mount, offset: Vector = [0, 0, 0]): Vector {
@@ -91,6 +91,26 @@ export function drawRays(rays: Rays, isWanted: (robot: number) => boolean, lines
     if (!isWanted(rays.robots[i])) continue;
     const color = rays.hits[i] ? 0xe0402c : rayColors[rays.kinds[i]] ?? 0x888888;
     lines.add(rays.segments, rays.segments, color, 0.85, rays.hits[i] ? 0.85 : 0.25, 6 * i, 6 * i + 3);
+  }
+}
+
+/** Arrows and rings that robots drew. @param originOf  X_WE of a robot's origin */
+export function drawMarkers(markers: Marker[], originOf: (robot: number) => Pose | null, lines: Lines): void {
+  const pieces = 32;
+  for (const { robot, at, to, radius, color } of markers) {
+    const origin = originOf(robot);
+    if (!origin) continue;
+    const place = (x: number, y: number, z: number): Vector => transform(origin, [x, y, z]);
+    if (to.length === 3) {
+      const start = new three.Vector3(...place(at[0], at[1], at[2]));
+      const end = new three.Vector3(...place(to[0], to[1], to[2]));
+      if (start.distanceTo(end) > 1e-6) lines.arrow(start, end.sub(start), color);
+    }
+    const onRing = (i: number): Vector => {
+      const angle = 2 * Math.PI * i / pieces;
+      return place(at[0] + radius * Math.cos(angle), at[1] + radius * Math.sin(angle), at[2]);
+    };
+    if (radius > 0) for (let i = 0; i < pieces; ++i) lines.add(onRing(i), onRing(i + 1), color);
   }
 }
 

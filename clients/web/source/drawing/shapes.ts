@@ -114,7 +114,7 @@ function robotParts(entity: Entity, link: Link): Part[] {
     ];
   }
   if (entity.kind === Kind.kilobot) return [part("arrow", [0.5 * r, 0, h], [0.3 * r, 0.36 * r, 0.02 * h], dark)];
-  if (entity.kind !== Kind.ePuck && entity.kind !== Kind.piPuck) { // they fly
+  if (![Kind.ePuck, Kind.piPuck, Kind.khepera].includes(entity.kind)) { // they fly
     return [
       ...sides.flatMap((x) => sides.map((y) =>
         part("cylinder", [0.62 * x * r, 0.62 * y * r, h], [0.4 * r, 0.4 * r, 0.05 * h], grey))), // rotors

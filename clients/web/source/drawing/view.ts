@@ -10,8 +10,9 @@ import { Floor } from "./floor";
 import { arenaOf, boxOf, firstBox, Settling } from "./framing";
 import { Lights } from "./lights";
 import { Lines } from "./lines";
+import { Labels } from "./labels";
 import {
-  drawContacts, drawFrusta, drawMagnets, drawRays, drawRuler, drawSelection, drawTrail, RadioFlashes, typicalSize,
+  drawContacts, drawFrusta, drawMagnets, drawMarkers, drawRays, drawRuler, drawSelection, drawTrail, RadioFlashes, typicalSize,
 } from "./overlays";
 import { Shade } from "./shade";
 import { Stage } from "./stage";
@@ -66,6 +67,7 @@ export class View {
   private readonly lines = new Lines();
   private readonly inside = new Lines(true); // seen through bodies
   private readonly flashes = new RadioFlashes();
+  private readonly labels = new Labels(); // texts that robots drew
   private world: World | null = null;
   private frame: Frame | null = null;
   private readonly shade = new Shade();
@@ -95,7 +97,7 @@ export class View {
     this.bodies = new Bodies(this.stage.isSlow);
     this.hasFramed = keepsLook;
     this.stage.scene.add(this.floor.group, this.shade.mesh, this.bodies.group, this.tags.group, this.lights.group, this.lines.object,
-                         this.inside.object);
+                         this.inside.object, this.labels.group);
   }
 
   /** Forgets the world, before that of another source is shown. */
@@ -247,8 +249,14 @@ export class View {
       if (this.selected.length > 0) drawSelection(world, poses, this.selected, lines);
       if (this.shown.has("magnets")) drawMagnets(world, poses, this.arrow, inside);
       if (this.shown.has("frusta")) drawFrusta(world, poses, lines);
-      const rays = frame.messages.get("/rays");
-      if (rays && this.shown.has("rays")) drawRays(rays.read<Rays>(), (robot) => this.isShown(robot), lines);
+      const rays = this.shown.has("rays") ? frame.messages.get("/rays")?.read<Rays>() : undefined;
+      if (rays) drawRays(rays, (robot) => this.isShown(robot), lines);
+      const originOf = (robot: number): Pose | null => {
+        const entity = world.entities[world.robots[robot]?.entity];
+        return entity ? originIn(poses, entity) : null;
+      };
+      if (rays?.markers) drawMarkers(rays.markers, originOf, lines);
+      this.labels.show(rays?.markers ?? [], originOf);
       const contacts = frame.messages.get("/contacts");
       if (contacts && this.shown.has("contacts")) drawContacts(contacts.read<Contacts>(), this.reference, this.arrow, lines);
       const radio = frame.messages.get("/radio");
@@ -269,7 +277,7 @@ export class View {
   /** Draws the world without lines and decorations from another camera; pixels are linear light, rows from the bottom. */
   renderFrom(eye: three.PerspectiveCamera, target: three.WebGLRenderTarget, pixels: Uint8Array): void {
     const { renderer, scene } = this.stage;
-    const hidden = [this.lines.object, this.inside.object, this.bodies.decorations, this.stage.ground.marks];
+    const hidden = [this.lines.object, this.inside.object, this.labels.group, this.bodies.decorations, this.stage.ground.marks];
     for (const object of hidden) object.visible = false;
     if (this.poses) this.choose(this.poses, eye, target.height, true);
     renderer.setRenderTarget(target);

@@ -5,7 +5,7 @@ export type Floats = ArrayLike<number>;
 
 export enum Kind {
   unspecified, box, cylinder, sphere, prototype, footBot, ePuck, light, eyeBot, spiri, miniQuadrotor,
-  kilobot, piPuck, builderbot,
+  kilobot, piPuck, builderbot, khepera,
 }
 
 export interface Entity {
@@ -82,7 +82,12 @@ export interface Poses {
   floorPaints?: Floats;
 }
 
-export interface Rays { tick: number; kinds: Floats; robots: Floats; segments: Floats; hits: ArrayLike<boolean> }
+/** Drawn by a robot, in the frame of its origin: an arrow has `to`, a ring `radius`, a text `text`. */
+export interface Marker { robot: number; at: Floats; to: Floats; radius: number; text: string; color: number }
+export interface Rays {
+  tick: number; kinds: Floats; robots: Floats; segments: Floats; hits: ArrayLike<boolean>;
+  markers?: Marker[]; // since protocol 1.5
+}
 export interface Light { color: number; u: number; v: number }
 export interface SeenTag { tag: number; payload: Uint8Array; u: number; v: number; corners: Floats }
 export interface SeenByCamera { camera: number; leds: Light[]; directionalLeds: Light[]; tags: SeenTag[] }
@@ -132,5 +137,5 @@ export function isRobot(kind: Kind): boolean {
 /** Why an entity is a robot of its own look, and what to call it. */
 export function kindName(kind: Kind): string {
   return ["?", "box", "cylinder", "sphere", "prototype", "foot-bot", "e-puck", "light", "eye-bot", "spiri",
-    "mini-quadrotor", "kilobot", "pipuck", "builderbot"][kind] ?? "?";
+    "mini-quadrotor", "kilobot", "pipuck", "builderbot", "kheperaiv"][kind] ?? "?";
 }
