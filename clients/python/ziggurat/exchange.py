@@ -24,7 +24,7 @@ class Exchange:
         self.values: Dict[str, List[Any]] = defaultdict(list)
         self.data = bytearray()  # of all range-and-bearing actuators
         self.messages: List[Tuple[int, bytes]] = []
-        self.markers: List[v1.Marker] = []
+        self.markers: Dict[int, List[v1.Marker]] = defaultdict(list)  # by robot
         self.log: List[v1.LogLine] = []
         self.metrics = Metrics()
         self._places: Counter[str] = Counter()
@@ -136,7 +136,8 @@ class Exchange:
             command.range_and_bearing_data = bytes(self.data)
         for radio, payload in self.messages:
             command.radio_messages.add(radio=radio, payload=payload)
-        command.markers.extend(self.markers)
+        for markers in self.markers.values():
+            command.markers.extend(markers)
         command.log.extend(self.log)
         command.metrics.extend(self.metrics.take())
         return message

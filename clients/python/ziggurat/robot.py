@@ -12,6 +12,9 @@ from .devices.led import OFF, number_of
 from .exchange import Exchange
 from .named import Listed
 
+MOST_MARKERS = 1000  # of a robot at a tick
+MOST_MARKER_BYTES = 100  # of a text
+
 
 class Robot(Sensors):
     """It has the devices that the scene's controller enables. range_and_bearing, wheels and turret
@@ -70,7 +73,18 @@ class Robot(Sensors):
     def _draw(self, color: Tuple[int, int, int], **what: Any) -> None:
         if not self.draws:
             raise AttributeError(f"robot {self.id!r} does not draw: its controller's <actuators> have no debug")
-        self._exchange.markers.append(v1.Marker(robot=self._position, color=number_of(color), **what))
+        marker = v1.Marker(robot=self._position, color=number_of(color), **what)
+        if len(marker.at) != 3 or len(marker.to) != (3 if "to" in what else 0) \
+                or not all(abs(value) <= 1e6 for value in (*marker.at, *marker.to, marker.radius)):
+            raise ValueError("places of markers are x, y, z; they and a radius must lie within -1e6 and 1e6")
+        if not 0 < what.get("radius", 1):
+            raise ValueError("the radius of a ring must be above 0")
+        if not 0 < len(what.get("text", "-").encode()) <= MOST_MARKER_BYTES:
+            raise ValueError(f"the text of a marker must have 1 to {MOST_MARKER_BYTES} bytes")
+        drawn = self._exchange.markers[self._position]
+        if len(drawn) >= MOST_MARKERS:
+            raise ValueError(f"robot {self.id!r} draws more than {MOST_MARKERS} markers at this tick")
+        drawn.append(marker)
 
     def log(self, text: str, error: bool = False) -> None:
         """Sends a line to the server's log with the command of this tick."""

@@ -7,9 +7,11 @@ import { Bodies } from "../source/drawing/bodies";
 import { Detail, detailOf, isInside, ofProcessor, sizeOnScreen } from "../source/drawing/detail";
 import { boxOf, firstBox, lookAt, Settling, type Box } from "../source/drawing/framing";
 import { marksOf, stepOf } from "../source/drawing/ground";
+import { Lines } from "../source/drawing/lines";
+import { drawMarkers } from "../source/drawing/overlays";
 import { partsOf } from "../source/drawing/shapes";
 import type { Poses, World } from "../source/model/messages";
-import type { Vector } from "../source/model/pose";
+import type { Pose, Vector } from "../source/model/pose";
 
 const way: Vector = [0.55, -0.75, 0.62].map((value) => value / Math.hypot(0.55, 0.75, 0.62)) as Vector;
 
@@ -109,4 +111,22 @@ test("robots are coloured by model or controller, other things as in the scene",
   assert.deepEqual(colors("scene"), scene);
   assert.deepEqual(colors("model"), [scene[0], palette[0], palette[1], palette[1]]);
   assert.deepEqual(colors("controller"), [scene[0], palette[0], palette[1], palette[0]]);
+});
+
+test("markers are drawn in the frame of the robot's origin", () => {
+  const lines = new Lines();
+  const turned: Pose = { position: [1, 0, 0], orientation: [Math.SQRT1_2, 0, 0, Math.SQRT1_2] }; // a quarter, about z
+  const marker = { robot: 0, at: [0, 0, 0.5], to: [], radius: 0, text: "", color: 0xff0000 };
+  drawMarkers([{ ...marker, to: [2, 0, 0.5] }, { ...marker, radius: 2 }, { ...marker, text: "a label's" }, { ...marker, robot: 1, radius: 1 }],
+              (robot) => (robot === 0 ? turned : null), lines);
+  lines.commit();
+  const { geometry } = lines.object;
+  const points = geometry.getAttribute("position");
+  const near = (i: number, [x, y, z]: Vector): void => {
+    assert.ok(Math.hypot(points.getX(i) - x, points.getY(i) - y, points.getZ(i) - z) < 1e-5, `${i}`);
+  };
+  near(0, [1, 0, 0.5]);
+  near(1, [1, 2, 0.5]); // ahead of the robot is +y of the world
+  assert.equal(geometry.drawRange.count, 2 * (5 + 32));
+  for (let i = 10; i < 74; ++i) assert.ok(Math.abs(Math.hypot(points.getX(i) - 1, points.getY(i)) - 2) < 1e-5, "on the ring");
 });

@@ -1,8 +1,6 @@
-// The Khepera IV. Diameter, height, mass and distance of the wheels, the number of its sensors and
-// the reach of infrared and ultrasound: K-Team, "Khepera IV User Manual" (its specifications):
-// 140.8 mm, 58 mm, 540 g, 105.4 mm, 8 infrared around to 25 cm, 4 below, 5 ultrasound from 20 cm to
-// 2 m, 3 LEDs of any colour. Infrared looks out each 45 degrees, ultrasound ahead, half and wholly
-// aside, as in its figures. Heights, places below and of LEDs, and forces are ours.
+// The Khepera IV. Sizes, mass and counts are those of K-Team's "Khepera IV User Manual". Infrared
+// looks out each 45 degrees, counter-clockwise from ahead, as "Buzz on the Khepera IV" says.
+// Bearings of ultrasound, heights, places below and of LEDs, and forces are ours.
 
 #include <array>
 #include <cmath>
@@ -25,7 +23,7 @@ constexpr Traction traction{5.4, 54};  // [N], [N m]
 constexpr unsigned infrared_sensors = 8;
 constexpr double infrared_height = 0.03, infrared_range = 0.25;  // [m]
 
-/// From left to right [degrees].
+/// Ours, from left to right [degrees].
 constexpr std::array<double, 5> ultrasound_bearings{90, 45, 0, -45, -90};
 constexpr double ultrasound_height = 0.04, nearest = 0.2, farthest = 2;  // [m]
 

@@ -172,9 +172,9 @@ constexpr Row controller_rows[] = {
     {"Actuator_among_sensors", Part::controllers,
      R"(<controllers><lua_controller id="c"><sensors><quadrotor_speed implementation="default"/></sensors></lua_controller></controllers>)",
      "<quadrotor_speed> can't stand in <sensors>; write it into <actuators>"},
-    {"Device_of_kheperas", Part::controllers,
-     R"(<controllers><lua_controller id="c"><sensors><kheperaiv_light implementation="rot_z_only"/></sensors></lua_controller></controllers>)",
-     "<kheperaiv_light> is a device of the kheperaiv, which is not modelled here; remove it, or "
+    {"Device_of_thymios", Part::controllers,
+     R"(<controllers><lua_controller id="c"><sensors><thymio_light implementation="rot_z_only"/></sensors></lua_controller></controllers>)",
+     "<thymio_light> is a device of the thymio, which is not modelled here; remove it, or "
      "write <light>"},
     {"Device_of_drones", Part::controllers,
      R"(<controllers><lua_controller id="c"><actuators><drone_flight_system implementation="default"/></actuators></lua_controller></controllers>)",

@@ -104,6 +104,7 @@ export class View {
   forget(): void {
     this.world = this.frame = this.poses = null;
     this.trails.clear();
+    this.labels.show([], () => null);
     this.motion.forget();
     this.settling = new Settling();
     this.flashed = -1;
