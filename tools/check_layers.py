@@ -58,6 +58,7 @@ MODULES = {
             "simulation", "physics", "magnetism", "scene", "text", "clients/cpp"],
     "clients/cpp": ["protocol", "text"],
     "clients/lua": ["text", "clients/cpp"],
+    "clients/templates": ["clients/cpp"],
 }
 
 # library -> (pattern of its headers, modules that may include them). Libraries that are not here,

@@ -16,7 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 LICENCE = "SPDX-License-Identifier: MIT"
 COMMENTS = {".cpp": "//", ".h": "//", ".inl": "//", ".ts": "//", ".mjs": "//", ".proto": "//", ".css": "/*",
             ".py": "#", ".pyi": "#", ".sh": "#", ".cmake": "#", ".lua": "--", ".map": "#"}
-WITHOUT = ("templates/", "docs/", "scenes/", "tests/recording/data/", "tests/fuzz/data/", "clients/web/node_modules/")
+WITHOUT = ("clients/templates/", "docs/", "scenes/", "tests/recording/data/", "tests/fuzz/data/", "clients/web/node_modules/")
 
 
 def comment_of(path):
