@@ -22,7 +22,7 @@ constexpr world::DeviceKind ultrasound{.name = "kheperaiv_ultrasound",
 /// Settings of a place: the range, and the least distance that is told, if that is not 0 [m].
 class Rangefinders final : public Described {
  public:
-  using Described::Described;
+  explicit Rangefinders(const world::DeviceKind& kind) : Described(kind) {}
   std::unique_ptr<Kind> clone() const override { return std::make_unique<Rangefinders>(*this); }
 
   bool casts_rays() const override { return !robots().empty(); }

@@ -13,9 +13,9 @@
 namespace ziggurat::wire {
 namespace {
 
-constexpr const char* field = "markers";
+constexpr const char* markers_field = "markers";
 
-math::Vector3 vector_of(const google::protobuf::RepeatedField<double>& values) {
+math::Vector3 place_of(const google::protobuf::RepeatedField<double>& values) {
   return {values[0], values[1], values[2]};
 }
 
@@ -28,8 +28,8 @@ std::optional<world::Marker> read(const v1::Marker& from) {
   if (is_arrow && from.to_size() != 3) return std::nullopt;
   world::Marker marker;
   marker.shape = is_arrow ? Shape::arrow : is_ring ? Shape::ring : Shape::text;
-  marker.at = vector_of(from.at());
-  if (is_arrow) marker.to = vector_of(from.to());
+  marker.at = place_of(from.at());
+  if (is_arrow) marker.to = place_of(from.to());
   marker.radius = from.radius();
   marker.color = from.color();
   marker.text = from.text();
@@ -38,23 +38,23 @@ std::optional<world::Marker> read(const v1::Marker& from) {
 
 std::optional<Fault> check(const v1::Marker& marker, const Roster& roster,
                            const world::Layout& layout, const std::vector<bool>& named) {
-  if (auto found = check_position(marker.robot(), roster, field)) return found;
+  if (auto found = check_position(marker.robot(), roster, markers_field)) return found;
   const world::RobotLayout& robot = layout.robots[roster.robots[marker.robot()]];
   if (!named.empty() && !named[marker.robot()]) {
     return make_fault(
-        ErrorCode::not_yours, field,
+        ErrorCode::not_yours, markers_field,
         fmt::format("The marker of robot '{}', which this command does not speak for.", robot.id),
         robot.id);
   }
   if (!robot.draws_markers) {
     return make_fault(
-        ErrorCode::unknown_device, field,
+        ErrorCode::unknown_device, markers_field,
         fmt::format("Robot '{}' can't draw: its controller has no actuator 'debug'.", robot.id),
         robot.id);
   }
   const auto read_marker = read(marker);
   if (read_marker && is_valid(*read_marker)) return std::nullopt;
-  return make_fault(ErrorCode::bad_value, field,
+  return make_fault(ErrorCode::bad_value, markers_field,
                     fmt::format("A marker of robot '{}' must have `at` of three numbers from -1e6 "
                                 "to 1e6, a color up to 0xFFFFFF, and one of: `to` of three such "
                                 "numbers, a radius above 0, a text of 1 to {} bytes.",
@@ -86,7 +86,7 @@ std::optional<Fault> check_markers(const v1::Command& command, const Roster& ros
     if (auto found = check(marker, roster, layout, named)) return found;
     if (++counts[marker.robot()] <= world::most_markers_per_robot) continue;
     const std::string& robot = layout.robots[roster.robots[marker.robot()]].id;
-    return make_fault(ErrorCode::too_many, field,
+    return make_fault(ErrorCode::too_many, markers_field,
                       fmt::format("Robot '{}' draws more than {} markers at this tick.", robot,
                                   world::most_markers_per_robot),
                       robot);
