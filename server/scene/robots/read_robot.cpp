@@ -97,7 +97,7 @@ struct Robot {
   void (*read)(Element& element, Entity& entity);  ///< what only this robot's element may have
 };
 
-constexpr std::array<Robot, 10> robots{{
+constexpr auto robots = std::to_array<Robot>({
     {EntityKind::foot_bot, foot_bot::equip, read_foot_bot},
     {EntityKind::e_puck, e_puck::equip, ignore_blob_cameras},
     {EntityKind::eye_bot, flying::equip_eye_bot, read_eye_bot_camera},
@@ -107,7 +107,7 @@ constexpr std::array<Robot, 10> robots{{
     {EntityKind::builderbot, builderbot::equip, read_wifi},
     {EntityKind::khepera, khepera::equip, read_nothing},
     {EntityKind::mini_quadrotor, flying::equip_mini_quadrotor, read_nothing},
-}};
+});
 
 /// Puts devices on the first medium of their type. Where there is none nothing perceives them, and
 /// they are left out.
