@@ -13,7 +13,8 @@ struct LuaMarkers : Devices {
   /// Each as "at > to" or "at o radius" or "at text", and its colour.
   std::vector<std::string> drawn() {
     std::vector<std::string> drawn;
-    for (const v1::Marker& marker : command().markers()) {
+    const v1::Command sent = command();
+    for (const v1::Marker& marker : sent.markers()) {
       const auto place = [](const auto& values) {
         std::string text;
         for (const double value : values) {
