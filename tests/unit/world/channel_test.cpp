@@ -43,8 +43,8 @@ TEST(Table, FindsTheRowOfAField) {
 TEST(Table, TellsChannelsFromFieldsHandledByHand) {
   std::vector<std::string> names;
   for_each_channel(commanded, [&](auto i) { names.emplace_back(std::get<i>(commanded).name); });
-  EXPECT_EQ(names.size() + 3, std::tuple_size_v<decltype(commanded)>)
-      << "all but radio messages, pushes and paints";
+  EXPECT_EQ(names.size() + 4, std::tuple_size_v<decltype(commanded)>)
+      << "all but radio messages, pushes, paints and markers";
   EXPECT_EQ(names.front(), "joint_targets");
 }
 
