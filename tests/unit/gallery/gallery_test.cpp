@@ -127,8 +127,9 @@ TEST_F(GalleryTest, ARunThatEndsIsTold) {
   EXPECT_NE(told.find("The run of a ended with exit code 3"), std::string::npos) << told;
 }
 
-/// A program that writes its arguments, and waits until it is ended.
-constexpr const char* waiting = "echo \"$@\" >>\"$(dirname \"$0\")/told\"; exec sleep 100";
+/// A program whose runs write their arguments, and wait until they are ended; it draws no pictures.
+constexpr const char* waiting =
+    "[ \"$1\" = run ] || exit 1; echo \"$@\" >>\"$(dirname \"$0\")/told\"; exec sleep 100";
 
 TEST_F(GalleryTest, ARunTakesThePlaceOfTheOneBefore) {
   write_program(waiting);
