@@ -32,7 +32,7 @@ if (isTests) {
     logLevel: "warning",
   });
 } else {
-  for (const name of await readdir(folder)) if (/^page[-.\w]*\.(js|css)(\.gz)?$/.test(name)) await rm(join(folder, name));
+  for (const name of await readdir(folder)) if (/^(page|worker)[-.\w]*\.(js|css)(\.gz)?$/.test(name)) await rm(join(folder, name));
   const { metafile } = await build({
     entryPoints: [join(here, "source/page.ts"), join(here, "source/worker.ts"), join(here, "source/page.css")],
     outdir: folder,
@@ -47,8 +47,8 @@ if (isTests) {
   });
   await writeFile(join(folder, "licences.txt"), await licencesOf(metafile));
   const names = Object.keys(metafile.outputs).map((path) => basename(path));
-  const [script, style] = [".js", ".css"].map((ending) => names.find((name) => name.endsWith(ending)));
-  await writeFile(join(folder, "index.html"), await makePage(script, style));
+  const [script, worker, style] = [/^page.*\.js$/, /^worker/, /\.css$/].map((form) => names.find((name) => form.test(name)));
+  await writeFile(join(folder, "index.html"), await makePage(script, worker, style));
   for (const name of ["index.html", script, style]) {
     await writeFile(join(folder, `${name}.gz`), gzipSync(await readFile(join(folder, name)), { level: 9 }));
   }
@@ -61,8 +61,9 @@ function replaced(text, from, to) {
 }
 
 /** The page with the names of its files. */
-async function makePage(script, style) {
-  const page = replaced(await readFile(join(here, "source/index.html"), "utf8"), /(?<=href=")page\.css/, style);
+async function makePage(script, worker, style) {
+  let page = replaced(await readFile(join(here, "source/index.html"), "utf8"), /(?<=href=")page\.css/, style);
+  page = replaced(page, /(?<=data-worker=")worker\.js/, worker);
   return replaced(page, /(?<=src=")page\.js/, script);
 }
 

@@ -85,9 +85,10 @@ export class Decoding {
 
 /** The page's worker, if it has one: a page in one file has not. */
 export function pageWorker(): Port | null {
-  if (location.protocol === "file:" || typeof Worker === "undefined") return null;
+  const name = document.querySelector<HTMLElement>("script[data-worker]")?.dataset.worker;
+  if (!name || location.protocol === "file:" || typeof Worker === "undefined") return null;
   try {
-    return new Worker(new URL("worker.js", location.href));
+    return new Worker(new URL(name, location.href));
   } catch {
     return null;
   }
