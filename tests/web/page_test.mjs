@@ -285,6 +285,7 @@ pageTest("a tag's pattern is found by libapriltag", tags, "eye=0,-0.001,0.4&at=0
 
 pageTest("a block is dragged in the server, what is spawned comes, what is removed goes", tags, fromTop, async (page) => {
   const start = await placeOf(page, "near");
+  await page.locator("#tool-move").waitFor(); // it comes with the right to control
   await key(page, "m");
   const from = await onScreen(page, [start[0], start[1], start[2] + 0.1]);
   const to = await onScreen(page, [start[0], start[1] - 0.2, start[2] + 0.1]);
