@@ -14,7 +14,7 @@
 
 #include "cli/atomic_file.h"
 #include "recording/mcap/repair.h"
-#include "text/printable.h"
+#include "text/quoting.h"
 
 namespace ziggurat::cli {
 namespace {
@@ -35,18 +35,6 @@ std::ifstream open(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) fail(fmt::format("{} can't be read: {}", path, std::strerror(errno)));
   return file;
-}
-
-std::string escaped(std::string_view text) {
-  std::string all;
-  for (const char letter : text::printable(text)) {
-    if (std::string_view("&<>\"'").find(letter) == std::string_view::npos) {
-      all += letter;
-    } else {
-      all += fmt::format("&#{};", static_cast<int>(letter));
-    }
-  }
-  return all;
 }
 
 /// The page around the recording.
@@ -100,7 +88,7 @@ std::uint64_t write_page(const Template& page, const std::string& name, std::str
   write(
       fmt::format("<template id=\"recording\" data-name=\"{}\" data-size=\"{}\" data-part=\"{}\">"
                   "</template>\n",
-                  escaped(name), recording.size(), part_size));
+                  text::html_text(name), recording.size(), part_size));
   for (std::size_t at = 0, number = 0; at < recording.size(); at += part_size, ++number) {
     write(fmt::format("<script type=\"application/octet-stream\" id=\"part{}\">{}</script>\n",
                       number, to_base64(recording.substr(at, part_size))));

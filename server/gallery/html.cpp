@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "text/printable.h"
+#include "text/quoting.h"
 
 namespace ziggurat::gallery {
 namespace {
@@ -47,27 +47,15 @@ std::string picture_of(std::size_t number, Picture picture, const std::string& p
 
 }  // namespace
 
-std::string escaped(std::string_view text) {
-  std::string all;
-  for (const char letter : text::printable(text)) {
-    if (std::string_view("&<>\"'").find(letter) == std::string_view::npos) {
-      all += letter;
-    } else {
-      all += fmt::format("&#{};", static_cast<int>(letter));
-    }
-  }
-  return all;
-}
-
 std::string gallery_page(const std::string& folder, const std::vector<Scene>& scenes,
                          const std::vector<Picture>& pictures, const std::string& path) {
-  const std::string title = escaped(folder);
+  const std::string title = text::html_text(folder);
   std::string body = fmt::format("<h1>Scenes of {}</h1>\n<main>\n", title);
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     body += fmt::format(
         "<article>{}<h2>{}</h2><p>{}</p><a class=\"run\" href=\"{}run/{}\">Run</a></article>\n",
-        picture_of(i, pictures[i], path), escaped(scenes[i].name), escaped(scenes[i].sentence),
-        path, i);
+        picture_of(i, pictures[i], path), text::html_text(scenes[i].name),
+        text::html_text(scenes[i].sentence), path, i);
   }
   const bool waits = std::ranges::find(pictures, Picture::awaited) != pictures.end();
   return page(title, body + "</main>\n", waits ? 3 : 0);
@@ -76,7 +64,7 @@ std::string gallery_page(const std::string& folder, const std::vector<Scene>& sc
 std::string notice_page(const std::string& sentence, const std::string& path, bool again) {
   return page("Ziggurat",
               fmt::format("<p>{}</p>\n<a class=\"run\" href=\"{}\">All scenes</a>\n",
-                          escaped(sentence), path),
+                          text::html_text(sentence), path),
               again ? 1 : 0);
 }
 

@@ -11,9 +11,6 @@ namespace ziggurat::gallery {
 
 enum class Picture { awaited, there, missing };
 
-/// A text between tags or in an attribute.
-std::string escaped(std::string_view text);
-
 /// A card for each scene. It comes again by itself as long as a picture is awaited.
 /// @param pictures  as many as scenes
 /// @param path      of the gallery, as `/TOKEN/`

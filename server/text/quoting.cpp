@@ -1,9 +1,13 @@
 #include "text/quoting.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <system_error>
+
+#include "text/printable.h"
 
 namespace ziggurat::text {
 namespace {
@@ -58,6 +62,18 @@ std::string csv_field(const std::string& unsafe) {
     result += c;
   }
   return result + '"';
+}
+
+std::string html_text(std::string_view text) {
+  std::string all;
+  for (const char letter : printable(text)) {
+    if (std::string_view("&<>\"'").find(letter) == std::string_view::npos) {
+      all += letter;
+    } else {
+      all += fmt::format("&#{};", static_cast<int>(letter));
+    }
+  }
+  return all;
 }
 
 }  // namespace ziggurat::text

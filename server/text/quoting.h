@@ -1,5 +1,5 @@
 #pragma once
-// Texts as other programs read them: words of a shell, fields of CSV.
+// Texts as other programs read them: words of a shell, fields of CSV, texts of HTML.
 
 #include <string>
 #include <string_view>
@@ -16,5 +16,8 @@ std::string shell_word(std::string_view word);
 /// would compute as a formula stands an apostrophe: one that begins with = + - @, a tab or the end
 /// of a line, other than numbers.
 std::string csv_field(const std::string& text);
+
+/// A printable text between tags of HTML, or in an attribute.
+std::string html_text(std::string_view text);
 
 }  // namespace ziggurat::text

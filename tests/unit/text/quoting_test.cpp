@@ -42,5 +42,10 @@ TEST(CsvField, NumbersStayNumbers) {
   EXPECT_EQ(csv_field("-20:40"), "-20:40");
 }
 
+TEST(HtmlText, HasNoTagAndNoEndOfAnAttribute) {
+  EXPECT_EQ(html_text("a<b> & \"c\" 'd'"), "a&#60;b&#62; &#38; &#34;c&#34; &#39;d&#39;");
+  EXPECT_EQ(html_text("\x1b[1m"), "\\u001b[1m");
+}
+
 }  // namespace
 }  // namespace ziggurat::text
