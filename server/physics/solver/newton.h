@@ -5,7 +5,7 @@
 // - the augmented Lagrangian about the last impulses (R. T. Rockafellar, Math. Oper. Res. 1, 1976):
 //   for larger islands at rest; for small ones with a line search, after a continuation or after
 //   passes;
-// - the interior point method, for larger islands with impacts;
+// - the interior point method, for larger islands that neither of these nor passes solve;
 // - Gauss-Seidel passes alone, for heaps that move, and where a factorisation costs too much: heaps
 //   of hundreds.
 // All but the last factor one matrix along the contact graph.

@@ -1,4 +1,4 @@
-// How much of a link is drawn: all of its parts, its round shapes with few sides, or a box, by its size on the screen.
+// Detail of a link by its size on the screen: all of its parts, its round shapes with few sides, or a box.
 
 export const enum Detail { box, plain, whole, none = 255 }
 

@@ -1,4 +1,4 @@
-// Where the camera stands so that it shows a box, and which box that is.
+// Framing: the box that is shown at first, and the place of the camera from which it is seen whole.
 import type { Poses, World } from "../model/messages";
 import { halfExtents, place, packed, rotate, type Quaternion, type Vector } from "../model/pose";
 import { boundsOf, partsOf } from "./shapes";

@@ -128,7 +128,7 @@ export class Stage {
 
   setWorld(world: World): void {
     this.world = world;
-    // What a matt surface that faces up looks like in the light of sun and sky.
+    // Colour of a matt surface that faces up, in the light of sun and sky.
     const litFromAbove = (this.sun.intensity * sunDirection.z + this.skyLight.intensity) / Math.PI;
     this.ground.setWorld(world, themes[this.theme], litFromAbove);
     this.castShadows();

@@ -1,4 +1,4 @@
-// What can be plotted, and what is, for the panel and for files.
+// Series that can be plotted, and those that are, for the panel and for files.
 import { metricsTopic } from "../model/metrics";
 import { plottable, Series } from "../model/series";
 import { beginning } from "../model/texts";

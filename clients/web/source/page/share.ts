@@ -1,4 +1,4 @@
-// What one sees, for others: a picture, a film, a link to the moment.
+// Sharing of what one sees: a picture, a film, a link to the moment.
 import { toAddress } from "../model/settings";
 import type { App } from "./app";
 import { titleOf } from "./plotted";

@@ -1,4 +1,4 @@
-// What stands over the picture: names of what is selected or searched, the ruler's length, the place under the pointer, and
+// Overlay of the picture: names of what is selected or searched, the ruler's length, the place under the pointer, and
 // a compass that shows how the world's axes lie.
 import { axisColors } from "../drawing/ground";
 import type { Vector } from "../model/pose";
