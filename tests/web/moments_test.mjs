@@ -109,7 +109,11 @@ test("a running world is shown at a tick as soon as it comes; metrics are plotte
     const page = await openPage(browser, run.address, `tick=40&tab=plots&plot=${encodeURIComponent("/metrics:large/ticks")}`, { width: 390, height: 844 });
     await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
     // A page that draws slowly is sent fewer ticks: time stands at the newest of them, up to that of the address.
-    await waitFor(() => page.evaluate(() => window.ziggurat.app.pinned !== null), "time that stands");
+    // What is shown follows it at the next redraw.
+    await waitFor(() => page.evaluate(() => {
+      const { pinned, timeline, frame } = window.ziggurat.app;
+      return pinned !== null && frame.tick === timeline.tickOf(pinned);
+    }), "time that stands");
     const stands = await shownTick(page);
     const next = await page.evaluate(() => window.ziggurat.app.timeline.tickOf(window.ziggurat.app.pinned + 1));
     assert.ok(stands <= 40 && next > 40, `${stands}, then ${next}`);
