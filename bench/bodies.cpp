@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Substeps of bodies that fall, in one of two worlds:
 //
 //   ours     physics::World, its state read once per tick of 20 substeps

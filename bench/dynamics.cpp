@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Cost of a substep of the equations of motion and the contact solver, without collision
 // detection: two-wheeled robots that drive, boxes at rest, towers.
 //

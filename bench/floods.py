@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What floods by unknown peers take from four Lua controllers: ticks per second under each flood, in percent of
 those just before and just after it, in the mean of many short turns and with the standard error of that mean.
 

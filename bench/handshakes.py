@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """How long a new client waits for its session at a protected server while others open connections, begin handshakes and hold them.
 
     PYTHONPATH=build/release/python:tests/scenes/disturbances:bench python3 bench/handshakes.py build/release/bin/ziggurat

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Magnetism: the neighbour list and its kernels compared with simple loops, all with the project's
 // release flags. Blocks of eight dipoles on a 60 mm lattice; each block moves on a circle at 5 cm/s
 // with its own phase, in 10 ms substeps, so that lists are rebuilt as in a real run. Every variant

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Accuracy of the adaptive magnets: worst errors over gaps from 5 % of the magnet's size to twenty
 // sizes and over random poses, relative to a fine integration over pole charges (which the unit
 // tests compare with Akoun and Yonnet and with the axial integral for cylinders). Torque errors are

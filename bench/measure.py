@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Measurements of the rows of bench/run: functions that return a figure, or one and its yardstick's."""
 
 import json

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Time of a picture: a hundred boxes with a tag and an LED each, on a floor, with shadows. Measures
 // the processor time of all threads, which other programs affect little, and wall time.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A plot of bench/run, by the plotter of `ziggurat sweep`.
 //
 // usage: bench_plot < plot.json > plot.svg

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """What a recording costs: time of a tick with and without it, by turns; bytes per simulated minute; time of a seek.
 
 usage: recording.py BIN [SCENE] [--ticks N] [--turns N] [--compression zstd|lz4|none]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The rows of bench/run: what is measured, beside which yardstick. A benchmark is added by a line here."""
 
 from typing import Callable, NamedTuple, Optional

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Scenes that the benchmarks run, as trees of XML elements."""
 
 import copy

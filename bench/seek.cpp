@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Time to open a recording and to read the poses at a moment, the exact state included: bench_seek
 // FILE.mcap [TIMES]
 

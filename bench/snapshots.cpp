@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Cost of a snapshot and of a restore. Thread CPU time, medians of 21.
 //
 // usage: bench_snapshots TICK SCENE...

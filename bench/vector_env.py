@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Steps per second of vector_env: 1, 2, 4, 8 worlds of a foot-bot and of the construction robot.
 
 usage: PYTHONPATH=build/…/python vector_env.py ZIGGURAT [--seconds S] [--scene NAME] [--worlds N]

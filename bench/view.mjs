@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What viewers cost: CPU time of the run's thread per tick without and with one that subscribes to what
 // the page does, and memory of ten that never read. In one run a viewer subscribes and unsubscribes by turns of some
 // seconds, so that what else the machine does falls on both kinds, and each turn is compared with its neighbours.

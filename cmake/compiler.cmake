@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Flags that every target shares. Bit-identical results are part of the product:
 # no fast-math, no fused multiply-add contraction, the baseline instruction set.
 set(CMAKE_CXX_STANDARD 20)

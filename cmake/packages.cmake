@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Everything comes from Debian 12 packages; docs/packages.md names each with its reason.
 find_package(PkgConfig REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)

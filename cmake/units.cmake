@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Most of the time of most sources is headers: with ZIGGURAT_UNIT_SIZE that many sources of a target are compiled as one,
 # a unit, which takes less than half of it. So a name in an anonymous namespace is not that of another one in
 # the same target. CMake's own unity builds name sources by absolute paths: a compiler cache knows those in one folder only.

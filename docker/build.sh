@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
 # Builds the images ziggurat-server, ziggurat-controller and ziggurat-dev, and tells their sizes.
 #
 # usage: docker/build.sh [--engine docker|podman|buildah] [--base IMAGE] [server|controller|dev]...

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """How tests in Python wait: for an event. The limit only bounds a hang, on a busy machine too."""
 
 import pathlib

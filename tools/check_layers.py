@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Compares every #include in server/, clients/ and protocol/ with the table of allowed dependencies.
 
 usage: check_layers.py [ROOT]     ROOT is the top of the checkout (default: this file's)

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Checks that vectors, quaternions and matrices in our headers have an initial value, and in scenes numbers, too.
 
 usage: check_members.py [ROOT]     ROOT is the top of the checkout (default: this file's)

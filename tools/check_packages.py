@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Compares the package lists, which quickstart installs, with docs/packages.md, which gives the reasons.
 
 usage: check_packages.py     exit code 1 if a package is in one of them only

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Checks that each row of the tables of docs/security.md names a test, and that each named test exists.
 
 usage: check_security.py [ROOT]     ROOT is the top of the checkout (default: this file's)

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Finds functions that are too long, and classes with too many data members or friends, in server/.
 
 usage: check_sizes.py [ROOT]     ROOT is the top of the checkout (default: this file's)

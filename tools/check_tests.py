@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Finds tests that no run has: neither ./quickstart test nor ./quickstart test-all.
 
 usage: check_tests.py [ROOT]     ROOT is the top of the checkout (default: this file's)

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Finds words that make our texts hard to read for people in a hurry.
 
 usage: check_words.py [ROOT]     ROOT is the top of the checkout (default: this file's)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Which checkout a check of this folder looks at."""
 
 import pathlib

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Writes docs/scene-reference.md and docs/command-line.md, both from what the program says of itself.
 
 usage: make_reference.py PROGRAM            writes the pages; PROGRAM is ziggurat

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Writes server/render/tag36h11.cpp from Debian's libapriltag.
 
 usage: tools/make_tag36h11.py > server/render/tag36h11.cpp

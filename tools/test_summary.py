@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """What ctest's last run was: each case that failed, with the command that runs it alone, and a line of totals.
 
 usage: test_summary.py BUILD      the folder of the build, after ctest --output-junit BUILD/tests.xml

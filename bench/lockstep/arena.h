@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Two ways to run the same lock-step ticks with messages of the same sizes: with our server, and
 // with bare ZeroMQ. Each owns its controller processes.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // ROUTER/DEALER with the same order of work as our server: send to all peers, then receive all
 // answers.
 

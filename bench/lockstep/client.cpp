@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One controller process of the lock-step benchmark.
 //
 // usage: bench_lockstep_client ziggurat ENDPOINT ROBOTS [SERVER_KEY SECRET_FILE]

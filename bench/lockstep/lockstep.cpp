@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Time of a lock-step tick compared with bare ZeroMQ with the same message sizes and processes.
 //
 // usage: bench_lockstep [PAIRS [TRANSPORT]]     9 pairs over ipc by default

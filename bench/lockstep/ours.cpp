@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Our server with a world without physics.
 
 #include <unistd.h>

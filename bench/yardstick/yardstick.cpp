@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Our errors and those of MuJoCo against closed forms, and what a substep costs in each.
 //
 // usage: bench_yardstick          errors, a table per check

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # find_package(ziggurat) -> ziggurat::client, the shared library, and ziggurat::client_static, which takes what it uses along.
 include(CMakeFindDependencyMacro)
 find_dependency(Protobuf)

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """A complete controller with only a ZeroMQ binding: it uses the JSON form of the protocol.
 
 It sets every velocity motor to 1 rad/s (or 1 m/s) and logs the first encoder. If its connection is lost, it

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Makes ziggurat/protocol_pb2.py from the protocol's .proto while the package is built. A source package has the .proto."""
 
 import pathlib

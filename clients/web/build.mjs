@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bundles the page, or its unit tests.
 //
 // usage: node build.mjs FOLDER          the page: index.html, page-HASH.js, page-HASH.css, each in gzip, too; and player.html, the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Bundles the page, if its packages are there.
 if(NOT EXISTS ${PACKAGES})
   return()

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Installs what package-lock.json names. Without the registry and a cache the build goes on without it.
 execute_process(
   COMMAND ${NPM} ci --ignore-scripts --prefer-offline --no-audit --no-fund --loglevel=error

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Runs the unit tests, which decode messages by the real schemas.
 file(MAKE_DIRECTORY ${FOLDER})
 function(run)

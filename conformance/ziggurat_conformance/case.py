@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a case is, and its outcome."""
 
 import enum

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Legal but unpleasant behaviour, drawn from a seed: resend, hang up and resume, share robots anew,
 answer in any order. The world must tick on, and well-behaved sessions must not notice."""
 

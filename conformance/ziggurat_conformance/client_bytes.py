@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a client sends: bytes that must be a ClientMessage."""
 
 from . import wire

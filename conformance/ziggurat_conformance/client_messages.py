@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Steps that cases for clients use often."""
 
 from .client_steps import HearFrom, Tell, TellObservation, TellWelcome

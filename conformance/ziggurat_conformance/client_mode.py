@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Plays cases against a controller program, and judges."""
 
 from typing import Callable

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The controller program under test, as a process."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Robots that the kit plays to a client, and what they read."""
 
 from typing import Iterable

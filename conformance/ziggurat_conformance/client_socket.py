@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The server's socket in client mode."""
 
 import math

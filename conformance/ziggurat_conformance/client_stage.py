@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Where cases for clients are played: a server's socket, and a controller program that connects to it."""
 
 import time

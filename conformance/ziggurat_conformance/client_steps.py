@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Steps of cases that play a server against a controller program: plain data. client_stage.py plays them."""
 
 from dataclasses import dataclass, field

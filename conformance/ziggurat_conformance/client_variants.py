@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a case's variant puts around a controller program: keys, a socket, an environment."""
 
 from typing import Optional, Union

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Ctrl-C, SIGTERM and SIGHUP end the kit as exceptions, but not while a program is started or ended."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Keys of a server under test and of peers that it knows, or does not: the variant "curve"."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Messages as dicts, and steps that cases use often."""
 
 from .steps import Hear, Join, Send, Tick

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What is written to: reports, checked before the first case is played, so that no run is lost; stdout and stderr."""
 
 import errno

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """One connection to the server under test."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Texts of programs under test, for terminals and reports."""
 
 import unicodedata

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A program under test with all that it starts: a session of processes of its own, which ends as a whole."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a program prints, read as it comes: its beginning and its end are kept."""
 
 import collections

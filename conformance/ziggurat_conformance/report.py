@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What came out: on the terminal, as JUnit XML, as JSON, as a page."""
 
 import collections

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The robots of a scene that the user names, as a server describes them, to be played to a client."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Plays cases against a server, and judges."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The server under test, as a process that cases may restart."""
 
 import random

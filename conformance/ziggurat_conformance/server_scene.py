@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The scenes that servers under test load."""
 
 from pathlib import Path

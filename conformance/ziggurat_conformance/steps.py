@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Steps that cases are made of: plain data, and one engine that plays them.
 
 Values in messages may be Tick(), Token(peer) or Text(…): they are filled in when the step is played.

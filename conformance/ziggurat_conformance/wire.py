@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Messages as bytes, in both forms, and patterns that messages are held against."""
 
 import json

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Explains a recorded message byte by byte: explain.py FILE.bin…, with the Python client on
 PYTHONPATH. explain.py --document docs/protocol.md says whether the explanations there are still
 what it would print; with --update it writes them.

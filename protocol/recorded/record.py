@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Records messages of the protocol: record.py FOLDER, with the Python client on PYTHONPATH.
 
 Files that exist stay as they are: a message that was released never changes. A message that is the same

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "zmtp/frame.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // ZMTP, ZeroMQ's wire protocol (RFC 37), as a server needs it: a greeting of 64 bytes, then frames:
 // a byte of flags, the size in one byte or eight, the body. Bytes only: no socket, no state.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Simulated detectors: which LEDs, directional LEDs and tags a camera sees, and where in its image.
 // Pure functions of poses; a function that the caller passes checks the line of sight.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A pinhole camera without distortion: where points of the world stand in its image, and what part
 // of the world it can see. +z looks forward, +x to the right, +y down.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // All that can be shown of a running world, as channels: which there are, and their messages. Each
 // message is encoded once, and only if it is wanted. The live server (view/) uses it; it knows

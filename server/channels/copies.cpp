@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "channels/copies.h"
 
 #include <type_traits>

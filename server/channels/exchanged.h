@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Messages about exchange between entities at a tick: rays, detections of cameras, radio messages,
 // contacts, readings and commands of a robot as in a session of its own.

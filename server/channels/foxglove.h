@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The world in Foxglove's messages: shapes locked to frames, the frames' poses, and cameras.
 

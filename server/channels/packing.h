@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Vectors and rotations as packed numbers of messages, and names of frames.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "channels/poses.h"
 
 #include "channels/world_message.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "channels/schema.h"
 
 #include <google/protobuf/descriptor.h>

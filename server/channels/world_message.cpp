@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "channels/world_message.h"
 
 #include <algorithm>

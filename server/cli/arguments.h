@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Parses command lines, with a suggestion for a misspelt option.
 

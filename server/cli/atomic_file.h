@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // An output of a command that a signal ends at once: it appears under its name when it is whole.
 

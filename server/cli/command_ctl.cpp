@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Controls a run from another terminal.
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which controllers the world waits for: a table that is printed again and again.
 
 #include <fmt/format.h>

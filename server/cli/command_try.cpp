@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <boost/program_options/value_semantic.hpp>
 #include <sstream>

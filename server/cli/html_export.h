@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // `ziggurat export --html`: the page with a recording inside, as one file.
 

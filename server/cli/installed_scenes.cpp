@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/installed_scenes.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Scenes that come with the program, by name: share/ziggurat/scenes beside its folder.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The program `ziggurat`: finds the command, and turns what it throws into a message and an exit
 // code. What belongs to the whole process, signals and limits, is set here and nowhere else.
 

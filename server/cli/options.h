@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The options of `run` and its kin: what a command line and a settings file ask for, and the help.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/scene_reference.h"
 
 #include <fmt/format.h>

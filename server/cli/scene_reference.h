@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The reference of the scene format: every element and attribute, as tables in Markdown.
 

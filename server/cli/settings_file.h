@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Options in a file, in TOML: `lua-memory = 512`, in tables with the names of their groups or above
 // them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/supervision_client.h"
 
 #include <fmt/format.h>

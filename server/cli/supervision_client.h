@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Common parts of ctl and top: the connection, and the printed status.
 

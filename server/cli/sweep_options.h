@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // `ziggurat sweep`: its command line (which experiment, and how it is run), and its further
 // commands.

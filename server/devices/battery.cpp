@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Batteries: charge that time and motion use up. An empty one only reads 0.
 
 #include <algorithm>

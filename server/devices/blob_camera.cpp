@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Coloured-blob cameras: the lit LEDs and lights of a medium that they see, of other entities. They
 // see nothing until they are switched on, and keep what they saw when they are switched off.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Cameras: each looks for LEDs, directional LEDs and tags at the end of a tick's physics.
 
 #include "devices/camera.h"

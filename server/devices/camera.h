@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Line of sight between a camera and the things that it detects, and the pictures it takes.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // An entity that carries devices, while they get their places in the layout.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Contact sensors: whether something touches a link, and the force of all its contacts in the last
 // tick. Links of the same entity do not touch each other.
 

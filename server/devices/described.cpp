@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "devices/described.h"
 
 #include <algorithm>

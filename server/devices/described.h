@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Base of the kinds of devices that describe themselves: their places in the layout, their values,
 // and a random stream of each robot. A kind says what its devices read.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // All devices of the world. docs/adding-a-device.md tells how to add a kind.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Differential drive of robots whose scripts give its speeds in metres per second.
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Distance scanner of the foot-bot: a head that turns about z, with two beams of short and two of
 // long range, a right angle apart.
 

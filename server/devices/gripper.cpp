@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Grippers: at the front of a robot's turret, they hold what they touch with a limited force.
 
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ground sensors: how bright the floor of the arena is below a point, as its picture says, and what
 // directors painted over it.
 

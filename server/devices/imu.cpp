@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Inertial measurement units: an accelerometer and a gyroscope. They sample each substep; a reading
 // is the mean over the tick, plus bias and noise.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Proximity sensors of the e-puck with its own response: infrared light that comes back from what
 // is within 5 cm.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Joint encoders and motors.
 
 #include <string>

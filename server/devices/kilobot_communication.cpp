@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Messages of kilobots: nine bytes to all that are near, twice a second, with the distance.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The two vibration motors of a kilobot, and their calibration.
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A kind of device: what all devices of the kind do in a tick.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A lift: a prismatic joint that a motor holds at a height.
 
 #include <cstddef>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Light sensors: how bright the <light>s are that nothing hides.
 
 #include <algorithm>

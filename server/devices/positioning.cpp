@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ground truth: the pose of a robot's origin in the world, with noise where asked for.
 
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Proximity sensors: rays that read how close the nearest foreign body is.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Flight control: a robot that flies is told a place or a velocity, a heading or a turn rate.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Radios: the messages of a step leave at the start of the next tick.
 
 #include "media/radio.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Range and bearing: packets of all devices in range and sight, with noise and loss.
 
 #include "media/range_and_bearing.h"

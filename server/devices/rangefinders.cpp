@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rangefinders: the distance to the nearest body along a ray.
 
 #include <algorithm>

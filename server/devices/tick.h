@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Context that devices are built from, and the data that they work on in a tick.
 

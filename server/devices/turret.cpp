@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A rotating turret: passive, held at an angle or turned at a speed, and its encoder.
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Visible state of robots: LEDs, directional LEDs, tags, magnets, and the data that
 // range-and-bearing devices send. Commands of tick k are in State k + 1.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Two driven wheels: speeds that are commanded, and what an encoder makes of them.
 
 #include <array>

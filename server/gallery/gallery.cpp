@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "gallery/gallery.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A page with all scenes of a folder, each of which it runs when it is asked for: `ziggurat view
 // FOLDER`. Requests name scenes by their numbers, never files. All needs the token, which stands in

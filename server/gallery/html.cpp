@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "gallery/html.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "gallery/ports.h"
 
 #include <arpa/inet.h>

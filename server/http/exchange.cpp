@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "http/exchange.h"
 
 #include <boost/beast/http/rfc7230.hpp>

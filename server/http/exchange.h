@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Requests over HTTP and their answers on one connection, with Boost.Beast; GET and HEAD without a
 // body. Only sources of ports include this: Beast takes the compiler long.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "http/listening.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A socket that takes connections, and the thread that serves them, with Boost.Asio.
 

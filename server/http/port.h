@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Serves a few short texts over HTTP, on a thread of its own: one request per connection. Clients
 // can be slow, many and rude: each has a time and a number of bytes, and of too many the oldest

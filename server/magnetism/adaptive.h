@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Variable precision: what a pair of magnets with shapes does beyond what their dipoles do, by as
 // many sources as the tolerance asks for at that distance.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "magnetism/charges.h"
 
 #include <algorithm>

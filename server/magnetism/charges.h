@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Two magnets close together: the exact field of one, integrated over the pole charges M.n on the
 // surface of the other.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "magnetism/closed_forms.h"
 
 #include <algorithm>

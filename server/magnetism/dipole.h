@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Point dipoles: the closed formulas for one pair, in SI. Field B1 of a dipole m2 at m1, with the
 // torque and force on m1; the separation is r = x1 - x2, n = r / d, and K = mu0 / 4 pi:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "magnetism/elementary.h"
 
 #include <array>

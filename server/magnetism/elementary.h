@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Logarithm, arc tangent and decaying exponential from additions, multiplications and divisions
 // only. The C library's versions are chosen by processor (with or without fused multiply-add) and

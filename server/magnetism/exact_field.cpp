@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "magnetism/exact_field.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The exact field of a uniformly magnetised box or cylinder, magnetised in any direction.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // All magnets of a world and what they do to the bodies that carry them.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "magnetism/kernel.h"
 
 namespace ziggurat::magnetism {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The inner loops over pairs of dipoles, four pairs at a time. Sources are kept as a structure of
 // arrays of 32-byte rows (positions, moments, forces, fields), one row per dipole. They are

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The loops of Kernel; lanes.inl tells which files include this.
 
 #include "magnetism/lanes.inl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The loops for processors with 256-bit registers. They use AVX2 without fused multiply-add, which
 // would round differently. The headers come first: only our own functions may be compiled for AVX2.
 // Otherwise the linker could hand an inline function of a header to the rest of the program.

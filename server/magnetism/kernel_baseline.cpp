@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The loops for any processor.
 #if defined(__SSE2__)
 #include <immintrin.h>

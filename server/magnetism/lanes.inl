@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Four doubles side by side, and the pair formulas on them. Included by one translation unit per
 // instruction set, inside an anonymous namespace; nothing here may call a library function.
 

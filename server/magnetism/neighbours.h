@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Which pairs of dipoles may be in range: a list with a skin, rebuilt when a dipole has moved
 // more than half of it. Results do not depend on when it was rebuilt, see kernel.h.

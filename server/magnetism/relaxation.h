@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Magnets that turn freely in their socket (a leaf link on a spherical joint at its centre of
 // mass): their orientation is a state of its own, relaxed towards the local field, because the

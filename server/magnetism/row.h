@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Rows of the kernels as vectors. Kernels themselves do without: Eigen must not be compiled for
 // more than one instruction set.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A uniformly magnetised body as a few weighted dipoles of one direction. Outside, only the
 // harmonic moments of the body's volume count, M_l(n) = <|x|^l P_l(x.n / |x|)>: a rule is as good

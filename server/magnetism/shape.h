@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Shapes of uniformly magnetised bodies, centred on their own frame.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Is a magnetic bond too stiff for the substep? Two bodies held face to face by their magnets swing
 // sideways and twist against each other; explicit substeps follow that only up to w dt = 2.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // State as bytes. A struct with a state lists its fields once, in a function archive(Archive&). It
 // writes them, reads them back, and names them, so that two states can be compared field by field.

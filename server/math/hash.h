@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The state hash: XXH64 over a canonical fixed-width layout, fed value by value.
 

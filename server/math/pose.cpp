@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "math/pose.h"
 
 #include <Eigen/Eigenvalues>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Rigid poses. Frames are right-handed with z up; quaternions are Hamilton, w x y z.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "math/random.h"
 
 #include <xxhash.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Seeded random streams, one per purpose, so that drawing more in one place never
 // changes what another place sees. Results are the same on every platform: the

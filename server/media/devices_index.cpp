@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "media/devices_index.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Spatial index of the devices of all media at one tick. One index holds devices that send to
 // others, another one those that cameras see. It is built anew where something moved.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "media/radio.h"
 
 #include <algorithm>

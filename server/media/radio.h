@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Radios: a message reaches every other radio of the medium that is strictly closer than the
 // sender's range, through everything. A radio that sends in a tick receives nothing in it.

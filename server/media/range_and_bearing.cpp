@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "media/range_and_bearing.h"
 
 #include <cmath>

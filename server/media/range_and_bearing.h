@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Range and bearing: each device sends its data at every tick. A device that is strictly closer
 // than the sender's range, is in sight and has packets of the same size learns where the sender is.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Points found by place: a uniform grid in a hash table. Built anew in linear time; building and
 // asking allocate nothing once sizes repeat. What is found never depends on the grid.

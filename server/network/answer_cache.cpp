@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/answer_cache.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Answers to requests that change nothing, `status` and `read`: clients that ask the same while
 // nothing has changed get the same answer, which is computed once.

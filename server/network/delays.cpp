@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/delays.h"
 
 #include <fmt/format.h>

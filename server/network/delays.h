@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Delays and losses of messages that are injected on purpose, as if by a slow network.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/disturbed_link.h"
 
 #include <fmt/format.h>

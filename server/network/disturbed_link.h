@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A link that delays and loses messages between the barrier and its peers on purpose. It sits
 // between the two, which know nothing of it, and learns what it needs from the messages that pass:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Addresses that the server listens at: `ipc://path` or `tcp://host:port`.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Patterns for ids: `*` any text, `?` any character, `[a-z]` one of a set, `[!a-z]` one outside it.
 

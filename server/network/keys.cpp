@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/keys.h"
 
 #include <fcntl.h>

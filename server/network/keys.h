@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // CURVE keys as they lie in files, Z85: 40 characters for 32 bytes.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Percentiles of the most recent latencies, and the histogram of all response times.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Limits for the server's memory and time that connections use (docs/protocol.md, K5).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Interface between the barrier and its peers. The server names each connection; no other
 // connection ever has the same name.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/listener.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/output_queue.h"
 
 #include <sys/socket.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Output that waits to be sent over one connection. Its size is bounded; no call blocks.
 

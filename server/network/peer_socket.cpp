@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/peer_socket.h"
 
 #include <sys/socket.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Socket of one connection: its input, cut into messages, and its output queue. No call blocks, and
 // both directions are bounded.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/peer_table.h"
 
 #include <malloc.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Response time of a controller to each observation, kept one by one for report cards.
 

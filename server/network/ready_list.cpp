@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/ready_list.h"
 
 #include <algorithm>

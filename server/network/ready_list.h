@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Which of many descriptors are ready, as the system tells it (epoll).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The server: sockets and a clock for the barrier (barrier/barrier.h). Robots are held by sessions;
 // a tick goes out to all of them and is over when each has answered. Knows nothing of simulation:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/socket.h"
 
 #include <sys/resource.h>

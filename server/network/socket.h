@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Server's end of all connections: it listens at every endpoint and speaks ZMTP as a ROUTER does,
 // but takes no routing ids from clients. It works in small steps: it accepts one connection, reads

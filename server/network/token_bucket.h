@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Token bucket: full at the start, refilled by time. Messages, sentences or time take tokens from
 // it.

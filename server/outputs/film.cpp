@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "outputs/film.h"
 
 #include <fcntl.h>

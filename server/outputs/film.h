@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A film as a file, made by the program `ffmpeg` of the package of that name.
 

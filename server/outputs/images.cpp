@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "outputs/images.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Pictures as PNG files: of any content, and those of robots' cameras.
 

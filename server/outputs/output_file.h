@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A file being written. The buffer reaches the disk in large pieces. A full disk is an error of its
 // own, never a silently shortened file.

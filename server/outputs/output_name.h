@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The name of an output, before the file is opened: opening it empties what is there.
 

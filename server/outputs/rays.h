@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Rays that sensors tested, and links between devices: `--rays`.
 

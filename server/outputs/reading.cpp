@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Fields of values are found by name: the type of a field decides how a value is written. A map is
 // keyed by the devices' ids, a message gets a value's numbers in the order of its fields.
 

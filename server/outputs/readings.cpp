@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "outputs/readings.h"
 
 #include <map>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Readings of robots and the commands that answered them: `--readings`.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "outputs/trace.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // World poses of all links over time: `--trace`, a CSV file.
 

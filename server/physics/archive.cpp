@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The state of bodies and of what acts on them: all that the next substep reads.
 
 #include "physics/archive.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // State of the core: all that its next substep reads. Boxes of the broad phase are left out: pairs
 // do not depend on them.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/build.h"
 
 #include <cmath>

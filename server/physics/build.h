@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Links of an entity, and its rigid parts, before the core moves it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/bodies/convert.h"
 #include "physics/build.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/contact_sensing.h"
 
 #include <algorithm>

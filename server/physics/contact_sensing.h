@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Contact sensing: sums up the contacts of watched links.
 

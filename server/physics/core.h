@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The mechanical core: joints, motors, contacts, and the equations of motion, on stepping/, with a
 // tree per entity. World adds bodies to it, plug-ins push them, and it moves them on by a substep.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Flight: the force and torque by which a flying body holds itself up, upright, and goes where it
 // is to be.

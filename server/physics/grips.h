@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Grips: what the grippers of robots on wheels hold. A grip holds a point of another entity to a
 // point of the robot's turret, with a limited force. It lets it turn about that point.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/magnet_source.h"
 
 #include "magnetism/dipole.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Magnetism as a plug-in: collects the magnets of all bodies, asks magnetism/ what they do to each
 // other, and applies it before each substep.

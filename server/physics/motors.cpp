@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/motors.h"
 
 #include <algorithm>

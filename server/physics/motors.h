@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Motors and limits of joints with a coordinate, and servos of robots on wheels.
 

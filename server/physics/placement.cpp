@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/placement.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Whether an entity overlaps others where it is placed. Geometry only: no bodies are built.
 

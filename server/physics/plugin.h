@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The plug-in layer: what acts on bodies besides joints and contacts, and what watches them.
 // Damping, magnetism, wheels, flight and contact sensing are plug-ins. physics/plugins.cpp lists

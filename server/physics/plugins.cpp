@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/plugins.h"
 
 #include <algorithm>

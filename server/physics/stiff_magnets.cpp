@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/stiff_magnets.h"
 
 #include <algorithm>

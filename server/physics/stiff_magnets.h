@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Stiff pairs of magnets, whose forces change too fast for one substep, and the number of parts
 // that they need. docs/magnetism.md derives the limits.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A substep of all trees: as a whole, and in parts where a stiff pair or an island asks for them.
 
 #include <algorithm>

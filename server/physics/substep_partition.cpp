@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/substep_partition.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Partition of trees by the number of parts of their substep. Stiff pairs, whose forces change too
 // fast for a whole substep, take parts, with all trees that they may touch meanwhile.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/welding.h"
 
 #include "math/pose.h"

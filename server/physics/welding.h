@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Links on fixed joints move as one with the link that carries them: together they are a part.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/wheels.h"
 
 #include <cmath>

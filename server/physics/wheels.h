@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Driven wheels and turrets: what a robot on wheels is to do over the ground, and how its turret
 // turns on it. Bodies that a plane holds are wheels that stand still.

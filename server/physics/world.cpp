@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/world.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The physical world, one substep at a time: bodies, the core that moves them, and the plug-ins
 // that push them. No Bullet type leaves this module.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "processes/child_process.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Child processes: each leads its own process group and is killed when this program ends.
 

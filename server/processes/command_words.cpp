@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "processes/command_words.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A command of /bin/sh as words, as far as they can be read without a shell.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The commands of a scene's controllers: their programs are looked for where its scripts are.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "processes/controllers.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The controller processes of a run: which program controls which robots, and starting them.
 

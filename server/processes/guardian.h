@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A small process beside this one. When this one has ended, also by SIGKILL or a crash, it cleans
 // up: it ends the processes that are left of those that this one started, and removes its sockets

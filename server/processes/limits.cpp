@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "processes/limits.h"
 
 #include <fmt/format.h>

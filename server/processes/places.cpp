@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "processes/places.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Paths of the files that a scene names: scripts, and the programs of commands.
 

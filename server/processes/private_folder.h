@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A folder that only this user can enter, for the socket and the files of one run.
 

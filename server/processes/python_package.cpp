@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "processes/python_package.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The Python client that belongs to this program, for the Python programs that it starts.
 

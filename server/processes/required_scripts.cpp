@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "processes/required_scripts.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "processes/scripts.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The Lua scripts of a scene: finds them and checks that they compile.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "processes/signals.h"
 
 #include <poll.h>

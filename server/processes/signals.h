@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // SIGINT, SIGTERM, SIGHUP, SIGXCPU and SIGCHLD as input of a descriptor that can be polled. The
 // program ends at most a second after the first interruption, whatever it is doing.

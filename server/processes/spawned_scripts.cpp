@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "processes/spawned_scripts.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Which files a robot may use that a supervisor spawns: a supervisor must not run other code of
 // this machine, nor learn what its files contain.

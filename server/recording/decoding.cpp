@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "recording/decoding.h"
 
 #include <fmt/format.h>

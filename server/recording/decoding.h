@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Decoder of all messages of recordings. A recording may come from anyone, and two bytes of a
 // message can take a hundred times as much memory. So the memory is counted before it is taken.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "recording/inputs.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Exact inputs and result of a step: the messages `Commands` and `ExactState` of run.proto. Writers
 // and readers of recordings share it.

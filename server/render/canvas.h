@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Draws arrays with OpenGL, and gives the pixels back.
 

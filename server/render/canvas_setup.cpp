@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Setup of a canvas: its programs, and the locations of their arrays.
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // One view of a state as the arrays that are drawn, in the camera's frame. No OpenGL here.
 

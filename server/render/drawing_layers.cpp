@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Layers over the world if a view asks for them: rays, frusta, names.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/floor_picture.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Colours of the floor as pixels over the arena: the scene's picture, and what was painted over it.
 

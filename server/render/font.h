@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Letters for labels in pictures: five by seven points each.
 

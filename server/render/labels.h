@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Names in a picture: white letters with a dark edge, in front of everything.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The shapes of links as triangles: box, cylinder and sphere in sizes of one, standing on their
 // bottom centre, and hulls as they are.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Model of a scene's constant looks: the surfaces of its links, and its floor.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/opengl.h"
 
 #include <dlfcn.h>

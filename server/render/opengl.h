@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // OpenGL 4.5 on the CPU, without a display: Mesa's OSMesa, loaded when the first context is made.
 // Linking it would cost every start of the program the loading of LLVM.

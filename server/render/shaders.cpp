@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/shaders.h"
 
 namespace ziggurat::render::shaders {

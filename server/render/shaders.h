@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The programs that run per vertex and per pixel, in GLSL.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Written by tools/make_tag36h11.py from Debian's libapriltag-dev; don't edit.
 //
 // The patterns are those of the family 36h11 of AprilTag 3,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The patterns of AprilTag's family 36h11.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // All output of the program on a terminal: lines of controllers and results on stdout, messages and
 // progress on stderr.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reports/gate.h"
 
 #include <fmt/format.h>

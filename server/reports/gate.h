@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Conditions for runs with hardware in the loop: "p99<2ms,misses<0.1%".
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reports/metrics.h"
 
 #include <fmt/format.h>

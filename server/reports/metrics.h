@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Serves a run's status over HTTP, for monitoring systems and browsers.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A plot as a picture in SVG: curves, error bars, axes with logarithms, numbers or names.
 

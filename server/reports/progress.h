@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The progress line: simulated time, its share of the run and the wall time that is left,
 // real-time factor, ticks per second, awaited robots.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Report card: response times of each controller, at the end of runs with hardware in the loop.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A report card as JSON, CSV and a picture.
 
 #include <fmt/format.h>

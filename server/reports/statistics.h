@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Statistics of a controller's response times, computed from all its reactions. Percentiles are
 // exact.

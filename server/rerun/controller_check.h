@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Controllers that are given a recorded run again: they see what robots saw then, what they answer
 // is compared with the recorded commands and has no effect. `ziggurat verify --controllers` and

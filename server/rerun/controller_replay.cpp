@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "rerun/controller_replay.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Gives controllers a recorded run again, tick by tick: they see what robots saw then; what they
 // answer is compared with the recorded commands and has no effect.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "rerun/divergence.h"
 
 #include <fmt/format.h>

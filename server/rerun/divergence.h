@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Comparison of two recordings: their first difference, and the distance of their poses over time.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "rerun/embedded_scripts.h"
 
 #include <fmt/format.h>

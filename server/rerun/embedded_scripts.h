@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The Lua scripts of a recording, as files that ziggurat-lua can run.
 

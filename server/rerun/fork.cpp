@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "rerun/fork.h"
 
 #include <fmt/format.h>

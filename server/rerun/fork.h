@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // `ziggurat fork`: a state of a recorded run, from which another run goes on.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "rerun/recorded_world.h"
 
 #include <fmt/format.h>

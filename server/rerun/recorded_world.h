@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A recording as a world that is run again: its begin, its snapshots, its ticks.
 

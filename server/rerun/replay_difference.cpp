@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "rerun/replay_difference.h"
 
 #include <fmt/format.h>

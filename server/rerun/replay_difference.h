@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Explains where a repeated run first differs from its recording, and why it may.
 

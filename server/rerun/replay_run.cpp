@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "rerun/replay_run.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Replay of a recording, for `ziggurat replay` and `ziggurat verify`.
 

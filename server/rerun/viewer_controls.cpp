@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "rerun/viewer_controls.h"
 
 #include <utility>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Controls of a replay that viewers have: pause, resume, step, end. The world itself stays as
 // recorded.

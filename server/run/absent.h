@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Controllers and directors that are not there: whom the run can't go on without.
 

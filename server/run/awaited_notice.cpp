@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/awaited_notice.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A notice of what a run waits for: on the progress line, and in a line of its own.
 

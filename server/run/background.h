@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Work on a thread of its own, whose owner waits for it on a descriptor, beside others.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/build.h"
 
 #include <gnu/libc-version.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The end of a run: the last words of its controllers, and those that do not end.
 
 #include <fmt/format.h>

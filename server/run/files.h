@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Files that a run reads and writes. Those that options name are checked before any of them is
 // opened, because opening an output empties it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/live_view.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Live view of a run: the state that viewers see, and their requests.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/loading.h"
 
 #include <fmt/format.h>

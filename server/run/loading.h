@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Loads a scene for a run: reads it, applies the options, checks the scripts.
 

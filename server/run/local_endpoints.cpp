@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/local_endpoints.h"
 
 #include <fmt/format.h>

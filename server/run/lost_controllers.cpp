@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/lost_controllers.h"
 
 #include <fmt/format.h>

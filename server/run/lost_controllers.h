@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Controllers that are lost while a run waits for them: processes that ended, connections that
 // broke. Each is settled: it left by itself, it is started again, or the run ends.

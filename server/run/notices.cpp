@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Notices of a run: what its author should know before it begins, and what goes wrong while it
 // runs.
 

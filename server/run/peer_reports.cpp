@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/peer_reports.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The pictures and the film that `ziggurat render` takes of a run.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Radios that were never silent: a radio that sends in a tick receives nothing in it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/record.h"
 
 #include <fmt/chrono.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/recorders.h"
 
 #include <chrono>

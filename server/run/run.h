@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A run from scene file to summary: what `ziggurat run`, `serve` and `render` share.
 

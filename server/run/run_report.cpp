@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The end of a run: what controllers are told, what is printed, and in which order.
 
 #include <fmt/chrono.h>

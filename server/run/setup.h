@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Setup of a run before it has a world, and messages to clients at its start and end.
 

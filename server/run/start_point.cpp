@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/start_point.h"
 
 #include <fmt/format.h>

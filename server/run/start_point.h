@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The state that a run goes on from: tick 0 of a scene, or a state of a recorded run.
 

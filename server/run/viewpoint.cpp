@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/viewpoint.h"
 
 #include <algorithm>

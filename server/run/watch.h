@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A wait for controllers, with what is watched meanwhile: signals, supervisors, viewers.
 

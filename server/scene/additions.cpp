@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene/additions.h"
 
 #include <algorithm>

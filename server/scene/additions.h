@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Entities that are added to a scene after it was read: one element at a time, as in <arena>.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // <arena>: its volume, its entities, then its distributions.
 
 #include <algorithm>

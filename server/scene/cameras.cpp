@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The cameras of a controller: where they sit, their lenses, and what they detect.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // <actuators> and <sensors>: a table of all names of the dialect, and the attributes of each.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // <controllers>: who drives the robots, with which devices, and whether each robot has them.
 
 #include <algorithm>

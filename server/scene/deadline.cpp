@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // deadline, deadline_ms and miss_budget of <controllers> and of each controller.
 
 #include "scene/deadline.h"

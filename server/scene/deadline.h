@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Deadline policies: the consequence when a controller does not answer in time.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // <devices> of a prototype, and <leds> of a box or cylinder.
 
 #include <array>

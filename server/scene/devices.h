@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Devices: what an entity carries (Devices) and what a controller enables (ControllerDevices).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // <director>, and <loop_functions> as one: programs that watch the world and act on it between
 // ticks.
 

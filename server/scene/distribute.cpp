@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // <distribute>: how many copies of one entity, and how their poses are drawn.
 
 #include <algorithm>

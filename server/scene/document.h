@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A scene file as XML: elements and attributes with their line and column, and what the command
 // line set in it.

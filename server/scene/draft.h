@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A scene while it is read: its parts, each read by its own function into its own struct, and what
 // these need from each other. Read in this order: includes, framework, physics engines (their

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene/element.h"
 
 #include <fmt/ranges.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Elements of a scene file: their attributes and children as values, and a record of which of them
 // were read, so that unknown ones are found without a list.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Reading one device of a controller's <actuators> or <sensors>, for the functions in the table of
 // controller_devices.cpp.

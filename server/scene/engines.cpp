@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // <physics_engines>: one three-dimensional world. Its defaults for surfaces and damping are read
 // before any body is.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The elements of an arena: <box>, <cylinder>, <sphere>, <prototype>, <light>; robots are read in
 // robots/.
 

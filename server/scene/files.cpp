@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The files that a scene is made of: the scene's own, and those that it includes.
 
 #include <fcntl.h>

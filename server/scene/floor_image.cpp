@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene/floor_image.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // <framework>: time, and what belongs to a process and has no effect on a server.
 
 #include <algorithm>

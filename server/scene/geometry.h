@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The shapes of links. A new one is a struct here; what lacks a function for it then does not
 // compile.

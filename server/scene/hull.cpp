@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The convex hull of points, by Qhull.
 
 #include <fmt/format.h>

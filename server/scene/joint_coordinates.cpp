@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene/joint_coordinates.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Coordinates of joints, from the poses and velocities of the links that they connect.
 

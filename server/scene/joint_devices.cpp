@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // <joints> of a controller: motors and encoders, each listed with its mode.
 
 #include <algorithm>

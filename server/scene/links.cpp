@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // <links> and <joints> of a prototype: bodies and how they hang together.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Mistakes that make a text no XML, found where they were made: a parser only notices where they
 // show, often lines later.

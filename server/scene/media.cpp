@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // <media>: which devices can perceive each other.
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // About how much memory the parts of a scene take: in the scene itself, in the world that is built
 // from it and in what is told of it. Counted while a scene is read, so that one that would take too

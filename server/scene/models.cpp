@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // <models>: what many entities have in common, written once. Each is read once, and copied.
 
 #include <algorithm>

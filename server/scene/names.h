@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Names: what was probably meant, and what is known elsewhere but not supported here.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene/old_words.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Old words of the dialect: attributes, elements and values that other versions of it have, and
 // what they are here. None of them is a fault; each is a notice.

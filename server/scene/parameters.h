@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Parameters of a scene: `<parameters gain="0.5"/>` declares them with their usual values,
 // `--param` gives others, and `${gain}` in any attribute stands for the value.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Reads a scene file and checks it whole: every fault found is reported, not only the first.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene/report.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // All faults and notices about a scene and its included files, while they are read.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Content of a scene file as plain data. Everything is resolved to SI units, radians and
 // quaternions, names to indices, and defaults are filled in. Degrees and XML end in the reader.

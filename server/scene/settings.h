@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Attributes that the command line sets, `--set 'PATH=VALUE'`, and how these options are read.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The shape of a link or of a single body: attributes, and for a hull its corners.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A document with every element that a scene may have, each in all of its variants. It is full of
 // faults: an element is asked for all of its attributes though it has none.
 

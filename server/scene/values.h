@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Readers of attributes' values: text in, SI units, radians and quaternions out. Every function
 // takes the text with the white space around it removed.

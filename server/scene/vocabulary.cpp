@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene/vocabulary.h"
 
 #include <fmt/format.h>

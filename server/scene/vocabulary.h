@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The vocabulary of scenes: every attribute that the reader asks an element for, recorded while it
 // reads. The reference is printed from it, so it can't differ from the reader.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Names everything: the positions that flat arrays are indexed by.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // State of a simulation, which the functions of this folder work on.
 

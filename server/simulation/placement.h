@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Puts everything where it starts: what the scene places, then what it distributes.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "simulation/scene_warnings.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "simulation/show.h"
 
 #include <fmt/format.h>

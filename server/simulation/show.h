@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A world whose states are recorded ones: it is shown, not simulated.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The tick: apply commands -> physics substeps -> state -> observations. No sockets here;
 // replay, benchmarks and tests drive the same object.

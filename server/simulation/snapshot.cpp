@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "simulation/snapshot.h"
 
 #include <fmt/format.h>

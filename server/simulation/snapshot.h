@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A world at one moment, to go back to. docs/recordings.md, section Snapshots.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A snapshot as bytes: a line for people, what it belongs to, what was done to the world, its
 // state, and a checksum.
 

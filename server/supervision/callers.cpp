@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "supervision/callers.h"
 
 #include <algorithm>

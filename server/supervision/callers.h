@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Sources of requests: sessions of the network, and others that this process serves itself, as the
 // viewers of a live server.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "supervision/directing.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Does what directors want between two ticks (docs/protocol.md, section 9.1).
 

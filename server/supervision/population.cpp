@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "supervision/population.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Entities that are added to the world and removed from it while it runs (docs/protocol.md, V9 and
 // V13).

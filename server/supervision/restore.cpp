@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Snapshots that supervisors take, and the way back (docs/protocol.md, V11 and V16).
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "supervision/snapshots.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Snapshots by name: in memory, and in a folder that the server's user has named.
 

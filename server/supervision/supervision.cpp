@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "supervision/supervision.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Answers the requests of supervisors and observers between two ticks (docs/protocol.md, section
 // 9).

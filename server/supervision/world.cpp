@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "supervision/world.h"
 
 #include <fstream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Changes of the world by supervisors and viewers, as a recording needs them to repeat them.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "sweep/definition.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Definition that a folder of results belongs to: the experiment and the files that it was begun
 // with. Kept in the folder as `experiment.json`.

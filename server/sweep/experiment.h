@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Experiment of a sweep: a scene, a grid of values and seeds. Each combination is one run.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "sweep/experiment_file.h"
 
 #include <fmt/format.h>

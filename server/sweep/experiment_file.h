@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // An experiment as a TOML file: what the command line says, to keep and to share.
 

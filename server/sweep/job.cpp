@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "sweep/job.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A run of a sweep as a process of its own: `ziggurat run` in its own process group, with a socket
 // that no other run uses.

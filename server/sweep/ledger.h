@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The table of results: an SQLite file. A run is there when it is whole, otherwise not at all,
 // whatever kills the program or the machine.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Means of runs that differ only in their seeds, with confidence intervals.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "sweep/plot.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The files that the runs of a sweep read: a sweep that is continued must find them unchanged.
 

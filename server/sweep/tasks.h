@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A sweep in pieces for the machines of a cluster: each task executes some runs in a row and writes
 // a ledger of its own, so that no two machines write the same file.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "text/buffered_stream.h"
 
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // stdout or stderr: writing never waits for its reader. What the reader does not take waits in
 // memory up to a limit; lines beyond it are dropped and counted. Preparation of these streams.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Numbers as people write them, for example on a command line, and durations as they read them.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Texts as other programs read them: words of a shell, fields of CSV, texts of HTML.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Texts without a part: long ones of others in a message, and white space at the ends.
 

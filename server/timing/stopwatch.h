@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A stopwatch for phases: each stage says which phase begins, and the time goes to it until another
 // begins. So the phases add up to the whole. No result of a simulation may depend on it.

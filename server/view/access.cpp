@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "view/access.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Access control of a viewer's port (docs/viewing.md, docs/security.md).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "view/feed.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Ticks on their way from the run's thread to the server's thread, which encodes them. The run's
 // thread only copies; the newest tick wins.

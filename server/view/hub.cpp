@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "view/hub.h"
 
 #include <fmt/format.h>

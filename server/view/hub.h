@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Viewers with their subscriptions and send queues. No sockets here.
 

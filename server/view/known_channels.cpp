@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "view/known_channels.h"
 
 #include <algorithm>

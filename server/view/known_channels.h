@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Channels that a viewer knows, and changes that it is still to be sent. Lists are made when they
 // can be sent, so that a viewer that does not read holds none.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "view/messages.h"
 
 #include <fmt/format.h>

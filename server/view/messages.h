@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Messages of the Foxglove WebSocket protocol, from and to viewers. No sockets here.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "view/send_queue.h"
 
 #include <algorithm>

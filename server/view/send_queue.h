@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Output that waits for a viewer, of bounded size. Answers are kept, or the viewer is disconnected.
 // The oldest ticks are dropped whole, except for items that must not be lost.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "view/viewer_requests.h"
 
 #include <sys/eventfd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Requests of viewers, passed from the thread that serves them to the thread of the run.
 

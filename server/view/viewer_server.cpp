@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Boost.Beast is in this source only: it takes the compiler long.
 #include "view/viewer_server.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Server of viewers: the page over HTTP, and viewers over WebSocket, on one port and a thread of
 // its own. The run never waits for it: it leaves copies and takes the requests of viewers.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A Response that is made once and sent to many, each with its own number.
 

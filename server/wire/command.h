@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Command -> world::Commands, Leave, and the commands of robots that left. A message is checked
 // whole before anything of it has effect. The part of radios is in command_radios.cpp, that of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "wire/command_limits.h"
 
 #include <algorithm>

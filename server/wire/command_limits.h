@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Cost of decoding a message, estimated before, and the size limit of a Command for its session.
 

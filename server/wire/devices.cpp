@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "wire/devices.h"
 
 #include <tuple>

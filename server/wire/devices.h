@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Devices on the wire: their descriptions in Welcome, and the channels of Observation and Command.
 // The messages of radios, range and bearing and cameras have files of their own.

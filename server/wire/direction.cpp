@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "wire/direction.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "wire/inbox.h"
 
 #include <google/protobuf/arena.h>

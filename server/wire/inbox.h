@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Messages as they come from clients: bytes -> plain data or world.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "wire/messages.h"
 
 #include "ziggurat/v1/protocol.pb.h"

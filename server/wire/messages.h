@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The protocol's messages as plain data, for modules that do not know protobuf. docs/protocol.md
 // defines their meaning, protocol/ziggurat/v1/protocol.proto their form.

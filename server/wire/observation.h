@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // world::Observations -> Observation. The cameras' part is in observation_cameras.cpp.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Messages on their way to a client: plain data or world -> bytes.
 

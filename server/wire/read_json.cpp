@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "wire/read_json.h"
 
 #include <fmt/format.h>

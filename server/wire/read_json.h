@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Parser of protobuf's canonical JSON, as strict as RFC 8259. protobuf's own parser also takes
 // single quotes, names without quotes, trailing commas, and a text in place of a list. It may end

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Requests of supervisors and observers, and the answers (docs/protocol.md, section 9).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "wire/roster.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Robots of one session, and the position of each device value: in the session's packed arrays on
 // one side, in the world's flat arrays on the other.

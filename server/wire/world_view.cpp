@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "wire/world_view.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // World view of a director: the true state of the entities that it subscribed to.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // State of a tick in an archive. Indices into lists are checked against the layout.
 

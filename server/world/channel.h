@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A channel is a field of Observations, Commands or State with the same number of values for each
 // device of a kind. A table beside each of those structs lists all of its fields, each once: as a

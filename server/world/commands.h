@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Commands of robots. All arrays are in scene order and indexed by the lists of Layout. A field of
 // Commands has its row in the table below it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Each field of what is true at one tick is in its table. The compiler takes a second for it: here,
 // not in each source that includes the tables.
 

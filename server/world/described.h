@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Devices that describe themselves: the fields of a kind stand in its description, and messages,
 // checks, hash, recordings and clients follow from it.

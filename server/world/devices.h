@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Each kind of device in the world: what does not change while the world runs (…Layout), and what a
 // robot senses (Observations). All arrays are in scene order and indexed by the lists of Layout. A

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The fields of State and Observations in the order of their tables: those that are hashed first,
 // then the others.
 

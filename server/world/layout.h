@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The entities of the world in scene order: names, and positions in the flat arrays of State,
 // Observations and Commands. While a world runs it only grows: a new entity stands behind all

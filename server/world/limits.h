@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Limits of what a robot may send, or a director do, in one tick. More is an error of the client.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Markers: arrows, rings and texts that robots draw for people. Physics and sensors know nothing of
 // them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The rules of section 2 of docs/protocol.md, beginning a session. A test is named after its rule.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The rules of docs/protocol.md on deadlines. A test is named after the rule it holds.
 
 #include <gtest/gtest.h>

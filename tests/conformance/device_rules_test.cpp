@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Limits of docs/protocol.md that follow from the robots of a session: T4, K5, D5. A test is named
 // after its rule.
 

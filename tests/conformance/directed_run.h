@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A run with two robots and two directors, for the rules of section 9.1.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Who directs, and when: which version 1.4 of the protocol adds (docs/protocol.md, R1 and R2).
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Questions of the server about directors at each tick take no memory.
 
 #include "allocations/allocations.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Messages to directors and their answers (docs/protocol.md, R3 to R11). The effect of their acts
 // on a world is tested by tests/scenes/directing_test.py.
 

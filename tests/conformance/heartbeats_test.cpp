@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The rules of docs/protocol.md on heartbeats and rates (section 4). A test is named after the rule
 // it holds.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rule T6 of docs/protocol.md, the JSON twin. The kit plays its cases in both forms; here is what
 // depends on the text itself.
 

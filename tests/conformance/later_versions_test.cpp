@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Additions of versions 1.1 and 1.2 of the protocol (docs/protocol.md: W10, L13, V15; S13, L6,
 // V17). They are policies of a command line, crossings of a reset, and moments between two ticks.
 

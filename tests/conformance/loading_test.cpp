@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The rules of docs/protocol.md on clients that come while the world is loading: T9, H12, and what
 // section 4 says of HELLO. On sockets: tests/unit/network/loading_test.cpp.
 

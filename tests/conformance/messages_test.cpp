@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Traces that peers without a session leave behind: nothing, and few lines.
 
 #include <gtest/gtest.h>

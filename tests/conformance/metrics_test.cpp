@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Metrics that are kept (docs/protocol.md: S14).
 
 #include <gtest/gtest.h>

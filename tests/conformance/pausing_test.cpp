@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The rules of docs/protocol.md on pausing (section 3.3) and reset (L6). A test is named after the
 // rule it holds.
 

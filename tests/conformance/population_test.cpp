@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The rules of docs/protocol.md on robots that are spawned and removed while a world runs: V9, V13
 // and V14. Worlds are in tests/unit/simulation; here is what sessions are told.
 

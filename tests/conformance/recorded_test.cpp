@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The messages of protocol/recorded: what was released once is understood forever, and an old
 // client gets along with this server.
 

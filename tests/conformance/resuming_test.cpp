@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The rules of docs/protocol.md on leases and tokens (section 5). A test is named after the rule it
 // holds.
 

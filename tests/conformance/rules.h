@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Common parts of the tests of several sections of docs/protocol.md.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every cell of docs/protocol.md's table of states and messages, read from the document itself.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Rule H13 of docs/protocol.md, with L4 and L10 of what is left of a session.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Runs scenes one after the other in one process, without network, and prints the hash of every
 // tick. All actuators follow a fixed rule: results depend on the program and the scene only.
 //

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Whole runs: the same scene, seed and controllers give the same hash at every tick, with any distribution
 of robots over processes and over any transport."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The simulation alone: the same scene, seed and commands give the same hash at every tick: in a second run, after other
 scenes in the same process (Simulation), and by the same sources compiled differently, by another compiler or at another
 optimisation level (OtherProgram)."""

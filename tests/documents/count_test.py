@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Counts the code blocks and commands of README.md and docs/, and lists those that are not run, with the reasons."""
 
 import unittest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Code blocks of README.md and docs/: their kind, their place, and the marks before them.
 
 A mark is an HTML comment on a line of its own before a block; readers do not see it:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Commands and options that README.md and docs/ name in running text and tables exist.
 
 A command in a text, as `ziggurat ctl pause`, must be one of the program's, and its options must be in its help; an option

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What is done with a block of each kind; every function takes a folder and a block, and raises Fault."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Runs code blocks of documents as their readers would: in a folder of their own, with an installed Ziggurat.
 
 The folder is a copy of the checkout, with what no command changes linked in, so that paths from the project's folder are right, and has the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The site of the documents: built without warnings, nothing from elsewhere, a search that works from the disk."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What each step of docs/tutorial promises is true of its scene."""
 
 import csv

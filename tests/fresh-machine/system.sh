@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # shellcheck shell=bash
 # Minimal Debian 12 systems for tests, to be sourced: make_system FOLDER [PACKAGE,…], mount_system FOLDER.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Any bytes as a server's messages to the C++ client. Its session must continue or throw one of its
 // two exceptions, and the values for controllers must be consistent. Only the socket is replaced:
 // the messages are the input, split at `separator`. The first byte selects a controller's session

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A connection's bytes before they are messages: ZMTP's greeting, handshake and frames, in pieces
 // of any size, and a request to the metrics port. What is taken must lie within what has arrived,
 // and cutting the bytes otherwise must give the same messages.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Runs inputs that are known, without a fuzzer: fuzz_inputs NAME FOLDER... gives the fuzzer all
 // files of the folders, each also with a changed byte, and some drawn inputs. So each build shows
 // that the fuzzers still compile, and that what they hold still holds.

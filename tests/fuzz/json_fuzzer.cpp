@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Any text, with a `{` in front, is read as a client's message in JSON and as a server's. A message
 // that can be read must be the one that protobuf reads. It must also be writable as JSON, and
 // readable again as the same kind of message.

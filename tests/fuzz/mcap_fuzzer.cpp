@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Recordings are files of anyone. Whatever the bytes are: reading them ends, in bounded memory,
 // with messages or with the place that is damaged; what a repair saves is a whole file that has
 // just the messages that could be read.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A server's handling of a client's bytes, for fuzzers.
 

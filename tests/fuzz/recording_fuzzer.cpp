@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Recordings are files of anyone. Whatever their messages say, in files that are whole otherwise: a
 // replay and the poses alone end with what could be read, or with the sentence that says what is
 // wrong.

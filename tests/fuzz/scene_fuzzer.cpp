@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Any text is read as a scene. The reader must not crash or hang, and a scene without faults must
 // be consistent, so that later code need not check it again. A text that does not begin like a
 // whole scene becomes the content of an arena.

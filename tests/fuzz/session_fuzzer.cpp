@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Any sequence of messages, losses, pauses, resets and time, from before the world is loaded to the
 // end. The barrier's status stays consistent, no session gets another's messages, and nothing grows
 // without bound. A tick is complete once every deadline has passed. Each byte of the input is a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Messages to peers, which are checked, and messages from peers.
 
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A barrier and its peers, played from the bytes of an input.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A small scene with most kinds of elements, and the check of every entity that was read.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A small world with much of the state that worlds can have. It has a robot with an arm, a tag, a
 // magnet, a battery, a radio and sensors with noise. Another magnet is beside it, and boxes fall on

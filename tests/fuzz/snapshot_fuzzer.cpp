@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Snapshots are files of anyone. Whatever is changed in one: the world is restored to some state,
 // which can be stepped, or the snapshot is refused and the world stays as it is. Checksums and
 // hashes are those of the changed bytes: who changes a file can compute them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Any text is read as an entity that a supervisor adds to a running scene. The reader must not
 // crash or hang, an entity without faults must be consistent, and the scene must not change.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Small texts from users and files: key files, patterns for ids, endpoints, values of options.
 // A wrong text must raise the exception that the reader documents, and an accepted text must give a
 // value within the documented limits. The first byte selects the reader.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Messages of three viewers to the live server, behind WebSocket, two of them with the token,
 // between ticks, spawns and answers. The queue of a viewer is bounded. Calls are only those of
 // viewers with the token, and each is answered once.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Any bytes are read as a client's message. A message that can be read must be writable as JSON and
 // readable again. One input in eight tests this, as it takes ten times as long as the rest.
 

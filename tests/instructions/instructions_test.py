@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Instructions of a steady tick, counted by callgrind, against committed figures: slower is a fault, faster is written down.
 
     instructions_test.py           compares; 3 % either way is a fault

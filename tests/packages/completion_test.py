@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Completion for bash and zsh: commands, options, scenes, and entities of a server that runs."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """An installation below a prefix, moved to another place: programs find what belongs to them, and `new` makes what runs."""
 
 import gzip

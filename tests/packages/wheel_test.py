@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The Python package as a wheel and as a source package: typed, whole, and used in a fresh environment."""
 
 import os

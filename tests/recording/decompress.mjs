@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Compression of chunks, by other libraries than the server's.
 import lz4 from "@foxglove/wasm-lz4";
 import zstd from "@foxglove/wasm-zstd";

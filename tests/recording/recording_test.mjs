@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Recordings of real runs, read by an independent reader of MCAP files: all chunks, schemas, indexes and CRCs, and
 // hash by hash against --hash-file.
 //

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """bench/run: its table, what it leaves out, and what Ctrl-C leaves."""
 
 import csv

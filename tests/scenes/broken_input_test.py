@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Faults of an author: each gives one clear message and exit code 1, never a hang or a crash."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Programs of a scene's controllers: where they are looked for, what they find, how they end, who starts them again."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Controllers that are stopped, killed and continued, under each deadline policy."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Devices from end to end: scripts set and read them, in one or several processes."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A world of boxes for tests of directors, and what these have in common."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Directors: what their acts do to a world, in which order, over resets and lost connections (section 9.1 of protocol.md)."""
 
 import contextlib

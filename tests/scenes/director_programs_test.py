@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Directors: their programs, policies and examples, and those from outside (section 9.1 of protocol.md)."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The end of the program: by signals in any situation, and by force; what is left behind."""
 
 import contextlib

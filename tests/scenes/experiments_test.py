@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Directors' scripts and programs: the examples, what a script may do, and a sweep over a director's metric."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """An eye-bot from end to end: scenes/eye_bot.lua takes off and follows a foot-bot by its camera."""
 
 import csv

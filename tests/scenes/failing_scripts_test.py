@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Lua scripts that fail, or do not end."""
 
 import json

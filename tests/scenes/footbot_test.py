@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Foot-bots from end to end: cameras on robot and turret, proximity with angles."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Course labs with a foot-bot's gripper, the floor that a director paints, and flashes that cameras see."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Scenes in the style of courses' labs and of libraries for ARGoS, unchanged: flocking by range and bearing, robots that
 flash together, stones as hulls, and a lab all of whose rules are in C++."""
 

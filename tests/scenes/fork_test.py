@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Runs that go on live from a tick of a recorded run."""
 
 import json

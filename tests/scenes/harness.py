@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Runs the real programs on small scenes, each test in a folder of its own.
 
 ZIGGURAT_BIN names the folder of the programs. Each test fails if it leaves a process, or a file in the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Hardware in the loop: injected delays and losses of messages, and the report cards."""
 
 import csv

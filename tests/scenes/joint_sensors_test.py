@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A joint with a sensor of its position and one of its velocity: scene, clients, recordings."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Kilobots from end to end: scenes/kilobots.lua finds hops from a seed, and one robot orbits it."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """`ziggurat sweep --kubernetes`: the manifest against the published schema of Kubernetes, as the models of its
 Python client have it, which are generated from that schema. No cluster runs it here."""
 

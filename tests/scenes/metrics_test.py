@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """metric(name, value) of controllers: in the summary, readings, recordings and at --metrics."""
 
 import json

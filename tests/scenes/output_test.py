@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Output of a run: log lines, files, progress."""
 
 import csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Outputs of all commands: their names tell what they are, and none replaces a file that ziggurat reads."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A foot-bot's light and ground sensors, distance scanner and coloured-blob camera from end to end: the script
 scenes/phototaxis.lua drives to a light, and the recording repeats."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The examples of docs/coming-from-argos.md: a director in two languages, a controller in two."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Controllers that end or never connect, and interruption by Ctrl-C."""
 
 import json

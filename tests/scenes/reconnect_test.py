@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Connections that are cut between a server and its controllers: the run has the states of an undisturbed one."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What tests of recordings share."""
 
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Recordings whose messages would take far more memory than they have bytes: no command takes more than is stated."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Recordings of real runs: whole, harmless when the disk is full, readable after kill -9, without secrets.
 
 ZIGGURAT_KILLS is the number of runs that are killed (4; in ./quickstart test-all 20).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """`ziggurat render`: pictures of a scene, at the start and at times of a run."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Recorded runs that are repeated, shown, and exported."""
 
 import csv

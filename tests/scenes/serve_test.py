@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """`ziggurat serve`: controllers connect from outside, and so do unknown peers."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Options of a run: the command line wins over the settings file, that over the scene."""
 
 import re

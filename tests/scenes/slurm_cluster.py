@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A Slurm cluster of its own on this machine: munged, slurmctld and slurmds in a private folder, with
 their own socket, key and ports. It needs root, because slurmd does.
 

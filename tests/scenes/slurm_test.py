@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """`ziggurat sweep --slurm` on a real Slurm that this test starts: tasks are killed on the way, and its table is
 that of a sweep on this machine. And a world whose controllers are on another node."""
 

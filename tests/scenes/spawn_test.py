@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Entities added and removed while a world runs: ctl spawn and remove."""
 
 import csv

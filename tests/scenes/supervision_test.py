@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Runs observed and controlled from outside: ctl, top, metrics, hardware in the loop."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """`ziggurat sweep`: every combination once, whatever is killed; its tables, refusals and plots."""
 
 import csv

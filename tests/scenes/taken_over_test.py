@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Robots that a client takes over from the programs that a run has started: the run goes on with it."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What tells how a recorded run and another differ: other builds, changed files, other recordings, other controllers."""
 
 import json

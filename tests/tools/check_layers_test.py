@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """tools/check_layers.py finds every violation, and nothing else."""
 
 import pathlib

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """tools/check_members.py finds members that have no initial value, and nothing else."""
 
 import pathlib

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """tools/check_security.py finds rows without tests and tests that do not exist."""
 
 import pathlib

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """tools/check_sizes.py counts lines and functions as a reader does."""
 
 import pathlib

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """tools/check_tests.py finds files that no test runs, and cases that are switched off."""
 
 import pathlib

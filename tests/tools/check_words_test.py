@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """tools/check_words.py finds the words of its list, and nothing else."""
 
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The list of files in docs/adding-a-device.md is that of the files that name the light sensors, without examples; the
 distance scanner is in no more.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """tools/release on small checkouts of its own, and its dry run on this one."""
 
 import importlib.machinery

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """docs/scene-reference.md is whole: it has each attribute that the reader's sources ask for, and each of our scenes.
 
 usage: scene_reference_test.py ROOT

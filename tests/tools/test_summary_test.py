@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """tools/test_summary.py names each case that failed, and the command that runs it alone."""
 
 import pathlib

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Layout of two robots with devices that describe themselves: two lamps each, which read a value
 // and take a power, and an ear, which reads rows.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Share of the longest tests that runs: a part of the rates and seeds in the normal run, all with
 // ZIGGURAT_TEST_ALL=1.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The live server, seen by an independent client of the Foxglove WebSocket protocol.
 //
 // usage: node viewer_test.mjs ZIGGURAT

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A real Chromium without a display, a run of the real program, and what both tell.
 import { spawn } from "node:child_process";
 import { accessSync } from "node:fs";

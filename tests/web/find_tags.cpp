@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Finds AprilTags of the family 36h11 in a picture, by libapriltag: their numbers, one a line.
 //
 // usage: find_tags PICTURE.pgm

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The gallery of `ziggurat view FOLDER` in a real browser: ctest -R web/gallery.
 import assert from "node:assert/strict";
 import { copyFileSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";

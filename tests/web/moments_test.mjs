@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Moments of a recording and of a running world: links, pictures, films, plots, marks, the tree: ctest -R web/moments.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The page in a real browser, with real runs of the program: ctest -R web/page.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The page as a player of recordings, in a real browser, without a server: ctest -R web/recording.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";

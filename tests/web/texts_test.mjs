@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Long texts of robots, scenes and recordings in the page, in a real browser: ctest -R web/texts.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Writes completion for bash and zsh from what `ziggurat` prints as help.
 
 usage: completion.py FOLDER-OF-PROGRAMS OUT    OUT/ziggurat for bash, OUT/_ziggurat for zsh

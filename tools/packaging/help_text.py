@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Help of the programs, read for manual pages and completion: commands, usage, paragraphs, options."""
 
 import dataclasses

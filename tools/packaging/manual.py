@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Writes manual pages from what the programs print as help.
 
 usage: manual.py FOLDER-OF-PROGRAMS OUT    OUT/ziggurat.1.gz, ziggurat-run.1.gz, … of each command, ziggurat-lua.1.gz, …

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Foraging with items that respawn: a director with the rule of scenes/experiments/foraging.lua.
 //   ziggurat serve scenes/experiments/foraging.argos --endpoint tcp://127.0.0.1:7400
 //   ziggurat-lua --connect tcp://127.0.0.1:7400                                       the robots

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A director that ends the stacking scene when one block stands on the other, and reports how far
 // aside it is:
 //   ziggurat serve scenes/prototype_srocs_system.argos --allow-director --endpoint

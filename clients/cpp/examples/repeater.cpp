@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The repeaters of Listing 2.8: each number received by one radio is sent by the other, plus one.
 // One process controls all robots of the controller.
 

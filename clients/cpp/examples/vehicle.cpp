@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Drives the four-wheeled vehicle of scenes/vehicle.argos: sets the target speed of each wheel
 // once, then logs the speeds that the encoders measure.
 //

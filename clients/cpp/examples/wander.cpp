@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A controller as a class, as ARGoS has them: drives straight on; near an obstacle it turns left.
 // It does what docs/coming-from-argos/wander.lua does:
 //   ziggurat run docs/coming-from-argos/nest.argos --controller wander=example_wander

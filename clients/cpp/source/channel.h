@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Channels: the packed fields of observations and commands, over all robots of a session, and the
 // values of handles that they fill or are filled from.

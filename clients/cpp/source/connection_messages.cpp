@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Parsing of the frames from the server; no sockets.
 
 #include <optional>

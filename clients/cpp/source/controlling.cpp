@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "controlling.h"
 
 #include <algorithm>

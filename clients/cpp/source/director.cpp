@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "ziggurat/director.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Which thread drives which session of this program: a thread that waits for a supervisor's request
 // can't answer for its sessions meanwhile.

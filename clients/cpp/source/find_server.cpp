@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The server that runs on this machine: `ziggurat serve` without --endpoint listens in a folder of
 // its user.
 

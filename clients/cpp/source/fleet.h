@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The robots of a session with all their devices; knows messages, but no connection.
 

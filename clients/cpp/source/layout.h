@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Makes the devices of a session's robots from Welcome: one function per kind of device, each in
 // its own file in devices/.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Part that a session plays: the robots of a controller, or the world of a director. Knows
 // messages, but no connection of its own.

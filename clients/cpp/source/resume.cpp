@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A session whose connection was lost goes on over another one.
 
 #include <algorithm>

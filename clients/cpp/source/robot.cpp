@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "ziggurat/robot.h"
 
 #include <stdexcept>

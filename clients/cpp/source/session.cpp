@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "ziggurat/session.h"
 
 #include <stdexcept>

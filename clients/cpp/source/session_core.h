@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Core of the sessions of controllers and directors: Hello and Welcome, ticks and their answers,
 // the end, and the way back after a lost connection.

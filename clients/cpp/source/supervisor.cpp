@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "ziggurat/supervisor.h"
 
 #include <algorithm>

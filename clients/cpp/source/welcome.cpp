@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The start of a session: Hello and Welcome.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The entities that a director is told of, and their states after a tick; knows messages, but no
 // connection.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.battery: available_charge, time_left
 
 #include "devices/device_table.h"

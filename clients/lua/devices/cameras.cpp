@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.cameras.<id>: led_detector, directional_led_detector, tag_detector, image, and where and
 // how the camera looks
 

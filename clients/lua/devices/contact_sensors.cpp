@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.contact_sensors.<id>: touches, force {x, y, z}, strength
 
 #include "devices/device_table.h"

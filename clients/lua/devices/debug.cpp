@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.debug: draw("arrow(…)(…)(…)"), draw{…}, write(…)
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "devices/described_devices.h"
 
 #include <array>

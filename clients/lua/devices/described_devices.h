@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Devices that describe themselves, below `robot`: robot.<kind> unless shapes.h says otherwise. It
 // has a device at each position, or at each id if they have ids:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "devices/device_table.h"
 
 namespace ziggurat::lua {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The kinds of devices that a script finds below `robot`, one file each in this folder.
 //

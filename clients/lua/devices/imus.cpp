@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.imus.<id>: acceleration, angular_velocity, both {x, y, z}
 
 #include "devices/device_table.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.joints.<id>: encoder, position, velocity, set_target(target)
 
 #include "devices/device_table.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.leds and robot.directional_leds: set_single_color(…), set_all_colors(…)
 
 #include "devices/device_table.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.magnets.<id>: set_current(current)
 
 #include "devices/device_table.h"

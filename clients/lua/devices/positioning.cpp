@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.positioning: position, orientation
 
 #include "devices/device_table.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.proximity[i]: a number, or {value, angle} if all sensors have angles
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.radios.<id>: tx_data(bytes), rx_data
 
 #include "devices/device_table.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.range_and_bearing: [i], set_data(…), clear_data()
 
 #include "devices/device_table.h"

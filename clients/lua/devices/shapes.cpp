@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "devices/shapes.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Shapes that the dialect gives to devices which describe themselves, where they are not what
 // follows from the description.

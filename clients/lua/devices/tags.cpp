@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.tags: set_single_payload(index, payload), set_all_payloads(payload)
 
 #include "devices/device_table.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.turret: rotation, set_rotation(…), set_rotation_speed(…), set_…_mode()
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.wheels: set_velocity(left, right), velocity_left, … axis_length
 
 #include "devices/device_table.h"

@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT
 -- Drives the four-wheeled vehicle of scenes/dynamics3d_multi_body_test.argos from your own Lua:
 --
 --   ziggurat serve scenes/dynamics3d_multi_body_test.argos &

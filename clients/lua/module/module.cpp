@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // require "ziggurat": sessions for programs with their own Lua 5.3. docs/lua-module.md lists the
 // functions; robots are the same tables as `robot` in scripts of ziggurat-lua.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/director_runner.h"
 
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/file_share.h"
 
 #include <sys/resource.h>

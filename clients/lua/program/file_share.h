@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Share of the files that this process may open, for each of its robots.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/find_script.h"
 
 #include <fstream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Runs robots that come while the program runs: each in a session of its own, all in this process,
 // one script at a time.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // ziggurat-lua: runs Lua controllers against a server.
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/options.h"
 
 #include <boost/program_options.hpp>

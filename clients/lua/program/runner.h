@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Runs the scripts of a session's robots from its first tick to its end.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/signals.h"
 
 #include <signal.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // SIGINT and SIGTERM end the scripts and then the program, even in an endless loop.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // stdout and stderr of scripts: printable unless scripts are trusted, and never in the way of a
 // tick.

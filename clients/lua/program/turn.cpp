@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "program/turn.h"
 
 #include <signal.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Scripts of one process run one after the other: what watches them (script/interrupt.h) knows one
 // at a time.

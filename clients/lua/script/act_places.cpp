@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/act_places.h"
 
 #include <charconv>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Places in a director's script of acts that the server may refuse later.
 

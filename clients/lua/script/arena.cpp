@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/arena.h"
 
 #include <sys/mman.h>

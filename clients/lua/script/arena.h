@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Memory for many states, side by side: the system can hold it in large pages. Each state takes a
 // chunk when it needs one.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Checks of a function's arguments. Strict: "1" is not a number. They raise a Lua error that names
 // the function, the argument and what is allowed.

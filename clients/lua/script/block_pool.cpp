@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/block_pool.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Blocks of a few sizes, taken again and again, close together in chunks of an arena. A step of a
 // script reads its state all over; where malloc() scatters a thousand states, each step waits for

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Bytes in scripts: arrays of integers from 0 to 255.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/colors.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/confined_code.h"
 
 #include <algorithm>

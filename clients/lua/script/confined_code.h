@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // load, loadfile, dofile and require.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/controller.h"
 
 #include "script/metric_function.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/data_files.h"
 
 #include <fnmatch.h>

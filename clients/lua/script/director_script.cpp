@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/director_script.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The table of an entity in a director's script. Its states are read when the script asks for them.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/environment.h"
 
 #include <cstring>

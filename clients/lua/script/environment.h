@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The globals of each script: the standard libraries, log, logerr.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/folders.h"
 
 #include <algorithm>

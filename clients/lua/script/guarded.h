@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Functions that Lua calls. A Lua error jumps over C++ frames, and an exception must not pass
 // through Lua's frames. Therefore:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/interrupt.h"
 
 #include <signal.h>

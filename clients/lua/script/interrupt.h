@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Ends scripts from a signal handler, also in endless loops: when the program is interrupted, and
 // when a call runs too many instructions or computes for too long. Signals belong to the process,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/log_lines.h"
 
 #include <stdexcept>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/math_random.h"
 
 #include <bit>

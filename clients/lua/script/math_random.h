@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // math.random and math.randomseed. Lua's own functions share one state per process: a robot's
 // numbers would depend on the other robots in it.

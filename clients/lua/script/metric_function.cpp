@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/metric_function.h"
 
 #include "script/arguments.h"

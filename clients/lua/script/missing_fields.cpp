@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/missing_fields.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Why a value is nil that an error is about: which field of `robot` or `world`, or which global, a
 // script read that is not there, and what io.open said.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/older_functions.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Functions of older Luas, for which most scripts of the dialect are written.
 

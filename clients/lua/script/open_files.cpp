@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/open_files.h"
 
 namespace ziggurat::lua {

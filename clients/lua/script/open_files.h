@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The files that a script has open: their number is bounded, as all scripts of a process share what
 // it may open.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/ordered_pairs.h"
 
 #include <string_view>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // pairs() in the same order in every run. Lua's own order depends on a hash with a seed from
 // addresses and the time of day: a script with a loop over robot.joints would behave differently in

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/place_file.h"
 
 #include <fcntl.h>

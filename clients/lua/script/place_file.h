@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Place file for a program that watches this one: the robot whose script runs, its file, and the
 // line of a long call. It is mapped into memory. So a signal handler can write it, and each call

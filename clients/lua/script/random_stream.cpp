@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/random_stream.h"
 
 #include <xxhash.h>

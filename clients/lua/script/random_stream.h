@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A stream of random numbers for one robot. It does not depend on the process that runs the robot,
 // nor on other robots.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/robot_random.h"
 
 #include <cmath>

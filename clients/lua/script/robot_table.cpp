@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/robot_table.h"
 
 #include "devices/described_devices.h"

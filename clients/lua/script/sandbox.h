@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Sandbox of a script that is not trusted. It starts no program, loads no byte code and no C
 // library, and uses only files below some folders (docs/lua-api.md has the whole list).

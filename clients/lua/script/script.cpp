@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/script.h"
 
 #include <string_view>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A script with its Lua state: its chunk, and calls of its functions.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/stuck_call.h"
 
 #include <pthread.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A way out of a function of Lua's library that does not end, such as string.find with a pattern
 // that tries too much: Lua calls no hook in it. A signal handler jumps out of it, to where the

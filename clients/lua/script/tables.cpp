@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/tables.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Values in tables of scripts: numbers, arrays, {x, y}, {x, y, z}, {angle, axis}.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // vector2, vector3 and quaternion of the dialect: tables {x, y}, {x, y, z}, {w, x, y, z} with
 // operators and methods.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/watched_functions.h"
 
 #include <string_view>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // coroutine.resume, coroutine.wrap and xpcall for interrupt.h: the first two keep note of the
 // coroutine that runs, the third calls no message handler of a script that must end.

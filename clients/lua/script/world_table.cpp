@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "script/world_table.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The table `world` of a director's script: the entities as they are, and functions that change the
 // world.

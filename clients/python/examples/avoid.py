@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """A foot-bot learns to drive among boxes, by the cross-entropy method, with numpy alone.
 
 usage: avoid.py [ZIGGURAT] [--worlds N] [--generations N] [--plot CURVE.svg]

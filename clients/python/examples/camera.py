@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Logs what the cameras of all robots detect, and writes the last picture of each to a PPM file.
 
     camera.py [ENDPOINT]

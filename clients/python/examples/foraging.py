@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Foraging with items that respawn: a director with the rule of scenes/experiments/foraging.lua.
 
     ziggurat serve scenes/experiments/foraging.argos --endpoint tcp://127.0.0.1:7400

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Ends the run when one of the blocks stands on the other and the robot has left it: a director.
 
     ziggurat run judge.argos

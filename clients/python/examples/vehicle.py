@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Drives the four-wheeled vehicle of scenes/dynamics3d_multi_body_test.argos.
 
     ziggurat serve scenes/dynamics3d_multi_body_test.argos

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Controllers for robots of a Ziggurat simulation server. See docs/python-client.md.
 
     with ziggurat.connect() as session:

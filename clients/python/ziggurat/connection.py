@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """One DEALER: sends and receives messages, with time-outs, and detects a closed connection."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Keys of encrypted connections."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Directors: programs with a rule for the whole world, in lock-step with it. See docs/python-client.md.
 
     with ziggurat.direct("judge") as world:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The exceptions of the client."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The packed arrays of a session, which handles of devices read and write."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The server that runs on this machine."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """How a controller begins or resumes a session."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the environments for learning have in common: a world with episodes, and what agents observe and do by default."""
 
 from __future__ import annotations

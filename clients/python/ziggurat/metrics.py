@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Metrics that were set since the last command."""
 
 from __future__ import annotations

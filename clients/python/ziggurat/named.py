@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Lists with access by id."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """An environment for multi-agent learning with the methods of PettingZoo's ParallelEnv, without
 that package: agents are robots, a step is a tick."""
 

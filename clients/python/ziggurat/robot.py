@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A robot of a session and its devices."""
 
 from __future__ import annotations

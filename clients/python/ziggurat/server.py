@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A server as a child process, for programs that start a run themselves."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A session of a controller: ticks, commands, lost connections, the end."""
 
 from __future__ import annotations

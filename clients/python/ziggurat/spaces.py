@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What observations and actions can be, with the names that Gymnasium and PettingZoo use, without those
 packages."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Supervision of a run: pause, step, reset, move, read. The world never waits for a supervisor."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a session tells: ticks, spawned robots, the end of the run."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """How a client's messages go to the server and back: a DEALER of ZeroMQ."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Many worlds at once for learning, with the methods of Gymnasium's VectorEnv, without that package. It needs
 numpy."""
 

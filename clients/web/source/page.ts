@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The page: makes its parts and connects them.
 import { embedded } from "./data/embedded";
 import { GeneratedSource } from "./data/generated";

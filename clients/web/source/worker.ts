@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A worker of the page: decodes messages, so that what is drawn does not wait for it.
 import { serve } from "./data/decoding";
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Messages written by @bufbuild/protobuf itself, by the schemas that the server advertises.
 import assert from "node:assert/strict";
 import { test } from "node:test";

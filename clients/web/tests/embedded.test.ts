@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The recording inside of an exported page: any bytes of it, from parts in base64.
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Encodes messages by the schemas that the server advertises, for tests.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Marks of the time line, moments and bookmarks.
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Labels of series, their charts, their table; metrics.
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Who is in a world, by type.
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Recordings that @mcap/core writes: whole ones, cut ones, damaged ones.
 import assert from "node:assert/strict";
 import { test } from "node:test";

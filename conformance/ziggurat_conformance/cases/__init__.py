@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """All cases for servers, in the order of the document's sections."""
 
 from . import (deadlines, directing, hello, later_versions, leaving, results, rovers, security, states, supervision, tick,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """All cases for clients."""
 
 from . import client_core, client_hil, client_reconnect, client_secure

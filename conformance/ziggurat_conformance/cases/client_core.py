@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Core: what a controller program must do, whatever it controls."""
 
 import time

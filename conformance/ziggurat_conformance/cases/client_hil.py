@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """HIL: deadlines of hardware in the loop."""
 
 from ..case import Case, Level

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Reconnect: resets, pauses, and connections that are really lost."""
 
 from ..case import Case, Level

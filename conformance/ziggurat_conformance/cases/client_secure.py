@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Secure: a client that is told keys uses them, and nothing else (K1, L12, T10)."""
 
 from ..case import Case, Level

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Section 3.2: what happens when a controller does not answer in time."""
 
 from ..case import Case, Level

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Section 9.1: directors. The variant is a server that lets them in from outside, such as
 `ziggurat serve {scene} --endpoint {endpoint} --allow-director`."""
 

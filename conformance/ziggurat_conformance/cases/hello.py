@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Section 2: beginning a session."""
 
 from ..case import Case, Level

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What version 1.1 brought: dropped robots (W10), what a resumed session had commanded (L13), spawned robots
 (V15); and 1.2: epochs (S13), snapshots (V11, V16, V17). Sessions of lower versions see none of it: the rules of
 every session say so. And 1.3: metrics (S14)."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Section 5: leaving, losing, ending."""
 
 from ..case import Case, Level

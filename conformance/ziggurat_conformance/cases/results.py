@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What results do not depend on: the order of answers (S12), policies (W9)."""
 
 from ..case import Case, Level

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Section 3.1: wheels, turrets, pictures, IMUs, contact sensors and devices that describe themselves, in a scene of
 their own. rover0 and rover1 drive and measure, rover2 only measures. rover1 has all of the others."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Section 8: keys. The name of a peer chooses its key: keys.py."""
 
 from ..case import Case, Level

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Section 4: which message is taken in which state. One case for each cell of the table."""
 
 from ..case import Case, Level

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Section 9: supervision."""
 
 import math

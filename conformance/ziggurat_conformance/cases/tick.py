@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Section 3: the tick, and what devices ask for."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Section 1: transport."""
 
 import json

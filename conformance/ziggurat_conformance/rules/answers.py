@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Which answer a client's faulty message must have (S10, H15, section 6)."""
 
 from typing import Iterator

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The binary form: the fields of a message, without their meaning."""
 
 from typing import Iterator, Optional

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The JSON form of a ClientMessage: what a server answers with MALFORMED (T6, K5)."""
 
 import math

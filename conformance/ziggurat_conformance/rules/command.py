@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a server refuses of a Command or a Leave (S6 to S8, S11, D0 to D7, D13, L1)."""
 
 import math

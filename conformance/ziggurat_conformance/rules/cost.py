@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """How many fields a client's message may have (K5): beyond these a server does not decode it."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What is wrong with messages of a director, or to one, whatever the world is (section 9.1)."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What an Error of the server must hold (section 6)."""
 
 from typing import Iterator

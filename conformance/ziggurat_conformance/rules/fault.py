@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A rule that a message breaks."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a server refuses of a Hello whatever its scene is (H2 to H4, H8, V1, K5)."""
 
 from typing import Iterator

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What an Observation and a Welcome must hold (S1, S2, D3 to D12, H9, H14)."""
 
 from typing import Callable, Iterator

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The Requests of a session and their Responses (V2)."""
 
 from typing import Iterator

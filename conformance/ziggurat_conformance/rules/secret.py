@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The session token, which is a secret (T10)."""
 
 import base64

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """One session as both of its ends see it: every message of either direction is judged and remembered."""
 
 import collections

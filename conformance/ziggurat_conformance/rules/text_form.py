@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The JSON form (T6)."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What sessions of earlier versions are not told (H2)."""
 
 from typing import Iterator, Optional

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "ziggurat/v1/envelope.h"
 
 #include <cstddef>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "ziggurat/v1/extent.h"
 
 #include <google/protobuf/message.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Extent of a decoded message, found before it is decoded. Bytes from anyone may be few and take a
 // thousand times as much memory.

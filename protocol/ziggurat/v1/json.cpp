@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "ziggurat/v1/json.h"
 
 #include <google/protobuf/util/json_util.h>

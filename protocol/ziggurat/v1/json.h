@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The JSON twin of the protocol's messages: protobuf's canonical JSON.
 

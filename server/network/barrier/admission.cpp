@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/barrier/admission.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Begin of sessions (docs/protocol.md, section 2).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/barrier/answer_timing.h"
 
 #include <algorithm>

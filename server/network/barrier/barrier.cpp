@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/barrier/barrier.h"
 
 #include <utility>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The lock-step barrier without sockets and clocks: messages of peers and the time in, messages to
 // peers out. It is a set of parts, each of which stands alone. The rules of docs/protocol.md are

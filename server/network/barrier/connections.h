@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Connections, as far as they have been heard of: the session of each, and how much it may send.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/barrier/deadlines.h"
 
 #include <algorithm>

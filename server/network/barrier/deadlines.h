@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The deadline policy of each robot, and the ticks that it missed.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/barrier/departure.h"
 
 #include <fmt/format.h>

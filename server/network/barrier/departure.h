@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // End of sessions, and departure of robots (docs/protocol.md, section 5).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The rules for directors (docs/protocol.md, section 9.1), where they differ from those for
 // controllers.

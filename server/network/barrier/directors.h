@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The directors of a world: who may direct it, who does, and what they want done.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // One message of a peer, from its bytes to the rule that handles it (docs/protocol.md, section 4).
 

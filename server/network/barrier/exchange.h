@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The tick path: observations out, commands in, and pauses between ticks (docs/protocol.md,
 // section 3).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/barrier/hello_checks.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Checks of a Hello: the grant of robots, or the refusal with its reason.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Report to the program that runs the server: events of peers and robots.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/barrier/metrics.h"
 
 #include <fmt/format.h>

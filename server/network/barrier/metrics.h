@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The metrics that sessions have set: at the current tick, and last.
 

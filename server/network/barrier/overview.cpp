@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/barrier/overview.h"
 
 #include <algorithm>

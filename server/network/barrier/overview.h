@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Status of robots and sessions, for users and programs that ask for it.
 

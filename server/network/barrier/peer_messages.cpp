@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/barrier/peer_messages.h"
 
 #include <fmt/format.h>

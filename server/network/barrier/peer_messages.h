@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Messages to one peer in its encoding, and answers to bad messages.
 

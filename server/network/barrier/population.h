@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Robots come and go, all together or some of them (docs/protocol.md, V6, V9, V13 and V14).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/barrier/sessions.h"
 
 namespace ziggurat::network {

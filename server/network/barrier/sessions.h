@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // All sessions, connected and lost, in the order in which they began.
 

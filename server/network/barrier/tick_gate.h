@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Whether the current tick is complete: every session has answered, and no robot is waited for.
 

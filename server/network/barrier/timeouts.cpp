@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/barrier/timeouts.h"
 
 #include <fmt/format.h>

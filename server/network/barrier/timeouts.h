@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Timeouts: missed deadlines (docs/protocol.md, section 3.2), heartbeats, and progress messages
 // while the world is loading.

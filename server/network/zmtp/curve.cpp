@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/zmtp/curve.h"
 
 #include <sodium.h>

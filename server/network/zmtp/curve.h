@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The server's end of CURVE, ZeroMQ's encryption (RFC 26): a handshake in which both ends prove
 // that they have their secret keys, then messages in boxes. The mathematics is libsodium's.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/zmtp/engine.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The server's end of one ZMTP 3 connection, without its socket: bytes that arrive in, frames of
 // messages out. What a client says of itself beside its key, such as a routing id, has no effect.

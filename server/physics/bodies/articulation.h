@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A body as a tree of the system: part i is link i of the tree.
 

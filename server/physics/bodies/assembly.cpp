@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/bodies/bodies.h"
 
 namespace ziggurat::physics {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/bodies/bodies.h"
 
 #include "physics/bodies/convert.h"

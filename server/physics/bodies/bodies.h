@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // An entity as plug-ins see it: its links, and the parts that move as one. The core (newton/)
 // moves the parts; here it is only asked where they are and pushed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/bodies/link_contact.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Contact of two links, as plug-ins and devices see it.
 

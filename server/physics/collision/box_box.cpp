@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Box against box: separating axes with signed distance (S. Gottschalk 1996), then the incident
 // face clipped against the reference face (Sutherland and Hodgman).
 // Boxes that overlap always get a contact. Separate ones that are aligned and pass diagonally may

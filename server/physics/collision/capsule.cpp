@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Capsule against capsule: where their segments are nearest, in closed form.
 
 #include "physics/collision/pairs.h"

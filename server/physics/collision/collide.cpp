@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Collides two colliders, with the motions that they have in a substep.
 
 #include "physics/collision/collide.h"

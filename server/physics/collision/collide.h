@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Collides two colliders, with the motions that they have in a substep.
 

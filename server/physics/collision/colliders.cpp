@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/collision/colliders.h"
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>

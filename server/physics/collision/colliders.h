@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Colliders: the shapes of all parts, their poses, and the broad phase that finds pairs near each
 // other within a substep (Bullet's trees of boxes).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/collision/contact_cache.h"
 
 #include <algorithm>

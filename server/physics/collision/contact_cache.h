@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Contact cache: contact points of a substep, with the impulses of the last substep.
 

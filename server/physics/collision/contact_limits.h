@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Limits of the number of contacts of a world: beyond them a substep would take minutes, and all
 // memory.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Cylinders, capsules and hulls against each other and against boxes. The normal is the best of the
 // flat faces' axes and of what GJK finds; the contact points are the other body's feature clipped
 // against that face.

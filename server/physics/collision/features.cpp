@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/collision/features.h"
 
 namespace ziggurat::physics::contact {

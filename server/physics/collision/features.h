@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Faces, edges and extents of convex bodies where they are, for clipping one against another.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Chooses the function for a pair of shapes, and thins out what it found.
 
 #include <algorithm>

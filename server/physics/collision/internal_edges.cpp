@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Internal edges between colliders that stand flush beside each other, in the world or in one body,
 // get no contacts.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/collision/overlap.h"
 
 #include "physics/bodies/bodies.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Overlap recovery. Contacts are linear in the displacement. A body that rotates far in a substep,
 // as at an impact of a corner, may penetrate with other corners at its end. So may a body that an
 // impact or a push-out moves off its predicted path.

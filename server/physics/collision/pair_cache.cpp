@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pairs of colliders in the contact cache, and their impulses.
 
 #include <algorithm>

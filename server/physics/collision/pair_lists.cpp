@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/collision/pair_lists.h"
 
 namespace ziggurat::physics {

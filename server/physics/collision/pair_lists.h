@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Lists of each collider's pairs: removing a collider visits no other pairs.
 

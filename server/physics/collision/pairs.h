@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // contact_points() for pairs of shapes, in one order of the two; find() turns the other round. A
 // shape that lacks a function with one of the others does not compile.

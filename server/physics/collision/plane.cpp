@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // All shapes against a half-space.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A small convex polygon in space and its clipping by half-spaces.
 

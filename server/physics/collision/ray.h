@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Ray casts against all colliders and the floor, for proximity sensors and lines of sight. They
 // work on published poses, so their answers belong to a tick.

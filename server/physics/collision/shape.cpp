@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/collision/shape.h"
 
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>

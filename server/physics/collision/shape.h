@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Physical properties of shapes. Each function is written for each shape in shape.cpp; a shape
 // without one does not compile.

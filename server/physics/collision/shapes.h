@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The contact geometry of the engine: points at which two convex bodies touch, or will within the
 // next substep. Functions are pure functions of dimensions and poses; Bullet only lends its vector

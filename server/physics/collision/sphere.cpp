@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Spheres against all others: one point, in closed form but for hulls.
 
 #include <BulletCollision/CollisionShapes/btSphereShape.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/collision/sphere_grid.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Hierarchical grid of spheres, one level for each power of two of their diameters. A query takes
 // the same time for any number of spheres.

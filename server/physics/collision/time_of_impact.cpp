@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <LinearMath/btTransformUtil.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/multibody/equations.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Equations of motion M(q) dv/dt + c(q, v) = generalised forces (Featherstone 2008).
 // Mass matrix: composite rigid bodies (section 6.2).

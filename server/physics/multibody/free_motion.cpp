@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/multibody/free_motion.h"
 
 #include <algorithm>

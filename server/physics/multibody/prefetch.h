@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Asks for memory that is read soon, so that it is in the processor's cache by then. A world of a
 // thousand robots is larger than that cache, and each of its robots is read several times a

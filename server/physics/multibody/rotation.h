@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Rotations that follow from turning at a constant rate, exactly.
 

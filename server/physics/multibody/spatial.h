@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Spatial vectors (R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 2). All are in
 // world axes about one common point O, so quantities of different links add up without transforms.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/multibody/tree.h"
 
 #include <algorithm>

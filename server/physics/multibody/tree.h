@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // An articulated tree of rigid bodies in generalised coordinates. A single body is a tree of one
 // link. Links come parents first; link 0 is the root.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Augmented Lagrangian: Newton's method on the regularised problem about multipliers, the impulses
 // known so far. From the last substep's impulses a heap at rest takes one step.
 

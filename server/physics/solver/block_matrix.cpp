@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/solver/block_matrix.h"
 
 #include <Eigen/Core>

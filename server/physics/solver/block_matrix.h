@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A square matrix of blocks, one row and column of blocks per tree of an island, with a symmetric
 // pattern and unsymmetric values; factored directly. The order of elimination is by least degree

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Constraints of a substep: contacts, servos and limits. Each stores its impulse. Fed back,
 // impulses start the next substep's solution, and keep bodies at rest from creeping.

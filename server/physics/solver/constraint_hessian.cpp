@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/solver/constraint_hessian.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Contribution of a constraint's linearised law to the matrix of an island. It is most of the work
 // of Newton's method, so the compiler knows the sizes of robots with few joints.

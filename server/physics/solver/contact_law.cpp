@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/solver/contact_law.h"
 
 namespace ziggurat::dynamics {

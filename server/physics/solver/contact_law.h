@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The laws of constraints: contacts with sliding, spinning and rolling friction, servos and limits.
 // All are one law, exact and linearised: g = P(y) with y = g - (u + c g - s) / m.

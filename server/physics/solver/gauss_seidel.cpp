@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/solver/gauss_seidel.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Projected Gauss-Seidel passes, accelerated, for islands whose matrix is too expensive to factor,
 // and for those for which no other method converged.

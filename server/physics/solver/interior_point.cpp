@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Interior point method for islands with impacts. Impulses and speeds of every contact stay inside
 // their cones, and their product goes to zero. The number of steps hardly depends on the number and
 // state of contacts.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Products with the Jacobian of one side of a constraint: R rows, one after the other, each with an
 // entry for each dof that moves the side. A floating base leads with six; the compiler knows their

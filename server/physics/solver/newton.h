@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Solvers of the velocity problem of an island; the first of these that converges:
 // - Newton's method on the contact law (semi-smooth: Alart and Curnier 1991; S. Hueeber and B.

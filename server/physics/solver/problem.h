@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The velocity problem of one island in one substep, for velocities v and impulses g:
 //   M v = p + J^T g,   u = J v,   g in the law of (u, g), see contact_law.h.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Choice of the methods: which one an island gets, and what follows where it fails.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/stepping/correction.h"
 
 #include <algorithm>

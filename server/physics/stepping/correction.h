@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Corrections of an island's velocities at the end of its step, in their order. The mass matrices
 // were those of the step's beginning, and the pose is another one now.

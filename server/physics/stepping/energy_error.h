@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Error of the kinetic energy that rotation within a substep adds or removes. Coriolis and
 // gyroscopic forces do no work. Velocities, however, are solved with the mass matrix of the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/stepping/geometric_stiffness.h"
 
 #include <Eigen/Eigenvalues>

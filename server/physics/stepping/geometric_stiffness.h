@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Geometric stiffness: tension makes links stiff against rotation. Links of a chain swing with up
 // to sqrt(4 T / (m l)) (tension, mass and length of a link). Impulses act along the lines of a

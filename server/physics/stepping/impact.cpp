@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/stepping/impact.h"
 
 #include <algorithm>

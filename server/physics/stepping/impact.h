@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Impacts. A contact with restitution that closes within a step ends the step of its island: the
 // island advances to the impact without it, the impact law acts at the configuration of the impact,

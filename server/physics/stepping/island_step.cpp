@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Step of an island: its stages in order.
 
 #include "physics/stepping/island_step.h"

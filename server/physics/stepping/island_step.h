@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Step of one island: free motion, or motion by the solution of its velocity problem, with the
 // corrections of its end.

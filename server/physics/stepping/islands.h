@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Islands: sets of awake trees that contacts connect, each with its constraints. An island is
 // solved alone.

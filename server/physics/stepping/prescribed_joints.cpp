@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/stepping/unconstrained_trees.h"
 
 namespace ziggurat::dynamics {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sleep of islands, and events that wake them.
 
 #include "physics/stepping/sleeping.h"

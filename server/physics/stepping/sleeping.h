@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Sleep of islands at rest, and events that wake them: an approaching contact, changed wrenches or
 // servos.

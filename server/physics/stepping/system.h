@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // All trees, stepped together. Islands of trees in contact are solved one by one, each from its own
 // trees, contacts, servos and limits alone.

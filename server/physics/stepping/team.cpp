@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/stepping/team.h"
 
 #include <utility>

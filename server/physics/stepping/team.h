@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A team of threads that share the items of a loop. Items are independent of each other, so results
 // do not depend on which thread takes which.

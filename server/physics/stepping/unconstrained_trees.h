@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Trees of an island without active constraints: they move freely, by an integrator of higher
 // order.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Prediction of velocities within a substep, before contacts are found.
 
 #include <algorithm>

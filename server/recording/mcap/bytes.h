@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Little-endian numbers and texts with their lengths, to bytes and back, and the CRC of bytes.
 // Reading checks every length against what is left.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "recording/mcap/compression.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Contents of an MCAP file, without messages and the data of attachments.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The contents of records, from bytes. Nothing: the bytes are not that record.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "recording/mcap/encode.h"
 
 #include "recording/mcap/bytes.h"

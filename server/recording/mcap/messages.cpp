@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "recording/mcap/messages.h"
 
 #include <algorithm>

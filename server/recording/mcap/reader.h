@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Reads an MCAP file, of anyone: every length is checked against what is left, memory is bounded by
 // Limits. With a summary only that is read at first; a file without a good one, as after kill -9,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The records of an MCAP file (version 0), as plain data. Integers are little-endian in the file.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Reads a file from its start to its end, record by record, and checks everything: lengths, CRCs,
 // indexes against what they refer to.

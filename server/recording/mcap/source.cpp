@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "recording/mcap/source.h"
 
 #include <fcntl.h>

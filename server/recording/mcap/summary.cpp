@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "recording/mcap/summary.h"
 
 #include <fmt/format.h>

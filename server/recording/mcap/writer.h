@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Writer of an MCAP file with any content: chunks with message indexes, attachments, metadata, and
 // a summary at the end. Records outside of chunks are written at once. So a file that is cut off

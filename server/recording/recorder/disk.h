@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The file on disk, which has whole records only, also if the disk is full.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Overview of a recording, or of any other MCAP file.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A run on its way into a recording, on a thread of its own. The run's thread only copies. If the
 // disk or the thread is slower than the run, the run waits: a recording is whole, and what a killed

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A run as an MCAP file (docs/recordings.md): which messages it has, in which order and chunks. No
 // threads here.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "recording/recorder/start.h"
 
 #include "ziggurat/v1/envelope.h"

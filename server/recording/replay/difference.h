@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Comparison of two states, and of a robot's commands with the recorded ones.
 

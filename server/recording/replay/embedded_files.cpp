@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "recording/replay/embedded_files.h"
 
 #include <fmt/format.h>

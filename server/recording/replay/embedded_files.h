@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The files that a recording contains: its scene is read from them and from nothing else.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "recording/replay/export.h"
 
 #include <fmt/format.h>

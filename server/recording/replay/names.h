@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Who is in a recorded world, from its topic /world: no world is built for it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "recording/replay/recorded_log.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "recording/replay/recording_file.h"
 
 #include <fmt/format.h>

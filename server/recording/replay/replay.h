@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Repeats a run from its inputs: what was done to the world and what its robots wanted, tick by
 // tick. It knows no file; anything that yields the inputs in their order will do.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/options/controller_option.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Options that may name a controller, and some also a director: `[CONTROLLER=]…`.
 

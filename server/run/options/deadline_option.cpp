@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/options/deadline_option.h"
 
 #include <fmt/format.h>

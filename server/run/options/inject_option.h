@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // --inject [CONTROLLER=][observations:|commands:]latency=TIME,jitter=TIME,loss=SHARE
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Options that must fit what the run is: its clients, its deadlines, its scene.
 

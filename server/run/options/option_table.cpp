@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/options/option_table.h"
 
 #include <fmt/format.h>

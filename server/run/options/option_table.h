@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Options of a run, each declared once: the command line, settings files, scenes and the help are
 // read and written by this table.

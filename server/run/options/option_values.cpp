@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/options/option_values.h"
 
 #include <fmt/format.h>

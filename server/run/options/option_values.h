@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Values of options, from their texts. All throw text::UsageError with what to write instead.
 

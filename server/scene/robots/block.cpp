@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The stigmergic block of scenes/models/block.argos, where its sources are: a cube with a freely
 // turning magnet near each corner, and on each face four LEDs, a tag and a radio.
 

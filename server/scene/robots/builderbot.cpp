@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The builderbot: a body on wheels whose lift moves an end effector with four electromagnets.
 // Places of sensors and magnets, and the heights of the lift, are those of our construction robot,
 // scenes/models/robot.argos, whose sources are there. Here the body is one box that drives like a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The e-puck. Diameter, axle and wheels: e-puck.org, "Mechanics of the e-puck" (EPFL): 70 mm,
 // 53 mm, and 41 mm wheels that turn once a second at most. Height, mass, and reach and bearings of
 // the infrared sensors: Webots User Guide, "Using the e-puck robot", tables 8.1 and 8.4: 45 mm,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Robots that fly. The eye-bot's ring of sensors, the counts of its devices and the cameras' ranges
 // are the dialect's. No source states masses, sizes of bodies and limits of flight: those are ours.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The foot-bot of the dialect: its geometry, its anchors, and the devices that exist here.
 
 #include <array>

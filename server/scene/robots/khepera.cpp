@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The Khepera IV. Sizes, mass and counts are those of K-Team's "Khepera IV User Manual". Infrared
 // looks out each 45 degrees, counter-clockwise from ahead, as "Buzz on the Khepera IV" says.
 // Bearings of ultrasound, heights, places below and of LEDs, and forces are ours.

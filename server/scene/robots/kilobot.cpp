@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The kilobot. Rubenstein, Ahler and Nagpal, "Kilobot: A low cost scalable robot system for
 // collective behaviors" (ICRA 2012): 33 mm in diameter, 34 mm high, 1 cm/s ahead, 45 degrees/s on
 // the spot. Rubenstein, Cornejo and Nagpal, "Programmable self-assembly in a thousand-robot swarm"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Parts of robots on wheels.
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The pi-puck: an e-puck that carries a Raspberry Pi (Millard et al., "The Pi-puck extension
 // board", IROS 2017). Diameter and axle are the e-puck's, and so are the bearings of its infrared
 // sensors, which serve as rangefinders, its ground sensors and its LEDs. No source states height

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // <foot-bot>, <e-puck>, …: what a scene may say of a robot that comes as it is.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Devices of controllers that only robots have which come as they are: their attributes.
 
 #include "scene/enabling.h"

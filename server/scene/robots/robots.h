@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The robots that the dialect has by name. Each file has one robot's table of constants and
 // writes them into an entity: links, wheels, devices. Settings of a scene come on top.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """`ziggurat serve` behind a relay that bends what is said: bent_server.py ENDPOINT SCENE BUG [OPTION…]
 
 The relay is a server of its own to its clients: it speaks ZMTP, a connection to the real server for each

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the bugs of tiny_client.py change."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The kit refuses the same JSON of clients as a server: the texts of json_test.cpp, and more."""
 
 import unittest

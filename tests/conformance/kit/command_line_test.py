@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the kit prints about mistakes on the command line and in the program under test."""
 
 import collections

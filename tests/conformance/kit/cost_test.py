@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The kit counts the fields of a message as a server does."""
 
 import unittest

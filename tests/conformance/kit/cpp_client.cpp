@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A controller on the C++ library for the conformance kit: all motors at one speed, all it hears
 // back.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A client that sends heartbeats instead of Commands; fewer than are too many (M7). It does not read what the server says."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Clients that do not answer, or do not read."""
 
 import subprocess

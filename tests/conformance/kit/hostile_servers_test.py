@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Servers that send what no server sends."""
 
 import socket

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The kit catches what is broken: each mutant breaks one rule, and fails the case that the table names,
 which the right program passes. Mutants are programs of their own on sockets of their own."""
 

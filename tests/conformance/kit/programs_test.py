@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Programs under test that print without end, leave others behind, or are running when the kit is ended."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Every rule of docs/protocol.md has a case, or a reason why not."""
 
 import re

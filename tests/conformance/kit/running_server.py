@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The kit against a server that runs already: running_server.py ZIGGURAT KIT [OPTION of the kit]…
 
 Starts `ziggurat serve` with the kit's scene, once, and plays all cases that need no restart."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The table of the bugs of bent_server.py: what each breaks, and which case catches it."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A controller that uses every device, rightly, and broken ones: tiny_client.py [BUG [json]].
 
 It resumes its session after a lost connection, repeats its values after a missed deadline, and uses keys.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Drives all robots with wheels that it is given: a client for scenes of one robot."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The robots' controller in C++ (clients/cpp/examples/assembly): by the same rule table it does what the Lua scripts do."""
 
 import pathlib

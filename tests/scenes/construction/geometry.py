@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Shapes and poses of a construction scene: depth of overlaps, drift of joints."""
 
 import dataclasses

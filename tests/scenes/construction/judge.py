@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Judges a construction run by its trace and readings: final places of blocks, depths of overlaps, drift of
 joints, kinetic energies.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Runs a construction scene many times, each time set up differently, and judges every run.
 
     tests/scenes/construction/perturb.py --runs 100

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Some of perturb.py's perturbations of the stacking scene (twelve with ZIGGURAT_TEST_ALL=1), and bad runs that the judge must find."""
 
 import concurrent.futures

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Judges what several robots built, by the trace alone: every block in its place relative to the structure's
 own frame, at rest, and nothing deep or fast on the way."""
 

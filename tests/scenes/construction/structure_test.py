@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Two robots build two structures by different rule tables, and wrong structures that the judge must find."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Hostile requests and servers, each against the real program: a sentence, and it goes on."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A controller that can be disturbed, as a process that is forked from the test.
 
 Its commands depend only on the tick and on what its robot senses, so a restarted controller continues

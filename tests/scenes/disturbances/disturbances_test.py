@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Sixteen controllers, each of them disturbed. The results of the runs must not change.
 
 disturbances_test.py         1000 ticks, a disturbance for each controller

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A server that runs for long: ticks, sessions that come and leave or vanish, spawns and resets. Its memory
 stays what it was.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Everything at once: viewers, recorder, metrics port, director, supervisor, snapshots, resets, Ctrl-C. The
 recording repeats the run. By the thread sanitizer's build (docs/testing.md) it finds what threads share.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Hostile files and settings, each against the real program: a sentence that names them."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Hostile peers without a session. Each function runs in a process of its own until the server has
 ended."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Hostile viewers at the port of --view: the world, and a viewer with the token, go on; memory is bounded."""
 
 import json

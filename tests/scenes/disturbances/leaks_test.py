@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Thousands of peers connect and disconnect, correctly and not; the server leaks no file and no memory."""
 
 import ctypes

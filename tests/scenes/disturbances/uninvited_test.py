@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What peers without a session, and observers, can do to a server: nothing that others notice.
 
 uninvited_test.py         seconds per attack

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A viewer's end of WebSocket (RFC 6455) by hand, to send invalid bytes too."""
 
 import base64

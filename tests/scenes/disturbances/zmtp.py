@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """ZeroMQ's wire protocol (ZMTP 3.0, no security) by hand, to send invalid bytes."""
 
 import socket

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A hundred small bodies fall between four walls and come to rest.
 
 #include <gtest/gtest.h>

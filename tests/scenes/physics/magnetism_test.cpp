@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Figure 2.2 of the report: four rows of five magnetic boxes.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The four-wheeled vehicle turns in place and drives straight.
 
 #include <gtest/gtest.h>

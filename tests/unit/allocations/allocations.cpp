@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "allocations/allocations.h"
 
 #include <cstdlib>

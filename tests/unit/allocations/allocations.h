@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Allocations of a test's thread, counted by an operator new that replaces that of the whole
 // program.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The simulated tag detector compared with a real one, libapriltag, on the rendered picture.
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Our projection compared with OpenCV's, and poses of tags that OpenCV computes from our corners.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Cameras in a scene whose bodies hide devices.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Channels say what the world's state says.
 
 #include "channels/channels.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A program that knows nothing of our types can decode every channel by its schema.
 
 #include "channels/schema.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The client's tick path keeps its memory.
 
 #include "allocations/allocations.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Devices that describe themselves: the C++ handles and the tables of Lua.
 
 #include <gtest/gtest.h>

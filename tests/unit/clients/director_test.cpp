@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Directors against a server that the test scripts.
 
 #include "ziggurat/director.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The client against a server that lies: its texts, versions and sizes.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.cameras, robot.wheels and robot.turret as scripts find them.
 
 #include <numbers>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A robot whose script runs against values that the test sets. A wrong value fails an assert of the
 // script.

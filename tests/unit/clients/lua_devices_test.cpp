@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tables below `robot` in scripts, one by one. A script's fault fails its assert.
 
 #include "lua_devices.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A script before the limit of its session, against a server that the test scripts.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.debug of scripts: forms of drawings, and their limits. A script's fault fails its assert.
 
 #include <gtest/gtest.h>

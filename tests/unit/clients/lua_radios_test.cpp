@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Radios of scripts: what they receive and send, and their limits. A script's fault fails its
 // assert.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Markers of the C++ client.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A robot without a server: the test sets what it senses and sees what it is commanded.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Wheels and turrets of the client, against a server that the test scripts.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Connections that are lost, against a server that the test scripts.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The client against a server that the test scripts.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Supervisor against a server that the test scripts.
 
 #include "ziggurat/supervisor.h"

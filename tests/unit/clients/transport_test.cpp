@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The connection to a server.
 
 #include "transport.h"

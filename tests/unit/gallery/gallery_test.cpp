@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Requests to the gallery, without a port. The program that it starts is a script.
 
 #include "gallery/gallery.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "http/port.h"
 
 #include <arpa/inet.h>

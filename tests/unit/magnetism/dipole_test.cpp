@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "magnetism/dipole.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "magnetism/relaxation.h"
 
 #include <gtest/gtest.h>

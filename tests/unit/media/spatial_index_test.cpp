@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "media/spatial_index.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // When connections are accepted.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Answers to questions are computed once while nothing changes.
 
 #include "network/answer_cache.h"

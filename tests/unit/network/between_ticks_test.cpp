@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Changes of the world between two ticks, while clients connect and leave.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The client's end of CURVE (RFC 26), step by step, so that tests can send steps again, in another
 // order or altered. The mathematics is libsodium's.

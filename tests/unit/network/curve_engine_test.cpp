@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Attacks of a peer that has the right keys. It sends boxes again, in another order, of another
 // length or direction, or steps of the handshake at the wrong time. All end the connection.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Events of a client's ZeroMQ socket during a handshake (docs/protocol.md, K8). Authors of clients
 // tell a refusal from slowness by them.
 

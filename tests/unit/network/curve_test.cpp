@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // CURVE on real sockets: who is on the list gets in, in the roles of its key; others get nothing.
 
 #include <gtest/gtest.h>

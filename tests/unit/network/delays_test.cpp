@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Random draws for messages, and delay lines.
 
 #include "network/delays.h"

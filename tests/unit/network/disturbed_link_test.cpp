@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Messages that are held back or lost on purpose, by a clock that only the test moves.
 
 #include "network/disturbed_link.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Real sockets, real clients in threads: the barrier as a run sees it.
 
 #include <gtest/gtest.h>

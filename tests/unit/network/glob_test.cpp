@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/glob.h"
 
 #include <gtest/gtest.h>

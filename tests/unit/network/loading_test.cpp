@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Clients that come before the world is there, on real sockets.
 
 #include <gtest/gtest.h>

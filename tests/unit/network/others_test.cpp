@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Time that the server gives to others than controllers and supervisors: much of the idle time, and
 // a small share of the ticks'.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One connection over a socket pair: what is cut into messages, and what may wait.
 
 #include "network/peer_socket.h"

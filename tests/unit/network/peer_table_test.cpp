@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Age limits of connections without session, and the memory limits of all connections.
 
 #include "network/peer_table.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Peers of a barrier without sockets: what they send, and what they are told.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A ZeroMQ client without keys that sends what the test says and reads nothing.
 

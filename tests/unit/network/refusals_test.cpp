@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Clients that can't talk with the server: each is told of in a line that says what it is and what
 // is needed.
 

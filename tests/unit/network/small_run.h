@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A run of a few robots, each with one hinge, for tests that need no scene.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // In which order connections get their messages taken.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Devices that describe themselves, as named values of a reading.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "outputs/hash_file.h"
 
 #include <gtest/gtest.h>

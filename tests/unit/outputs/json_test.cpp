@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "outputs/json.h"
 
 #include <google/protobuf/descriptor.pb.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A substep in which nothing comes or goes allocates nothing.
 
 #include "allocations/allocations.h"

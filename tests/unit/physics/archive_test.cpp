@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A state as bytes, of anyone: pairs of colliders that no world can have are refused.
 
 #include "math/archive.h"

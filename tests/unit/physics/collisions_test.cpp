@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Collisions in flight: Galilean invariance, independence of the order of listing, and spin by
 // friction.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Entities added to and removed from a running world.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Contact events of plug-ins, and sensing of watched links.
 
 #include "physics/contact_sensing.h"

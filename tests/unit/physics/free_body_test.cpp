@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bodies in flight and at rest, against closed forms.
 
 #include <gtest/gtest.h>

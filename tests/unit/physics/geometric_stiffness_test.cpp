@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Chains of light links that pull: their tension comes from what touches them.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Joints and motors against closed forms.
 
 #include <gtest/gtest.h>

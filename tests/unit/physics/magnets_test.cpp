@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Magnetism acting on bodies in Bullet.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pendulums, chains, limits and motors.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Flat bodies that fall, turn and strike: no corner goes into what stands.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Free joints on what motors turn.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bodies that rebound and turn. What rebounds straight is in
 // sliding_test.cpp.
 

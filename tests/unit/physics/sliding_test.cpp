@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sliding, rolling and bouncing, against closed forms at many substeps.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Free rotation, gyroscopes and what must not fall asleep: closed forms at
 // many substeps. Bodies are set turning by a plug-in.
 

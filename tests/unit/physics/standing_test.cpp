@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bodies at rest stay: towers, mass ratios, planks, card houses.
 
 #include <gtest/gtest.h>

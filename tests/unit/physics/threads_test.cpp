@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A world has the same bits for any number of threads.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bodies with fixed magnets that tumble freely and fall together: kinetic
 // plus magnetic energy never grows, at any substep.
 

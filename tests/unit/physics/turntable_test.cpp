@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bodies on a turntable: lying, rolling, and carried round by its walls and slots.
 
 #include <gtest/gtest.h>

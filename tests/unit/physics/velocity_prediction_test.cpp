@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Motors, pushes and impacts that accelerate a body within a substep: it stops at its obstacles.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Links on fixed joints: mass, balance and inertia of the combined body, against closed forms.
 
 #include <gtest/gtest.h>

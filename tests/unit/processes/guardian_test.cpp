@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "processes/guardian.h"
 
 #include <gtest/gtest.h>

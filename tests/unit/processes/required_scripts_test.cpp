@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which files scripts load, as far as their texts say.
 
 #include "processes/required_scripts.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Packing of commands and states, there and back, and messages that no writer makes.
 
 #include "recording/inputs.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Threads for pictures that can't all be started: each allocation of their begin is made to fail
 // once.
 

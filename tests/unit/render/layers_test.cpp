@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Layers over the world if a view asks for them.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tags and LEDs in pictures.
 
 #include <gtest/gtest.h>

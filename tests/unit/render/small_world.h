@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Worlds of a few links, tags and LEDs, put together by hand.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render/tag36h11.h"
 
 #include <apriltag/apriltag.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "reports/progress.h"
 
 #include <gtest/gtest.h>

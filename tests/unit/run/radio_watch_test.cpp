@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/radio_watch.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/setup.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/viewpoint.h"
 
 #include <gtest/gtest.h>

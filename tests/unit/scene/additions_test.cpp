@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Entities added to a scene after it was read.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Controllers and directors: their values, and notices about parts without effect.
 
 #include <gtest/gtest.h>

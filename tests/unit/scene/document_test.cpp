@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Faults of a file below the level of elements: missing, too large, not XML.
 
 #include <gtest/gtest.h>

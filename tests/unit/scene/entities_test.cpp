@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The arena: bodies, trees of joints, devices and distributions.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Faults of entities in the arena, for the test in faults_test.cpp.
 
 #include "faults.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Faults of authors, one row each: the wrong part of a scene, and the expected message.
 // A part is on its own line: framework 2, controllers 3, arena 4, engines 5, media 6, rest 7.

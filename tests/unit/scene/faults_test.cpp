@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Faults of a scene's sections; faults of entities are in entity_faults_test.cpp.
 
 #include "faults.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Files that a scene includes.
 
 #include <gtest/gtest.h>

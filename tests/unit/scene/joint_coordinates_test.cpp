@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Coordinates of joints from poses and velocities.
 
 #include "scene/joint_coordinates.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A listing of the technical report, as printed there: with stray spaces inside values and line
 // breaks inside attributes.
 

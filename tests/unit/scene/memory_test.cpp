@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scenes that would take too much memory are refused while they are read, at the element that is
 // one too many.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Faults of models and of the files that contain them, each at its place.
 
 #include <gtest/gtest.h>

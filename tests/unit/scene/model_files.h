@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A model in a file of its own, and scenes that include it, in memory.
 

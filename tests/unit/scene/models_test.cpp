@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Models that many entities share.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene/names.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Words of other versions of the dialect: notices, each with what it means here.
 
 #include <gtest/gtest.h>

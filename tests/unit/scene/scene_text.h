@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A valid scene in parts that a test can replace, and functions to inspect the reported problems.
 

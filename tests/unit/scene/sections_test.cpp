@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Framework, engines and media: their values, and notices about parts without effect.
 
 #include <gtest/gtest.h>

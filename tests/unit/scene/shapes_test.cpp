@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shapes as scenes say them: single bodies, links, hulls from vertices and from files.
 
 #include <fmt/format.h>

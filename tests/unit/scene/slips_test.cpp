@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Slips of the pen: each gives one message, where it was made, and not those that follow from it.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Devices that controllers use must be on their robots; robots with a fixed set of devices.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene/values.h"
 
 #include <gtest/gtest.h>

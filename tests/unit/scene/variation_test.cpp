@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // --set and --param: what the command line changes in a scene.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A steady tick of the simulation allocates nothing, whatever devices sense and do.
 
 #include "allocations/allocations.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Coloured-blob cameras: bearing and distance of a blob, or its pixel; what hides it.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pi-pucks, builderbots and blocks: drive, rangefinders, lift, magnets, camera.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Entities that are spawned while a world runs, and entities that are removed.
 
 #include <gtest/gtest.h>

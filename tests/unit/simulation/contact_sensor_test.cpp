@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Readings of a contact sensor, against closed forms.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Devices of the e-puck under its own names: infrared proximity and light, ground, LEDs, wheels,
 // and range and bearing.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A spawn that fails at any point leaves the world as it was: each allocation is made to fail once,
 // and the library of OpenGL to be missing.
 

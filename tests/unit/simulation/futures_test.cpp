@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A world that was put back goes on as the one that was never interrupted: every scene, at random
 // ticks, under random commands. Finds what a snapshot forgets, and names the field.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Grippers: what they hold, pull and turn; the force at which a grip tears; what ends it.
 
 #include <gtest/gtest.h>

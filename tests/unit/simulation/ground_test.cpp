@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ground sensors on a floor with a picture: which pixel lies below a point.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Readings of an inertial measurement unit, against closed forms.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Joints that are put to a position and a speed.
 
 #include "simulation/joints.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The Khepera IV: how it drives, and what its sensors read of a wall, the floor and a light.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Kilobots: how fast they go and turn, which messages arrive, how often, and from how far.
 
 #include <gtest/gtest.h>

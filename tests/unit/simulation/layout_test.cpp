@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "simulation/layout.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Lights and light sensors: closed forms of a light at a distance and an angle, behind a wall, with
 // noise; lights that move, come, go and are switched.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Markers of robots: shown for one tick, and no part of the state that matters.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Robots that fly: hovering, flying to places and at speeds, turning, what they meet and carry.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Robots on wheels: how they drive, push and turn their turrets, and what they read of it.
 
 #include <gtest/gtest.h>

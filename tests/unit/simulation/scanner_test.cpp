@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The distance scanner: where its rays point and what they measure.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Snapshots: state beyond a scene's own entities, files, and bytes of others.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "supervision/tick_budget.h"
 
 #include <gtest/gtest.h>

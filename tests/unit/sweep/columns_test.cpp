@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "sweep/columns.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "sweep/definition.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "sweep/experiment.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "sweep/means.h"
 
 #include <gtest/gtest.h>

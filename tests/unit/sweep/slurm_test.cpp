@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "sweep/slurm.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Writing to a reader that stops: it takes no time, and what is lost is counted.
 
 #include "text/buffered_stream.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "text/names.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "timing/stopwatch.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Ticks on their way to the hub: the newest wins, and nothing that must arrive is lost.
 
 #include "view/feed.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Viewers without sockets: what they send, and what waits for them.
 
 #include "view/hub.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Files of the page's folder, and no others.
 
 #include "view/page.h"

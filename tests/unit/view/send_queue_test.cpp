@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Queue of a viewer is bounded; ticks are dropped whole, the newest stays.
 
 #include "view/send_queue.h"

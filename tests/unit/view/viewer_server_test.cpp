@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The port itself, seen by a client that speaks bytes only.
 
 #include "view/viewer_server.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Messages of a tick are written, read and applied without an allocation.
 
 #include "allocations/allocations.h"

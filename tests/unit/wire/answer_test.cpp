@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "wire/answer.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Camera readings on their way to a client.
 
 #include "wire/device_wire.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Cost of the worst messages that are decoded: bench/results/disturbances.md has the figures.
 
 #include <google/protobuf/util/json_util.h>

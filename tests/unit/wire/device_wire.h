@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A session of an EquippedRun: what it commands and what it is told.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Devices on the wire: what goes where, and what is refused.
 
 #include "wire/devices.h"

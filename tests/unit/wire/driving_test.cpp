@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Wheels and turrets on the wire: what goes where, and what is refused.
 
 #include <limits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A run of robots that carry a different number of each device, for tests that need no scene.
 

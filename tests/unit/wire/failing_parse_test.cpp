@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A message for which there is no memory is its sender's error: each allocation is made to fail
 // once.
 

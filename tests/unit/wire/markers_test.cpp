@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Markers on the wire: what a command may draw, and the sentences about what it may not.
 
 #include <functional>

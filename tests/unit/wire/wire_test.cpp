@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bytes and packing, which the conformance tests do not see.
 
 #include <gtest/gtest.h>

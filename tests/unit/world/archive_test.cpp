@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // States as bytes, of anyone: what is written to files and sent to viewers has the size that its
 // camera says.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "world/channel.h"
 
 #include <gtest/gtest.h>

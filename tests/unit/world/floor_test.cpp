@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Painted regions of a floor: what they cover, and which of them are forgotten.
 
 #include "world/floor.h"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A field that is added to a struct, but not to its table, does not compile.
 
 usage: forgotten_field_test.py STRUCT COMPILER SERVER_FOLDER EIGEN_FOLDER...

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Each hashed field changes the hash, and only those.
 
 #include <gtest/gtest.h>

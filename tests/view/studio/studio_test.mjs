@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The live server and a recording, seen by a viewer that others have written: Foxglove Studio 1.48.0, the last that npm has.
 // It draws /scene by /tf, lists log lines and parameters, decodes messages by their schemas, and has no problem with any topic.
 //

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Debian packages by CPack: ziggurat, libziggurat0, libziggurat-dev, python3-ziggurat. The preset `package` has the layout
 # of Debian's /usr; tools/packaging/debian/build makes all of it.
 set(ZIGGURAT_MAINTAINER "The Ziggurat authors <ziggurat@example.org>" CACHE STRING "who makes the packages")

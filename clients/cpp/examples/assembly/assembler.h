@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A robot that builds, with any number of others, what a rule table says: all that it knows. Its
 // states are those of scenes/construction/assembler.lua.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Two robots, or any number of others, build what a rule table says, as
 // scenes/construction/assembler.lua does. The table is the file that the Lua scripts read, too:
 //   ziggurat run scenes/construction/steps.argos --controller robot=example_assembly

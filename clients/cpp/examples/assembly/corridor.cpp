@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "corridor.h"
 
 #include <algorithm>

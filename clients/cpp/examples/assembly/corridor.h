@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Who may work at the structure at the same time. A robot that places a block needs a corridor: the
 // straight way from where it lines up with a side to where it stands when it lets the block go.

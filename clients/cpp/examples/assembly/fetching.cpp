@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The states in which a robot fetches a dark block.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Memory of a robot, in a frame of its own: the structure's columns, the colours of their sides,
 // and material. Columns stand on a square lattice; so every lit side that the camera sees corrects

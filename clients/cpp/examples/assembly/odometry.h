@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The robot's pose from wheels and gyroscope. The wheels skid in turns, by an amount that changes
 // with the load on each: so the gyroscope measures the turn, and the point about which the robot

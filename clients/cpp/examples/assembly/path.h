@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Shortest ways around obstacles, on a grid (A*).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The states in which a robot places the block that it carries, where the structure's colours say.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Random numbers of a robot: the same as those of robot.random in its Lua script.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The rule table of a structure, from the file that the Lua scripts read, too:
 // scenes/construction/rules_*.lua.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The states in which a robot looks for the structure and for material, and parks.
 
 #include <algorithm>

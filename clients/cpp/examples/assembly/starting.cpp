@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The states in which a robot begins. One that was started again in the middle of its work knows
 // nothing but what it senses: the lift's height, whether it holds a block, and what that block
 // says.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Traffic rules that keep robots clear of each other. Each robot tells the others within 2 m by
 // range and bearing what it does. The three bytes are those of the Lua script: flags, claim, a

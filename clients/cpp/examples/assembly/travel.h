@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Drives the robot from place to place, around what it remembers and around other robots.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The construction robot for its controllers: wheels, lift, magnets, proximity sensors, and docking
 // at a block with the camera. Positions are forward and left of the point between the four wheels.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Stacks the first block that it finds on top of the second, as
 // scenes/prototype_srocs_system_arcontrol.lua does:
 //   ziggurat run scenes/prototype_srocs_system.argos --controller robot=example_stacking

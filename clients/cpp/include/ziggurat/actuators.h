@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Actuators that hold a value until it is changed: LEDs, directional LEDs, tags and magnets.
 

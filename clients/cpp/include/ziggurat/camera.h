@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A camera of a robot, with detectors for LEDs, directional LEDs and tags.
 

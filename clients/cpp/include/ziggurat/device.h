@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Devices that describe themselves: the server tells the names and units of their values.
 

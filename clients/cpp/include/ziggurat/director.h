@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A director: it is told of the whole world at each tick, and may change it before the next.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Errors between a controller and the server. Besides, unknown ids are std::out_of_range and
 // invalid values std::invalid_argument; their messages name what is allowed. Texts of a server are

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A joint of a robot: its encoder, its motor, or both.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A radio of a robot: messages of any bytes to all radios in range, no addresses.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Range and bearing: a few bytes, broadcast at every tick; receivers also get the distance and the
 // direction of the sender.

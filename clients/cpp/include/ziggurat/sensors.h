@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Sensors of a robot. Readings belong to the session's tick.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A session with the server: connects, waits for ticks, answers them.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Supervision of a run: status, pause, reset, entities. The world never waits for a supervisor.
 

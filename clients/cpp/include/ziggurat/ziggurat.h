@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // The C++ client library: all headers that a controller or a director needs. See
 // docs/cpp-client.md.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // LEDs and directional LEDs.
 
 #include "layout.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "layout.h"
 #include "text/printable.h"
 #include "ziggurat/v1/envelope.h"

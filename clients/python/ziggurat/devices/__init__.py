@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Handles of a robot's devices, a file for each kind. Reading and setting take the same time in a
 session of any size.
 

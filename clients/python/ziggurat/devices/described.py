@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Devices that describe themselves: the server tells the names and units of their values."""
 
 from __future__ import annotations

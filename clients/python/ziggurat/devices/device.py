@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Common parts of the handles."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Sensors that read a fixed number of values each, and what a robot has of them."""
 
 from __future__ import annotations

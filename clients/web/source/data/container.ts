@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // An MCAP file, chunk by chunk: https://mcap.dev/spec. The summary is read by @mcap/core. A file without summary, as a
 // run leaves that was killed, is walked through record by record, and read up to the place where it ends. Files are
 // input of unknown people: every length is checked against what is there, and no number of the file decides how much

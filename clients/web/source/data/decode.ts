@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Decodes any message whose schema a channel advertises. Descriptors and wire format are
 // @bufbuild/protobuf's, which needs no generated code and no eval(), so that the page runs under a strict
 // content security policy. Packed floats become typed arrays at once: poses of thousands of links are

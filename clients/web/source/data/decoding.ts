@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Messages on their way through a worker that decodes them; they come back in the order in which they were given. Where
 // there is no worker, as in a page in one file, they are decoded at once.
 import { makeDecoder, type Decoder } from "./decode";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The recording inside of a page that `ziggurat export --html` wrote: parts of it in base64, of which those bytes are
 // decoded that are read.
 import type { IReadable } from "@mcap/core";

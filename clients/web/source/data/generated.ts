@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A world that is made in the page, without a server: to measure drawing, and for tests of the page. Boxes,
 // cylinders and spheres move up and down in waves on a grid: `?generated=500` in the address.
 import type { Listener, Message, Source, Value } from "./source";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A message that stays encoded until it is read.
 import type { Decoder } from "./decode";
 import type { Message, Value } from "./source";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A running server, over the Foxglove WebSocket protocol. It connects again by itself.
 import { FoxgloveClient, type Channel, type Service } from "@foxglove/ws-protocol";
 import { makeDecoder, type Decoder } from "./decode";

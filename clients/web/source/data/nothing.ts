@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // No data: a page that was opened from the disk waits for a recording.
 import type { Listener, Source, Value } from "./source";
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Where the page's data come from: a running server (live.ts), a world made in the page (generated.ts), or a recording
 // (../model/recorded.ts). The rest of the page knows this interface only.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The copies of a shape that are drawn in one call, chosen anew for each frame.
 import * as three from "three";
 import { writeMatrix } from "./matrix";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // All links: one draw call per shape and detail, with the copies that are in view.
 import * as three from "three";
 import type { Poses, World } from "../model/messages";

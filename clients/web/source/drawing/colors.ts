@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Colours of robots by what they are or by what controls them, which colour-blind people tell apart, too.
 import type { World } from "../model/messages";
 import type { Part } from "./shapes";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Detail of a link by its size on the screen: all of its parts, its round shapes with few sides, or a box.
 
 export const enum Detail { box, plain, whole, none = 255 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The coloured floor: the scene's picture over the arena, and what directors painted over it.
 import * as three from "three";
 import type { Floats, Poses, World } from "../model/messages";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Framing: the box that is shown at first, and the place of the camera from which it is seen whole.
 import type { Poses, World } from "../model/messages";
 import { halfExtents, place, packed, rotate, type Quaternion, type Vector } from "../model/pose";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The ground: the arena's squares, a soft edge around them, a scale in metres along two sides, axes at the origin, and the
 // plain around all of it.
 import * as three from "three";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Texts that robots drew: sprites of one size on the screen, kept by what they say.
 import * as three from "three";
 import type { Marker } from "../model/messages";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // LEDs: discs that glow in their colour, all in one call and seen from far; directional ones also as cones of light.
 import * as three from "three";
 import { Kind, type Led, type Poses, type World } from "../model/messages";

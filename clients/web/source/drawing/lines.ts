@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Coloured line segments that change at every frame, in one draw call.
 import * as three from "three";
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Matrices of instances, written where they are needed.
 
 /**

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // All copies of a shape as one mesh, each vertex placed and coloured by the row of its copy. Without graphics processor
 // an instanced mesh takes about 20 us for each instance, as much as a draw call.
 import * as three from "three";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What devices do, as lines: magnets' moments, frusta, rays, radio messages, contact forces, trails.
 import * as three from "three";
 import type { Camera, Contacts, Link, Marker, Mount, Poses, RadioTraffic, Rays, World } from "../model/messages";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How finely the picture is drawn. It adapts to the machine: where drawing is slow, as without a graphics
 // processor, it takes fewer pixels and harder shadows before it drops frames.
 import * as three from "three";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Soft darkness on the floor below and around what stands on it or close above: contact shadows, in one draw call.
 import * as three from "three";
 import type { Poses, World } from "../model/messages";

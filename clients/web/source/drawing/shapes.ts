@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The shapes of links as triangles: unit shapes that stand on the centre of their bottom, and hulls and
 // capsules in their own size.
 import * as three from "three";

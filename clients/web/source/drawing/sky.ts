@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The sky: a gradient from the horizon to the zenith, drawn last, where nothing else is.
 import * as three from "three";
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The empty stage: renderer, sun, sky, ground, and the camera with its controls. z is up.
 import * as three from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";

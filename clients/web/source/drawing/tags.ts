@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Tags with their true pattern: 6 x 6 modules in a black border of one and a white margin of one.
 import * as three from "three";
 import type { Poses, World } from "../model/messages";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Paths of entities that were chosen, from where they were when the page first saw them.
 import type { Entity, Poses, World } from "../model/messages";
 import { compose, poseAt, type Pose, type Vector } from "../model/pose";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The picture of one frame: everything that is drawn, layer by layer.
 import * as three from "three";
 import type { Contacts, Poses, RadioTraffic, Rays, World } from "../model/messages";

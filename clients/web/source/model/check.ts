@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Whether indices of a world point into its lists. Servers send true ones; a file may contain anything.
 import type { Mount, Poses, World } from "./messages";
 

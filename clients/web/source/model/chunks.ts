@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Chunks of a recording: their frames' places in the file's order, and the messages of those that are in memory, which
 // has a bound. Nothing is decoded here.
 import type { Chunk, Container, RawMessage } from "../data/container";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Collisions: two entities that begin to touch each other. Resting on each other is none.
 import type { Contacts, World } from "./messages";
 

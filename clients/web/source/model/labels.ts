@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Labels and units of series, as those who plot them know them: "base_wheel_fr velocity [rad/s]" of a robot.
 import type { Command, Observation, World } from "./messages";
 import { metricsTopic } from "./metrics";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Marks of the time line, in lanes by kind, and who connects and leaves.
 import type { Session } from "./messages";
 import type { Mark, MarkKind } from "./timeline";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The decoded messages of topics that the page draws: protocol/ziggurat/v1/channels.proto and
 // protocol.proto have their meaning and units. Topics that are only listed and plotted need no type.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Metrics: figures of a run that its controllers and directors measure. A running server sends them as /metrics with all
 // values that hold; a recording has those that were set at a tick in its /inputs.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Motion between ticks: what is drawn goes from where it was drawn last to the newest tick, in the time that ticks take, so
 // that it is late by one tick at most.
 import type { Poses } from "./messages";

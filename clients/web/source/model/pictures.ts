@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Pictures of cameras are files of PNG, which say in their first bytes how large they are.
 
 const signature = [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a]; // then the size of the header, IHDR, width and height

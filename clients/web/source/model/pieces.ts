@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Work that takes long, in pieces between which the page can draw.
 const longest = 25; // [ms]
 

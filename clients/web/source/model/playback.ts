@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Playing what the page has already: a recording, or the past of a live world.
 import type { Frames } from "./timeline";
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Who is in a world, for the tree: entities by type, robots first, and the names of their parts.
 import { Kind, kindName, type Entity, type World } from "./messages";
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Poses: positions [m] and Hamilton quaternions w, x, y, z, as in docs/conventions.md.
 import type { Floats } from "./messages";
 

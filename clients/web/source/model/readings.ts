@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What one robot senses and is told, device by device, with the place of each number in its message,
 // so that it can be plotted.
 import { JointType, type Command, type Description, type DeviceField, type DeviceKind, type Floats, type Joint, type Observation, type World }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A recording: all its frames, of which those in view are in memory. Frames are the ticks of the recording from its
 // first, so that their places on the time line are known before they are read. A frame is decoded when it is looked at.
 // In the background all of the file is read once, for log lines, collisions and plots; what has room stays in memory.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Numbers over time: any number of any channel, named by its topic and its path in the decoded message,
 // for example "jointReadings.2".
 import type { Value } from "../data/source";

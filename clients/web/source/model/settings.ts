@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the user has chosen, as it stands in the address after "#", so that a link shows the same view.
 import { colorings, type Coloring } from "../drawing/colors";
 import type { Look } from "../drawing/stage";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Series as a table: a row for each frame, a column for each series.
 import type { Series } from "./series";
 

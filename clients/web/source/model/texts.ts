@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Texts of robots, scenes and recordings may have any length, and a browser takes seconds to break a long one without
 // spaces into lines: a bounded part of each is kept and shown.
 

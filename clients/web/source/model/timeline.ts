@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the page has seen: a bounded buffer of frames. A frame has the messages of one tick; they
 // stay encoded, so that an hour of a small world fits.
 import type { Message } from "../data/source";

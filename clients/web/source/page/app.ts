@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What the page knows and does; panels show it and call it. Nothing here touches the document.
 import type { Listener, Message, Source, Status, Value } from "../data/source";
 import type { Coloring } from "../drawing/colors";

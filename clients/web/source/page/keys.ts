@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The keyboard.
 import * as three from "three";
 import { colorings } from "../drawing/colors";

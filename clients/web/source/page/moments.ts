@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Moments: the tick of the address at which the page is opened, and bookmarks.
 import type { Settings } from "../model/settings";
 import type { Frames, Mark } from "../model/timeline";

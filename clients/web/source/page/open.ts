@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Opening a recording: dropped on the page, chosen from the disk, or contained in the page itself.
 import type { IReadable } from "@mcap/core";
 import { readable } from "../data/container";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Series that can be plotted, and those that are, for the panel and for files.
 import { metricsTopic } from "../model/metrics";
 import { plottable, Series } from "../model/series";

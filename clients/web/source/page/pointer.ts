@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Mouse and touch in the picture: a click selects, and with the tool "move" a drag moves an entity.
 import type { Vector } from "../model/pose";
 import type { App } from "./app";

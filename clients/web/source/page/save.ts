@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Files that the page makes, saved as the browser does with downloads.
 
 export function save(content: Blob, name: string): void {

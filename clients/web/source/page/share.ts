@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sharing of what one sees: a picture, a film, a link to the moment.
 import { toAddress } from "../model/settings";
 import type { App } from "./app";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The view of the selected robot's cameras, with what they detect drawn over: over the picture that
 // the camera took, or over one that the page draws from the camera's place.
 import * as three from "three";

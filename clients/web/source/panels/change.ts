@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Spawns entities from the scene's models, robots with one of its controllers, or what XML describes.
 import type { App } from "../page/app";
 import { isRobot, kindName, type World } from "../model/messages";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A chart of one or several series over simulated time, with their values at the mouse.
 import uPlot from "uplot";
 import type { App } from "../page/app";

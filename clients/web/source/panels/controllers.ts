@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Controllers: which the tick waits for, how fast they answer, where the time of a tick goes.
 import type { App } from "../page/app";
 import type { Barrier, Phases, Session } from "../model/messages";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Readings and commands of the selected robot, device by device; of any other entity its pose.
 import type { App } from "../page/app";
 import { kindName, type Command, type Observation, type Poses, type World } from "../model/messages";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Elements of the page, made in one expression.
 import { beginning, mostKept, mostShown, visible } from "../model/texts";
 

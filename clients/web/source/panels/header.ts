@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The top line: what runs, how it goes, connection, theme and help.
 import type { App } from "../page/app";
 import { beginning } from "../model/texts";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Keys, mouse and touch.
 import { make } from "./element";
 

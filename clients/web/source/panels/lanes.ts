@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The line of all frames, with marks in lanes above it: drag to look back, click a mark to show its moment.
 import type { App } from "../page/app";
 import { colors, lanes, lanesOf, type LaneMarks } from "../model/marks";

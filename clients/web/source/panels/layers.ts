@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which layers are drawn.
 import { colorings, type Coloring } from "../drawing/colors";
 import { layers } from "../drawing/view";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What robots and the server logged.
 import type { App, LogEntry } from "../page/app";
 import { longText, make } from "./element";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /** A part of the page. */
 export interface Panel {
   readonly element: HTMLElement;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Plots of any numbers of any topic over simulated time. Series of one unit share a chart.
 import type { App } from "../page/app";
 import { numbersOf, titleOf, wholeSeries } from "../page/plotted";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Overlay of the picture: names of what is selected or searched, the ruler's length, the place under the pointer, and
 // a compass that shows how the world's axes lie.
 import { axisColors } from "../drawing/ground";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Time: play, pause, step, speed, reset, and the line of all frames that the page has seen.
 import type { App } from "../page/app";
 import { lanes } from "../model/marks";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The tree of entities by type, with their links and devices; chosen by type, and searched.
 import type { App } from "../page/app";
 import { kindName, type World } from "../model/messages";

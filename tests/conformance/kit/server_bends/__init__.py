@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the bugs of bent_server.py change, a file for each part of the protocol."""
 
 from . import beginning, deadlines, directing, keys, later_versions, states, supervision, tick

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Bends of sections 1 and 2: transport, Hello."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Bends of section 3.2: deadlines."""
 
 import protocol_pb2 as protocol

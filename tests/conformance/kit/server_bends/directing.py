@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Bends of directors (section 9.1)."""
 
 from .kinds import E, SAID, TOLD, clear_fields, drop, in_kind, refill, said

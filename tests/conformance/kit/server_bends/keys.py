@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Bends of section 8: keys."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The tables of bends by bug, and kinds of bends."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Bends of what is new since version 1.0."""
 
 import protocol_pb2 as protocol

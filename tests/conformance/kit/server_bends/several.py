@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Bends of rules that several sections have."""
 
 import protocol_pb2 as protocol

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Bends of sections 3.3 to 6: pausing, states, leaving, errors."""
 
 import protocol_pb2 as protocol

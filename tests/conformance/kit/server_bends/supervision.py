@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Bends of section 9: supervision."""
 
 import protocol_pb2 as protocol

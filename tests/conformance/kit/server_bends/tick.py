@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Bends of sections 3 and 3.1: the tick, devices."""
 
 import os

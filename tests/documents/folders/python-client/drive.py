@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Drives the robots of the only server, once another client is there."""
 import time
 

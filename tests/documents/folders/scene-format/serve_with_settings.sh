@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Serves vehicle.argos for two seconds with the options of settings.toml.
 ziggurat keygen --out server
 ziggurat keygen --out alice

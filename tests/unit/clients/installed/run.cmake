@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Installs everything into a fresh prefix, of which nothing may be elsewhere, and uses it: the project
 # beside this file, built by find_package and again by pkg-config, the programs, the Python client.
 # Compiler and generator are those of BUILD: no other need be there.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Devices' functions check what they are given, and can be kept.
 
 #include <algorithm>

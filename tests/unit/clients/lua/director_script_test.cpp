@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scripts of directors, against a server that the test scripts.
 
 #include "script/director_script.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The message of a failed script names robot, line and tick; other scripts are not affected.
 
 #include <csignal>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // log, robot, package.path and what is different in the standard libraries.
 
 #include "script_fixture.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which function of the script runs when.
 
 #include "script_fixture.h"

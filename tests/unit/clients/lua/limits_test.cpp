@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // An endless loop ends with file and line, wherever it runs; other scripts are not affected.
 
 #include <ctime>

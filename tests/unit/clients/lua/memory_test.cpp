@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The memory of Lua states: blocks side by side in an arena, the others by malloc(), all of them
 // counted.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """require "ziggurat" in Debian's lua5.3, against the real server; the program is in ZIGGURAT."""
 
 import os

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // robot.random and math.random: ranges, moments, streams.
 
 #include "script_fixture.h"

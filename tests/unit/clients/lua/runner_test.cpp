@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Scripts against a real server: what reaches the world, and when.
 
 #include "program/runner.h"

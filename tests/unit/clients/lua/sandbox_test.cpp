@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Limits of a script that is not trusted.
 
 #include <sys/resource.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // vector2, vector3 and quaternion, and what older Luas had.
 
 #include "script_fixture.h"

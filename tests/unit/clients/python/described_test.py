@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Devices that describe themselves."""
 
 import unittest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Devices: readings out of packed arrays, values into them. Two robots, so that places count."""
 
 import unittest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The package against the real server, whose program is in ZIGGURAT."""
 
 import os

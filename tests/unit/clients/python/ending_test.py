@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The end of a session: leaving, errors, a lost connection; against a fake server."""
 
 import unittest

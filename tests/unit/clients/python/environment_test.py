@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What `connect` and others take from the environment, and keys, against a fake server."""
 
 import os

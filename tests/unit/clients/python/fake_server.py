@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A server whose messages a test chooses, over a real socket."""
 
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A thread that asks for what its own session would have to answer first, before a real server."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a server that lies can do to a Python program: against a fake server."""
 
 import pathlib

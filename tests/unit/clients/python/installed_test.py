@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The package as pip builds it: complete, with its messages, without access to the checkout."""
 
 import os

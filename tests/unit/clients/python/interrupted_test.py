@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Ctrl-C: a session leaves, and its program ends soon, whatever the server has sent. Against a fake server."""
 
 import gc

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A controller for the conformance kit, which tests the package with it: it uses every device."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Episodes, seeds and spaces of both environments, against real servers. Skipped without numpy, which is optional."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Markers that a robot draws."""
 
 import unittest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The environment for learning, attached to a server with a supervisor: against a fake one."""
 
 import unittest

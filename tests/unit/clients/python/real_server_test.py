@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Supervision, takeover, resuming, deadlines and keys: the package against the real server, whose program
 is in ZIGGURAT."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The messages of protocol/recorded, read by the Python client; and the document that explains them."""
 
 import importlib.util

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Sessions whose connection is lost, against a fake server."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What tests of sessions share: a client beside a fake server."""
 
 import threading

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The session: its beginning, refusals, ticks and events; against a fake server."""
 
 import unittest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The supervisor's calls, against a fake server."""
 
 import unittest

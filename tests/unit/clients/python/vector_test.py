@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Many worlds at once, against real servers. Skipped without numpy, which is optional."""
 
 import os

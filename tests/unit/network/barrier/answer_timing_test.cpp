@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Response times kept for a report card, by a clock that only the test moves.
 
 #include "network/barrier/answer_timing.h"

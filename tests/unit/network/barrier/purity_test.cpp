@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The barrier knows no sockets and reads no clock, so that tests and fuzzers can play any sequence
 // of events at any time.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "network/barrier/tick_gate.h"
 
 #include <gtest/gtest.h>

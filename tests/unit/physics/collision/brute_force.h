@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Contact geometry by search: slow and simple, to compare the fast one with.
 

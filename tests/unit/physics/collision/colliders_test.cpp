@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The tree of boxes that tells which colliders come near each other.
 
 #include "physics/collision/colliders.h"

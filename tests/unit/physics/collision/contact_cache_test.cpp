@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Limits of the number of contacts of a world.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Contacts of every pair of shapes at random poses, against brute force.
 
 #include <gtest/gtest.h>

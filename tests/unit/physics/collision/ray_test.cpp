@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "physics/collision/ray.h"
 
 #include <gtest/gtest.h>

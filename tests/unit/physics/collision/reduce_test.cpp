@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Reduction of a contact's points to four, and contacts at nearly degenerate resting poses.
 
 #include <gtest/gtest.h>

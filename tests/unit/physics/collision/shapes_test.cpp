@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bodies of each shape at rest, rolling and turning.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Spheres near a place: all that touch are found, and few others are looked at.
 
 #include "physics/collision/sphere_grid.h"

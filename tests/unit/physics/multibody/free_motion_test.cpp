@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Motion without contacts against closed forms and conserved quantities.
 
 #include "physics/multibody/free_motion.h"

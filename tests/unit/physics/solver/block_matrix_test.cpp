@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Systems of blocks against Eigen.
 
 #include "physics/solver/block_matrix.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Hessians of contacts in an island's matrix, against the product of dense matrices.
 
 #include "physics/solver/constraint_hessian.h"

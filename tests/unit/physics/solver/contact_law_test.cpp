@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The laws of constraints: impulses that obey them, and derivatives against differences.
 
 #include "physics/solver/contact_law.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Heaps solved by passes alone, as large ones are.
 
 #include <gtest/gtest.h>

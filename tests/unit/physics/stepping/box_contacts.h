@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Contact points of two boxes: the axis of least overlap among the 15 that can separate them (S.
 // Gottschalk, M. C. Lin, D. Manocha, SIGGRAPH 1996). Then the incident face is clipped by the sides

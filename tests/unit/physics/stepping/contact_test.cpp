@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Bodies in contact against closed forms.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One contact point at a time: impacts, rolling and spinning friction; roots with fewer freedoms;
 // servos along a direction.
 

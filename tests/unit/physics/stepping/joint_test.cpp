@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Limits and servos against closed forms.
 
 #include <gtest/gtest.h>

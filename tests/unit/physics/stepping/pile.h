@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Cubes of 1 cm dropped in layers, turned at random, into a bin.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Heaps that fall, strike and come to rest.
 
 #include "pile.h"

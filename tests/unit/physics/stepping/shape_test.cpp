@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Cylinders and planks, whose contact points the test makes itself.
 
 #include <gtest/gtest.h>

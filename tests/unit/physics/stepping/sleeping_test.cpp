@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which islands sleep, and what wakes them.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A step of a system whose contacts the test finds, and finds again after each impact.
 

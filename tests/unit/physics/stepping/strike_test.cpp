@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Impacts of small islands with rolling friction. Normal impulses and rolling friction both resist
 // the rotation of a cylinder's line, so its contacts conflict a little.
 

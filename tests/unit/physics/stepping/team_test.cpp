@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A team's threads share loops; a step has the same bits for any number of threads.
 
 #include "physics/stepping/team.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // Boxes that touch planes and each other: a small world for tests, with its own contact points.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Mechanisms without motors that tumble on the floor, much faster than substeps can show: their
 // energy never grows, whatever they hit.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Files that were made to harm their reader.
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "recording/mcap/repair.h"
 
 #include <gtest/gtest.h>

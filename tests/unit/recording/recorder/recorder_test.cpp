@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A recording has what it takes to repeat the run.
 
 #include "recording/recorder/recorder.h"

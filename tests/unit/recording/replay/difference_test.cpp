@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "recording/replay/difference.h"
 
 #include <gtest/gtest.h>

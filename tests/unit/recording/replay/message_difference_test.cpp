@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "recording/replay/message_difference.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 // A run in memory: acts and commands of every kind, recorded as `--record` does it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Recordings on disk, made by the writer of MCAP files.
 
 #include "recording/replay/recording_file.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "run/options/inject_option.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // <block> is the block of scenes/models/block.argos, part by part.
 
 #include <gtest/gtest.h>
