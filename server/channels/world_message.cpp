@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "images/image.h"
 #include "outputs/images.h"
 #include "render/model.h"
 #include "wire/devices.h"
@@ -182,7 +183,7 @@ void describe_robots(const Population& from, v1::World& to) {
 }
 
 /// As PNG, with at most so many pixels a side: of larger ones some pixels are left out.
-std::string floor_png(const scene::FloorImage& image) {
+std::string floor_png(const images::Image& image) {
   constexpr unsigned most = 1024;
   const unsigned step = (std::max(image.width, image.height) + most - 1) / most;
   const unsigned width = (image.width + step - 1) / step, height = (image.height + step - 1) / step;
@@ -223,7 +224,11 @@ v1::World describe(const Population& from, std::uint64_t generation) {
   to.set_last_tick(from.last_tick);
   add(from.scene.arena.size, *to.mutable_arena_size());
   add(from.scene.arena.center, *to.mutable_arena_center());
-  if (from.scene.floor_image) to.set_floor_picture(floor_png(*from.scene.floor_image));
+  if (const world::FloorImage* laid = world::image_on(from.state.floor)) {
+    to.set_floor_picture(floor_png(laid->image));
+  } else if (from.scene.floor_image) {
+    to.set_floor_picture(floor_png(*from.scene.floor_image));
+  }
   for (std::size_t i = 0; i < from.layout.entities.size(); ++i) {
     describe_entity(from, i, to);
     describe_joints(from, i, to);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "devices/described.h"
-#include "scene/floor_image.h"
+#include "images/image.h"
 
 namespace ziggurat::devices {
 namespace {
@@ -45,14 +45,15 @@ class GroundSensors final : public Described {
 
   void add_others(const Setting& setting) override {
     image_ = setting.scene.floor_image;
-    arena_ = setting.scene.arena;
+    arena_ = scene::ground_of(setting.scene.arena);
   }
 
   double brightness_at(const world::State& state, const math::Vector3& place) const {
     if (const auto painted = painted_color(state.floor, place.x(), place.y()))
       return brightness(*painted);
-    return brightness(image_ ? scene::floor_color(*image_, arena_, place.x(), place.y())
-                             : scene::floor_without_image);
+    constexpr std::uint32_t white = 0xFFFFFF;  // all around an image, too
+    if (!image_) return brightness(white);
+    return brightness(images::color_at(*image_, arena_, place.x(), place.y()).value_or(white));
   }
 
   void read(Tick& tick, Robot& robot) override {
@@ -66,8 +67,8 @@ class GroundSensors final : public Described {
     }
   }
 
-  std::shared_ptr<const scene::FloorImage> image_;  // null: the floor is white
-  scene::Arena arena_;
+  std::shared_ptr<const images::Image> image_;  // null: the floor is white
+  images::Rectangle arena_;
 };
 
 }  // namespace

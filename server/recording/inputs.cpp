@@ -228,6 +228,12 @@ std::optional<std::string> read_floor_paints(const Commands& from,
       region.center = {v[0], v[1]};
       region.half_size = {v[2], v[3]};
     }
+    if (!paint.image().empty()) {
+      auto image = world::floor_image(paint.image());
+      if (const auto* why = std::get_if<std::string>(&image))
+        return "an image of the floor " + *why;
+      region.image = std::get<0>(std::move(image));
+    }
     if (!is_valid(region))
       return "a painted region of the floor has no valid place, size or colour";
     to.push_back(region);
@@ -313,6 +319,7 @@ void CommandPacker::pack(const world::Commands& commands, v1::Commands& to) {
     auto& written = *to.add_floor_paints();
     written.set_is_disc(region.is_disc);
     written.set_color(region.color);
+    if (region.image) written.set_image(region.image->file);
     for (const double value : region.center) written.add_values(value);
     for (const double value : region.half_size) written.add_values(value);
   }

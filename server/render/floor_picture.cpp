@@ -49,8 +49,9 @@ FloorPicture floor_picture(const Model& model, const std::vector<world::FloorPai
   };
   for (unsigned row = 0; model.floor_image && row < y.count; ++row) {
     for (unsigned column = 0; column < x.count; ++column)
-      set(pixel(column, row),
-          scene::floor_color(*model.floor_image, model.arena, x.center(column), y.center(row)));
+      if (const auto color =
+              images::color_at(*model.floor_image, model.ground, x.center(column), y.center(row)))
+        set(pixel(column, row), *color);
   }
   for (const world::FloorPaint& region : painted) {
     const auto [cx, cy] = region.center;
@@ -58,8 +59,8 @@ FloorPicture floor_picture(const Model& model, const std::vector<world::FloorPai
     const unsigned top = y.behind(cy + region.half_size[1]);
     for (unsigned row = y.behind(cy - region.half_size[1]); row < top; ++row) {
       for (unsigned column = x.behind(cx - region.half_size[0]); column < right; ++column) {
-        if (covers(region, {x.center(column), y.center(row)}))
-          set(pixel(column, row), region.color);
+        if (const auto color = color_of(region, {x.center(column), y.center(row)}))
+          set(pixel(column, row), *color);
       }
     }
   }

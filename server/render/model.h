@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "images/image.h"
 #include "scene/scene.h"
 
 namespace ziggurat::render {
@@ -24,8 +25,8 @@ struct Model {
   double tile = 0;                                        ///< side of the squares on the floor [m]
   math::Vector2 arena_center = math::Vector2::Zero();     ///< [m]
   math::Vector2 arena_half_size = math::Vector2::Zero();  ///< [m]
-  std::shared_ptr<const scene::FloorImage> floor_image;   ///< over the arena; null: none
-  scene::Arena arena;
+  std::shared_ptr<const images::Image> floor_image;       ///< over the arena; null: none
+  images::Rectangle ground;                               ///< of the arena
 };
 
 void add_bodies(const scene::Entity& entity, Model& model);

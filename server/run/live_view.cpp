@@ -113,6 +113,7 @@ void LiveView::populate() {
   server_.populate({world.scene, world.path, world.scene_hash, world.seed, run_.last_tick,
                     world.simulation.layout(), world.simulation.entities(),
                     world.simulation.state()});
+  shown_image_ = world::image_on(world.simulation.state().floor);
 }
 
 void LiveView::show_tick() {
@@ -126,6 +127,12 @@ void LiveView::show_all(const std::vector<std::uint32_t>& wanted) {
 void LiveView::tick(const timing::PhaseTimes& phases) {
   is_current_ = false;
   is_gathered_ = true;
+  if (world::image_on(run_.world.simulation.state().floor) != shown_image_) {
+    populate();
+    phases_ = phases;
+    is_current_ = true;
+    return show_all(wanted_);
+  }
   if (!has_viewers() || wanted_.empty()) return;
   phases_ = phases;
   const auto now = clock::now();

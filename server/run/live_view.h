@@ -110,6 +110,7 @@ class LiveView {
   bool is_current_ = false;  ///< the present tick was shown
   bool has_new_metrics_ = false;
   bool is_gathered_ = false, is_over_ = false, shutdown_ = false;
+  const world::FloorImage* shown_image_ = nullptr;  ///< of a director
   std::optional<wire::Status::Phase> phase_;
 };
 

@@ -254,6 +254,8 @@ void RecordedRun::note(const std::vector<recorder::EmbeddedFile>& files) {
 
 void RecordedRun::tick() {
   simulation::Simulation& simulation = world_.simulation;
+  const auto* image = world::image_on(simulation.state().floor);
+  is_population_new_ |= std::exchange(recorded_image_, image) != image;
   if (std::exchange(is_population_new_, false)) {
     recorder_.populate({world_.scene, scene_name_, world_.scene_hash, world_.seed, last_tick_,
                         simulation.layout(), simulation.entities(), simulation.state()});

@@ -67,6 +67,7 @@ class RecordedRun {
   recorder::Recorder recorder_;
   std::string failure_;
   bool is_population_new_ = true;
+  const world::FloorImage* recorded_image_ = nullptr;  // of a director
 };
 
 }  // namespace ziggurat::run

@@ -10,15 +10,14 @@
 #include "scene/additions.h"
 #include "scene/draft.h"
 #include "scene/files.h"
-#include "scene/floor_image.h"
 
 namespace ziggurat::scene {
 namespace {
 
 /// The picture of a floor: beside the scene's file, or as other versions have it in the working
 /// folder.
-std::variant<FloorImage, std::string> open_picture(Draft& draft, const Element& element,
-                                                   const std::string& written) {
+std::variant<images::Image, std::string> open_picture(Draft& draft, const Element& element,
+                                                      const std::string& written) {
   const std::filesystem::path name = written;
   if (!stays_inside(name)) {
     return "leads out of its folder; write a path without .. that is relative to the scene's file";
@@ -31,15 +30,15 @@ std::variant<FloorImage, std::string> open_picture(Draft& draft, const Element& 
     if (std::holds_alternative<File>(other)) opened = std::move(other);
   }
   if (std::string* why = std::get_if<std::string>(&opened)) return std::move(*why);
-  return read_floor_image(std::get<File>(opened).text);
+  return images::read_image(std::get<File>(opened).text);
 }
 
 void read_picture(Draft& draft, Element& element) {
   const std::string name = element.required("path", path);
   if (name.empty()) return;
   auto picture = open_picture(draft, element, name);
-  if (FloorImage* image = std::get_if<FloorImage>(&picture)) {
-    draft.scene.floor_image = std::make_shared<const FloorImage>(std::move(*image));
+  if (auto* image = std::get_if<images::Image>(&picture)) {
+    draft.scene.floor_image = std::make_shared<const images::Image>(std::move(*image));
     return;
   }
   const std::string why =

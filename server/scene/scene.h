@@ -16,10 +16,10 @@
 #include <utility>
 #include <vector>
 
+#include "images/image.h"
 #include "math/pose.h"
 #include "scene/deadline.h"
 #include "scene/devices.h"
-#include "scene/floor_image.h"
 #include "scene/geometry.h"
 #include "scene/problem.h"
 
@@ -263,6 +263,11 @@ struct Arena {
   math::Vector3 center = math::Vector3::Zero();  ///< [m]
 };
 
+/// The floor of an arena, which its image covers.
+inline images::Rectangle ground_of(const Arena& arena) {
+  return {{arena.center.x(), arena.center.y()}, {arena.size.x(), arena.size.y()}};
+}
+
 // --- controllers ------------------------------------------------------------------------------
 
 struct Controller {
@@ -308,8 +313,8 @@ struct Scene {
   std::vector<Director> directors;
   std::vector<ModelName> models;
   Arena arena;
-  std::shared_ptr<const FloorImage> floor_image;  ///< over the whole arena; null: it is white
-  std::vector<Entity> entities;                   ///< explicitly placed, in document order
+  std::shared_ptr<const images::Image> floor_image;  ///< over the whole arena; null: it is white
+  std::vector<Entity> entities;                      ///< explicitly placed, in document order
   std::vector<Distribution> distributions;
   Physics physics;
   std::vector<Medium> media;

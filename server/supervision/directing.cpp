@@ -69,6 +69,19 @@ class Directing::Floor {
                                   world::most_floor_paints));
   }
 
+  /// An image covers the floor of the arena.
+  std::optional<wire::Fault> lay(const wire::LayImage& act, const scene::Scene& scene) {
+    auto image = world::floor_image(act.file);
+    if (const auto* why = std::get_if<std::string>(&image)) {
+      return make_fault(ErrorCode::bad_value, "paint_floor.image",
+                        fmt::format("The image of the floor {}.", *why));
+    }
+    const auto ground = scene::ground_of(scene.arena);
+    return paint({.center = ground.center,
+                  .half_size = {ground.size[0] / 2, ground.size[1] / 2},
+                  .image = std::get<0>(std::move(image))});
+  }
+
  private:
   simulation::Simulation& world_;
   std::optional<std::vector<world::FloorPaint>> painted_;  // none: nothing is painted yet
@@ -217,7 +230,9 @@ std::optional<wire::Fault> Directing::check(const wire::Direction& direction) co
   };
   for (std::size_t i = 0; i < direction.acts.size(); ++i) {
     const wire::DirectorAct& act = direction.acts[i];
-    if (std::holds_alternative<world::FloorPaint>(act)) continue;
+    const bool is_on_floor = std::holds_alternative<world::FloorPaint>(act) ||
+                             std::holds_alternative<wire::LayImage>(act);
+    if (is_on_floor) continue;
     const std::string& id = id_of(act);
     if (is_spawn(act)) {
       auto read = population_.read(id, is_taken, asked.spawns);  // the text is the element
@@ -256,6 +271,7 @@ std::optional<wire::Fault> Directing::apply(const wire::DirectorAct& act, Names&
     return fault;
   }
   if (const auto* region = std::get_if<world::FloorPaint>(&act)) return floor.paint(*region);
+  if (const auto* image = std::get_if<wire::LayImage>(&act)) return floor.lay(*image, world_.scene);
   const std::string& id = id_of(act);
   const auto entity = names.find(id);
   if (!entity) return no_entity(fmt::format("{}.entity", name_of(act)), id);

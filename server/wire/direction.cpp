@@ -63,11 +63,21 @@ world::FloorPaint region_of(const v1::PaintFloor& from) {
 }
 
 std::optional<Fault> check_paint(const v1::PaintFloor& paint, std::size_t act) {
+  if (!paint.image().empty()) {
+    if (!paint.center().empty() || !paint.size().empty() || paint.color() != 0) {
+      return fault_of(ErrorCode::bad_value, act, "paint_floor",
+                      "An image covers the floor of the arena; leave center, size and color out.");
+    }
+    if (paint.image().size() <= world::longest_floor_image) return std::nullopt;
+    return fault_of(ErrorCode::too_large, act, "paint_floor.image",
+                    fmt::format("The image has {} bytes; at most {} are allowed.",
+                                paint.image().size(), world::longest_floor_image));
+  }
   if (is_valid(region_of(paint))) return std::nullopt;
   return fault_of(ErrorCode::bad_value, act, "paint_floor",
                   "A painted region has a center of two numbers from -1e6 to 1e6, a size of two "
                   "numbers (a rectangle) or one (the radius of a disc) above 0, and a color "
-                  "0xRRGGBB.");
+                  "0xRRGGBB; or it has an image alone.");
 }
 
 std::optional<Fault> check_act(const v1::DirectorAct& act, std::size_t number) {
@@ -97,6 +107,8 @@ DirectorAct read(const v1::DirectorAct& from) {
     const v1::Push& push = from.push();
     return Push{push.entity(), push.link(), vector_of(push.force()), vector_of(push.torque())};
   }
+  if (from.has_paint_floor() && !from.paint_floor().image().empty())
+    return LayImage{from.paint_floor().image()};
   if (from.has_paint_floor()) return region_of(from.paint_floor());
   if (from.has_move()) return wire::read(from.move());
   if (from.has_set_joint()) return wire::read(from.set_joint());
@@ -109,6 +121,28 @@ DirectorAct read(const v1::DirectorAct& from) {
     request.text = from.remove().entity();
   }
   return request;
+}
+
+/// Acts that take longer than others: there are fewer of them.
+std::optional<Fault> check_slow_acts(const v1::Direction& direction) {
+  std::size_t spawns = 0, images = 0;
+  for (const v1::DirectorAct& act : direction.acts()) {
+    spawns += act.has_spawn() ? 1 : 0;
+    images += act.has_paint_floor() && !act.paint_floor().image().empty() ? 1 : 0;
+  }
+  if (spawns > most_spawns) {
+    return make_fault(
+        ErrorCode::too_many, "acts",
+        fmt::format(
+            "A Direction spawns {} entities; {} are allowed: spawn the others at later ticks.",
+            spawns, most_spawns));
+  }
+  if (images > world::most_floor_images) {
+    return make_fault(ErrorCode::too_many, "acts",
+                      fmt::format("A Direction lays {} images on the floor; {} is allowed.", images,
+                                  world::most_floor_images));
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -124,15 +158,7 @@ std::optional<Fault> check(const v1::Direction& direction) {
                       fmt::format("A Direction has {} log lines; {} are allowed.",
                                   direction.log_size(), most_direction_logs));
   }
-  const auto spawns = static_cast<std::size_t>(std::ranges::count_if(
-      direction.acts(), [](const v1::DirectorAct& act) { return act.has_spawn(); }));
-  if (spawns > most_spawns) {
-    return make_fault(
-        ErrorCode::too_many, "acts",
-        fmt::format(
-            "A Direction spawns {} entities; {} are allowed: spawn the others at later ticks.",
-            spawns, most_spawns));
-  }
+  if (auto fault = check_slow_acts(direction)) return fault;
   for (std::size_t i = 0; i < acts; ++i) {
     if (auto fault = check_act(direction.acts(static_cast<int>(i)), i)) return fault;
   }

@@ -40,8 +40,13 @@ struct Push {
   std::array<double, 3> torque{};  ///< in W [N m]
 };
 
+/// An image that shall cover the arena's floor.
+struct LayImage {
+  std::string file;  ///< its bytes
+};
+
 /// A Request is one to move, spawn or remove.
-using DirectorAct = std::variant<Request, Show, Push, world::FloorPaint>;
+using DirectorAct = std::variant<Request, Show, Push, world::FloorPaint, LayImage>;
 
 /// Checked, but for what only the world can tell.
 struct Direction {

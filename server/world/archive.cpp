@@ -45,6 +45,18 @@ void archive_numbers(math::Archive& archive, std::string_view name, std::vector<
   }
 }
 
+/// The file of an image; no bytes: there is none.
+void archive_image(math::Archive& archive, std::shared_ptr<const FloorImage>& image) {
+  std::string file = image ? image->file : std::string();
+  archive("image", file);
+  if (!archive.reads()) return;
+  image = nullptr;
+  if (file.empty()) return;
+  auto read = floor_image(std::move(file));
+  archive.require(read.index() == 0, "is no image");
+  image = std::get<0>(std::move(read));
+}
+
 void archive_floor(math::Archive& archive, std::string_view name, std::vector<FloorPaint>& floor) {
   archive.list(
       name, floor,
@@ -53,6 +65,7 @@ void archive_floor(math::Archive& archive, std::string_view name, std::vector<Fl
         archive("half_size", region.half_size);
         archive("is_disc", region.is_disc);
         archive("color", region.color);
+        archive_image(archive, region.image);
         archive.require(is_valid(region), "is no region of a floor");
       },
       most_floor_paints);

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "math/hash.h"
 
 namespace ziggurat::world {
 namespace {
@@ -22,10 +25,25 @@ bool hides(const FloorPaint& upper, const FloorPaint& lower) {
 
 }  // namespace
 
-bool covers(const FloorPaint& region, const std::array<double, 2>& place) {
+std::variant<std::shared_ptr<const FloorImage>, std::string> floor_image(std::string file) {
+  auto read = images::read_image(file);
+  if (auto* why = std::get_if<std::string>(&read)) return std::move(*why);
+  math::Hash hash;
+  hash.add(std::string_view(file));
+  return std::make_shared<const FloorImage>(
+      FloorImage{std::move(file), std::get<images::Image>(std::move(read)), hash.digest()});
+}
+
+std::optional<Color> color_of(const FloorPaint& region, const std::array<double, 2>& place) {
+  if (region.image) {
+    const images::Rectangle covered{region.center,
+                                    {2 * region.half_size[0], 2 * region.half_size[1]}};
+    return images::color_at(region.image->image, covered, place[0], place[1]);
+  }
   const double x = away(region, place, 0), y = away(region, place, 1);
-  if (region.is_disc) return std::hypot(x, y) <= region.half_size[0];
-  return x <= region.half_size[0] && y <= region.half_size[1];
+  const bool covers = region.is_disc ? std::hypot(x, y) <= region.half_size[0]
+                                     : x <= region.half_size[0] && y <= region.half_size[1];
+  return covers ? std::optional(region.color) : std::nullopt;
 }
 
 bool is_valid(const FloorPaint& paint) {
@@ -33,7 +51,8 @@ bool is_valid(const FloorPaint& paint) {
   const auto is_size = [&](double value) { return value > 0 && is_bounded(value); };
   return std::ranges::all_of(paint.center, is_bounded) &&
          std::ranges::all_of(paint.half_size, is_size) && paint.color <= 0xFFFFFF &&
-         (!paint.is_disc || paint.half_size[0] == paint.half_size[1]);
+         (!paint.is_disc || paint.half_size[0] == paint.half_size[1]) &&
+         (!paint.image || (!paint.is_disc && paint.color == 0));
 }
 
 bool paint(std::vector<FloorPaint>& floor, const FloorPaint& region) {
@@ -43,11 +62,17 @@ bool paint(std::vector<FloorPaint>& floor, const FloorPaint& region) {
   return true;
 }
 
+const FloorImage* image_on(const std::vector<FloorPaint>& floor) {
+  const auto found =
+      std::find_if(floor.rbegin(), floor.rend(), [](const auto& region) { return region.image; });
+  return found == floor.rend() ? nullptr : found->image.get();
+}
+
 std::optional<Color> painted_color(const std::vector<FloorPaint>& floor, double x, double y) {
-  const auto top = std::find_if(floor.rbegin(), floor.rend(), [&](const FloorPaint& region) {
-    return covers(region, {x, y});
-  });
-  return top == floor.rend() ? std::nullopt : std::optional(top->color);
+  for (auto region = floor.rbegin(); region != floor.rend(); ++region) {
+    if (const auto color = color_of(*region, {x, y})) return color;
+  }
+  return std::nullopt;
 }
 
 }  // namespace ziggurat::world

@@ -69,6 +69,7 @@ struct Hasher {
       hash.add(std::span(region.half_size));
       add(std::uint64_t{region.is_disc});
       add(region.color);
+      if (region.image) add(region.image->digest);
     }
   }
   void add(const std::vector<RangeAndBearingPacket>& packets) {

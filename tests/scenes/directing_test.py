@@ -2,6 +2,7 @@
 """Directors: what their acts do to a world, in which order, over resets and lost connections (section 9.1 of protocol.md)."""
 
 import contextlib
+import json
 import os
 import random
 import threading
@@ -13,6 +14,11 @@ import ziggurat
 
 
 class Acts(Directing):
+    def image(self, content):
+        path = self.folder / "image"
+        path.write_bytes(content)
+        return path
+
     def test_it_ends_the_run_with_a_result(self):
         self.begin()
         with self.direct() as world:
@@ -155,6 +161,7 @@ class Acts(Directing):
             ("UNKNOWN_ENTITY", lambda world: world.remove("")),
             ("UNKNOWN_ENTITY", lambda world: world.entities["b2"].push(force=(1, 0, 0), link="arm")),
             ("BAD_VALUE", lambda world: world.paint_floor((0, 0), 0, 0)),
+            ("TOO_LARGE", lambda world: world.lay_floor_image(self.image(bytes((2 << 20) + 1)))),
             ("BAD_VALUE", lambda world: world.paint_floor((0, 0), (1, 2, 3), 0)),
             ("BAD_VALUE", lambda world: world.paint_floor((0,), 1, 0)),
             ("BAD_VALUE", lambda world: world.paint_floor((0, 0), 1, 0x1000000)),
@@ -177,6 +184,21 @@ class Acts(Directing):
             self.assertEqual(set(world.entities), {"b1", "b2", "wall"})
             world.finish()
         self.end()
+
+    def test_an_image_is_laid_on_the_floor(self):
+        self.begin()
+        with self.direct() as world:
+            next(world)
+            world.paint_floor((0, 0), 1, 0xFF0000)
+            world.lay_floor_image(self.image(b"P6 1 1 255\n\xff\0\0"))
+            next(world)
+            world.lay_floor_image(self.image(b"GIF89a"))
+            next(world)
+            self.assertEqual([(each.code, each.field) for each in world.left_out], [("BAD_VALUE", "acts[0].paint_floor.image")])
+            world.finish()
+        self.end()
+        shown = self.ziggurat("export", self.record, "--jsonl", "-", "--topics", "/world").out.splitlines()
+        self.assertEqual([bool(json.loads(line)["message"]["floor_picture"]) for line in shown], [False, True])
 
     def test_a_floor_with_too_many_regions_takes_one_that_hides_them(self):
         self.begin()

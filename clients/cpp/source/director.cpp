@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <exception>
+#include <fstream>
 #include <stdexcept>
 
 #include "asked_place.h"
@@ -29,6 +30,8 @@ struct Director::State {
 };
 
 namespace {
+
+constexpr std::size_t longest_image = std::size_t{2} << 20;  // of the floor [bytes]
 
 template <typename Numbers>
 void add_numbers(const Numbers& from, const char* what, std::string_view entity,
@@ -184,6 +187,22 @@ void Director::paint_floor(const std::array<double, 2>& center, const std::array
 
 void Director::paint_floor(const std::array<double, 2>& center, double radius, Color color) {
   add_paint(state_->part, center, std::array{radius}, color);
+}
+
+void Director::lay_floor_image(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string bytes(longest_image + 1, '\0');
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (stream.bad() || !stream.is_open() || stream.gcount() == 0)
+    throw std::runtime_error("the image '" + file.string() + "' can't be read");
+  lay_floor_image_bytes({bytes.data(), static_cast<std::size_t>(stream.gcount())});
+}
+
+void Director::lay_floor_image_bytes(std::string_view bytes) {
+  if (bytes.empty()) throw std::invalid_argument("an image of the floor has no bytes");
+  if (bytes.size() > longest_image)
+    throw std::length_error("an image of the floor has at most 2 MiB; save it with fewer pixels");
+  state_->part.add_act(bytes.size()).mutable_paint_floor()->set_image(std::string(bytes));
 }
 
 void Director::set_leds(std::string_view entity, std::span<const Color> colors) {

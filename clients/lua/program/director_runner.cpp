@@ -7,6 +7,7 @@
 #include <string>
 
 #include "program/echo.h"
+#include "program/file_share.h"
 #include "program/find_script.h"
 #include "program/terminal.h"
 #include "script/director_script.h"
@@ -76,14 +77,10 @@ class DirectorRunner {
     if (script.path.empty()) return script.fault;
     try {
       script_ = std::make_unique<DirectorScript>(
-          director_, ScriptOptions{script.path,
-                                   director_.seed(),
-                                   director_.tick(),
-                                   options_.max_memory,
-                                   options_.max_instructions,
-                                   options_.max_computing,
-                                   options_.trusts_scripts ? nullptr : &folders_,
-                                   {}});
+          director_,
+          ScriptOptions{script.path, director_.seed(), director_.tick(), options_.max_memory,
+                        options_.max_instructions, options_.max_computing,
+                        options_.trusts_scripts ? nullptr : &folders_, share_of_files(1)});
     } catch (const std::bad_alloc&) {
       return "no memory for a Lua state";
     }

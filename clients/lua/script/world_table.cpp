@@ -232,6 +232,8 @@ int set_tags(lua_State* state) {
   return 0;
 }
 
+constexpr lua_Integer longest_image = lua_Integer{2} << 20;  // of the floor [bytes]
+
 constexpr const char* paint_usage =
     "world.floor.paint({x =, y =, radius =} or {x =, y =, width =, height =}, color)";
 
@@ -265,6 +267,40 @@ int paint_floor(lua_State* state) {
   }
   note_act(state);
   return 0;
+}
+
+/// world.floor.image(path). Upvalues: the director, and io.open, which knows the files that may be
+/// read.
+int lay_floor_image(lua_State* state) {
+  check_count(state, 1, 1, "world.floor.image(path)");
+  check_text(state, 1);
+  lua_pushvalue(state, lua_upvalueindex(2));
+  lua_pushvalue(state, 1);
+  lua_pushliteral(state, "rb");
+  lua_call(state, 2, 2);
+  if (lua_isnil(state, -2)) return luaL_error(state, "%s", luaL_tolstring(state, -1, nullptr));
+  lua_pop(state, 1);
+  lua_getfield(state, -1, "read");
+  lua_pushvalue(state, -2);
+  lua_pushinteger(state, longest_image + 1);
+  lua_call(state, 2, 1);
+  lua_getfield(state, -2, "close");
+  lua_pushvalue(state, -3);
+  lua_call(state, 1, 0);
+  if (lua_isnil(state, -1)) return luaL_error(state, "'%s' is empty", lua_tostring(state, 1));
+  director_of(state).lay_floor_image_bytes(check_text(state, -1));
+  note_act(state);
+  return 0;
+}
+
+/// Adds the function to the table on top.
+void set_lay_floor_image(lua_State* state, Director& director) {
+  lua_pushlightuserdata(state, &director);
+  lua_getglobal(state, "io");
+  lua_getfield(state, -1, "open");
+  lua_remove(state, -2);
+  lua_pushcclosure(state, guarded<lay_floor_image>, 2);
+  lua_setfield(state, -2, "image");
 }
 
 int metric(lua_State* state) {
@@ -381,6 +417,7 @@ void push_world(lua_State* state, const WorldParts& parts) {
   set_function<set_tags>(state, "set_tags", &director);
   lua_newtable(state);
   set_function<paint_floor>(state, "paint", &director);
+  set_lay_floor_image(state, director);
   lua_setfield(state, -2, "floor");
   set_function<metric>(state, "metric", &director);
   set_function<finish>(state, "finish", &director);

@@ -282,6 +282,13 @@ class World(Session):
         sides = [size] if isinstance(size, (int, float)) else size
         self._act(paint_floor=v1.PaintFloor(center=center, size=sides, color=_packed(color)))
 
+    def lay_floor_image(self, file: Union[str, "os.PathLike[str]"]) -> None:
+        """An image covers the floor of the arena, in place of the scene's image and of what was painted: its right is +x,
+        its top +y.
+        file  a PNG file, or a PPM or PGM file of bytes, with at most 2 MiB"""
+        with open(file, "rb") as opened:
+            self._act(paint_floor=v1.PaintFloor(image=opened.read()))
+
     def metric(self, name: str, value: float) -> None:
         """A figure of the run: `ID/name` in its summary, ID being this director's."""
         self._figures.set(0, name, value)

@@ -54,6 +54,10 @@ def _refused(title: str, name: str, code: str, *acts, **fields) -> Case:
                 fresh=True, variant=VARIANT)
 
 
+def _lay(image: bytes, **others: object) -> dict:
+    return {"paint_floor": {"image": image, **others}}
+
+
 def _paint(*center: float, size: tuple = (1.0,), color: int = 0) -> dict:
     return {"paint_floor": {"center": list(center), "size": list(size), "color": color}}
 
@@ -237,5 +241,14 @@ CASES = [
         ("nothing", "… above 0", _paint(0.0, 0.0, size=(1.0, 0.0))),
         ("far", "… not too far away", _paint(2e6, 0.0)),
         ("nan", "… at numbers", _paint(float("nan"), 0.0)),
-        ("color", "… and a colour", _paint(0.0, 0.0, color=0x1000000)))],
+        ("color", "… and a colour", _paint(0.0, 0.0, color=0x1000000)),
+        ("both", "… or an image alone", _lay(b"P5 1 1 255\nx", color=1)))],
+    _refused("An image of the floor has 2 MiB at most", "R12.large", "TOO_LARGE", _lay(bytes((2 << 20) + 1))),
+    _refused("… and is alone", "R12.several", "TOO_MANY", _lay(b"P5 1 1 255\nx"), _lay(b"P5 1 1 255\ny")),
+    Case("R12.image", "An image covers the floor of the arena from the next tick on; what is no image is left out",
+         (_BOTH, answer("p"), _says("d"), *observe("p"), *_sees("d"), _ground(1, 1, 1, 1), answer("p"),
+          _says("d", acts=[_lay(b"P5 1 1 255\n\0")]), *observe("p"), *_sees("d"), _ground(0, 0, 0, 0), answer("p"),
+          _says("d", acts=[_lay(b"GIF89a")]), hear_error("d", "BAD_VALUE", "WARNING", field=Some()), *observe("p"),
+          *_sees("d"),
+          _ground(0, 0, 0, 0)), Level.RECONNECT, fresh=True, variant=VARIANT, scene="rovers"),
 ]

@@ -9,6 +9,7 @@ from .command import metric_faults
 from .fault import Fault
 
 _MOST_ACTS, _MOST_LINES, _LONGEST_RESULT = 10_000, 1000, 1024
+_LONGEST_IMAGE = 2 << 20  # for the floor [bytes]
 _LARGEST = 1e6  # of a force [N] or torque [N m], and of a painted region [m]
 _Group = protocol.Subscription
 
@@ -26,14 +27,21 @@ def direction_faults(direction: protocol.Direction) -> Iterator[Fault]:
             if values and (len(values) != 3 or not all(abs(value) <= _LARGEST for value in values)):
                 yield Fault("R8", f"the {name} of act {number} is {list(values)}", "BAD_VALUE",
                             f"acts[{number}].push.{name}")
-        if act.WhichOneof("act") == "paint_floor" and not _is_region(act.paint_floor):
+        if act.WhichOneof("act") == "paint_floor" and len(act.paint_floor.image) > _LONGEST_IMAGE:
+            yield Fault("R12", f"the image of act {number} has more than 2 MiB", "TOO_LARGE",
+                        f"acts[{number}].paint_floor.image")
+        elif act.WhichOneof("act") == "paint_floor" and not _is_region(act.paint_floor):
             yield Fault("R12", f"act {number} paints no region", "BAD_VALUE", f"acts[{number}].paint_floor")
+    if sum(bool(act.paint_floor.image) for act in direction.acts) > 1:
+        yield Fault("R12", "a Direction lays several images", "TOO_MANY", "acts")
     if len(direction.finish.result.encode()) > _LONGEST_RESULT:
         yield Fault("R10", "a result is longer than 1 KiB", "TOO_LARGE", "finish.result")
     yield from _figures(direction.metrics)
 
 
 def _is_region(paint: protocol.PaintFloor) -> bool:
+    if paint.image:
+        return not paint.center and not paint.size and paint.color == 0
     return (len(paint.center) == 2 and len(paint.size) in (1, 2) and paint.color <= 0xFFFFFF
             and all(abs(value) <= _LARGEST for value in paint.center)
             and all(0 < value <= _LARGEST for value in paint.size))

@@ -105,7 +105,7 @@ TEST(Channels, TheFloorIsAPictureAndWhatWasPaintedOnIt) {
   ShownWorld shown;
   EXPECT_TRUE(shown.read<v1::World>("/world").floor_picture().empty());
   shown.scene.floor_image =
-      std::make_shared<const scene::FloorImage>(scene::FloorImage{2, 1, {255, 0, 0, 0, 255, 0}});
+      std::make_shared<const images::Image>(images::Image{2, 1, {255, 0, 0, 0, 255, 0}});
   shown.populate();
   EXPECT_EQ(shown.read<v1::World>("/world").floor_picture().substr(1, 3), "PNG");
   shown.simulation.commands().floor_paints = {{{1, 2}, {3, 4}, false, 0x123456},
@@ -115,6 +115,16 @@ TEST(Channels, TheFloorIsAPictureAndWhatWasPaintedOnIt) {
   const auto& paints = poses.floor_paints();
   EXPECT_EQ(std::vector<double>(paints.begin(), paints.end()),
             std::vector<double>({1, 2, 3, 4, 0, 0x123456, 5, 6, 7, 7, 1, 0xFF}));
+
+  // An image of a director takes the place of the scene's, and hides what is below.
+  const std::string scene_picture = shown.read<v1::World>("/world").floor_picture();
+  world::FloorPaint laid{{0, 0}, {20, 20}};
+  laid.image = std::get<0>(world::floor_image("P5 1 1 255\nx"));
+  shown.simulation.commands().floor_paints = {laid, {{1, 2}, {3, 4}, false, 0x123456}};
+  shown.simulation.step();
+  shown.populate();
+  EXPECT_NE(shown.read<v1::World>("/world").floor_picture(), scene_picture);
+  EXPECT_EQ(shown.read<v1::Poses>("/poses").floor_paints_size(), 6);
 }
 
 TEST(Channels, ARobotsReadingsAndCommandsAreThoseOfItsSession) {

@@ -201,6 +201,21 @@ TEST(Inputs, GiveBackWhatWasPaintedOnTheFloorAtThatTick) {
   EXPECT_NE(example.fault_of(first).find("painted region"), std::string::npos);
 }
 
+TEST(Inputs, GiveBackAnImageThatWasLaidOnTheFloor) {
+  Example example;
+  world::FloorPaint laid{{0, 0}, {2, 2}};
+  laid.image = std::get<0>(world::floor_image("P5 1 1 255\nx"));
+  example.commands.floor_paints = {laid};
+  v1::Commands packed;
+  CommandPacker().pack(example.commands, packed);
+  world::Commands read = example.commands;
+  ASSERT_EQ(example.read(packed, read), std::nullopt);
+  ASSERT_EQ(read.floor_paints.size(), 1u);
+  EXPECT_EQ(read.floor_paints[0].image->file, laid.image->file);
+  packed.mutable_floor_paints(0)->set_image("P5 1 1 255\n");
+  EXPECT_NE(example.fault_of(packed).find("ends before its last pixel"), std::string::npos);
+}
+
 TEST(ExactState, GivesBackLinksFromChanges) {
   StatePacker packer;
   world::State state;

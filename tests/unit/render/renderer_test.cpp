@@ -202,7 +202,7 @@ TEST(Renderer, ColoursTheFloorAsItsPictureAndWhatWasPaintedOverIt) {
   EXPECT_LT(difference(at(painted, 0.5, 0.35), plain), 30) << "beside the disc";
   // Two pixels: red where x < 0, green beyond.
   world.scene.floor_image =
-      std::make_shared<const scene::FloorImage>(scene::FloorImage{2, 1, {255, 0, 0, 0, 255, 0}});
+      std::make_shared<const images::Image>(images::Image{2, 1, {255, 0, 0, 0, 255, 0}});
   const Picture all = world.picture(view);
   EXPECT_GT(at(all, -0.5, 0.2).red, 2 * at(all, -0.5, 0.2).green);
   EXPECT_GT(at(all, 0.5, 0.35).green, 2 * at(all, 0.5, 0.35).red);

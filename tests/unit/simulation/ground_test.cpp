@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "../temporary_folder.h"
@@ -87,6 +88,17 @@ TEST(GroundWithoutPicture, IsWhite) {
   Simulation simulation = SmallScene{"", all, robot}.run();
   simulation.step();
   for (const double reading : simulation.observations().device_readings) EXPECT_EQ(reading, 1);
+}
+
+TEST(PaintedGround, HasTheImageThatADirectorLays) {
+  Simulation simulation =
+      SmallScene{"", grey, R"(<foot-bot id="r"><body/><controller config="c"/></foot-bot>)"}.run();
+  world::FloorPaint image{{0, 0}, {4.5, 4.5}};
+  image.image = std::get<0>(world::floor_image(ppm("2 1", black + red)));
+  simulation.commands().floor_paints = {image};
+  simulation.step();
+  EXPECT_NEAR(simulation.observations().device_readings[0], 0.299, 1e-12) << "front left";
+  EXPECT_EQ(simulation.observations().device_readings[1], 0) << "rear left";
 }
 
 TEST(PaintedGround, CoversThePictureFromTheNextTickOn) {

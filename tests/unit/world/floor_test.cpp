@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <variant>
 
 namespace ziggurat::world {
 namespace {
@@ -28,6 +30,33 @@ TEST(Floor, HasTheColourThatWasPaintedLast) {
       << "outside of the disc";
   EXPECT_FALSE(painted_color(floor, -1.01, 2));
   EXPECT_FALSE(painted_color(floor, 1, 3.01));
+}
+
+/// A PPM file of one row, with a red pixel and a green one.
+std::string red_and_green() { return "P6 2 1 255\n" + std::string("\xff\0\0\0\xff\0", 6); }
+FloorPaint with_image(double width, double height) {
+  FloorPaint region = rectangle(0, 0, width, height, 0);
+  region.image = std::get<0>(floor_image(red_and_green()));
+  return region;
+}
+
+TEST(Floor, HasTheColoursOfAnImage) {
+  std::vector<FloorPaint> floor;
+  paint(floor, disc(0, 0, 0.5, 1));
+  EXPECT_EQ(image_on(floor), nullptr);
+  ASSERT_TRUE(paint(floor, with_image(4, 2)));
+  EXPECT_EQ(floor.size(), 1u) << "it hides what is below";
+  ASSERT_TRUE(paint(floor, disc(1, 0, 0.25, 0x0000FF)));
+  EXPECT_EQ(image_on(floor), floor[0].image.get());
+  EXPECT_EQ(painted_color(floor, -0.01, 0.9), 0xFF0000U);
+  EXPECT_EQ(painted_color(floor, 0.01, -0.9), 0x00FF00U);
+  EXPECT_EQ(painted_color(floor, 1, 0), 0x0000FFU);
+  EXPECT_FALSE(painted_color(floor, -2.01, 0));
+}
+
+TEST(Floor, ReadsImagesOrSaysWhyNot) {
+  for (const char* file : {"", "GIF89a", "P6 2 1 255\n", "\x89PNG", "P6 99999 99999 255\n"})
+    EXPECT_NE(std::get<std::string>(floor_image(file)), "") << file;
 }
 
 TEST(Floor, ForgetsWhatIsHidden) {
@@ -55,6 +84,10 @@ TEST(Floor, RemembersSoManyRegions) {
 
 TEST(Floor, ChecksRegions) {
   EXPECT_TRUE(is_valid(rectangle(1, 2, 3, 4, 0xFFFFFF)));
+  EXPECT_TRUE(is_valid(with_image(1, 1)));
+  FloorPaint coloured = with_image(1, 1);
+  coloured.color = 1;
+  EXPECT_FALSE(is_valid(coloured));
   EXPECT_FALSE(is_valid(rectangle(1, 2, 0, 4, 0)));
   EXPECT_FALSE(is_valid(rectangle(NAN, 2, 3, 4, 0)));
   EXPECT_FALSE(is_valid(rectangle(1, 2e6, 3, 4, 0)));

@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -137,6 +138,13 @@ class Director {
   void paint_floor(const std::array<double, 2>& center, const std::array<double, 2>& size,
                    Color color);
   void paint_floor(const std::array<double, 2>& center, double radius, Color color);
+  /// An image covers the floor of the arena, in place of the scene's image and of what was painted:
+  /// its right is +x, its top +y.
+  /// @param file  a PNG file, or a PPM or PGM file of bytes
+  /// @throws std::runtime_error for a file that can't be read, std::length_error above 2 MiB
+  void lay_floor_image(const std::filesystem::path& file);
+  /// The same with the file's bytes.
+  void lay_floor_image_bytes(std::string_view bytes);
   /// Colours of all LEDs of an entity, which stay until changed. A controller's actuators win.
   void set_leds(std::string_view entity, std::span<const Color> colors);
   void set_directional_leds(std::string_view entity, std::span<const Color> colors);

@@ -7,6 +7,7 @@
 
 #include <fstream>
 #include <functional>
+#include <regex>
 
 #include "clients/fake_director.h"
 #include "program/director_runner.h"
@@ -33,7 +34,7 @@ struct Directed {
   }
 };
 
-/// Runs a script for some ticks.
+/// Runs a script for some ticks. Beside it is `floor.pgm`; FOLDER stands for its folder.
 Directed run(const std::string& script, std::uint64_t ticks = 1,
              const std::function<void(FakeServer&, std::uint64_t)>& before_tick = {}) {
   const TemporaryFolder folder;
@@ -42,7 +43,9 @@ Directed run(const std::string& script, std::uint64_t ticks = 1,
   options.script = folder / "main.lua";
   options.folders = {folder.path};
   options.quiet = true;
-  std::ofstream(*options.script) << script;
+  std::ofstream(folder / "floor.pgm") << "P5 1 1 255\nx";
+  std::ofstream(*options.script) << std::regex_replace(script, std::regex("FOLDER"),
+                                                       folder.path.string());
   Directed directed;
   {
     FakeServer server([&](FakeServer& self) {
@@ -221,6 +224,18 @@ TEST(DirectorScript, ActsInTheOrderOfItsCalls) {
   EXPECT_EQ(all.metrics(1).name(), "width");
 }
 
+TEST(DirectorScript, LaysImagesThatItMayRead) {
+  const Directed directed =
+      run("function init() world.floor.image('FOLDER/floor.pgm') io = nil "
+          "world.floor.image('FOLDER/floor.pgm') end",
+          0);
+  ASSERT_EQ(directed.directions.size(), 1U) << directed.leave.message();
+  ASSERT_EQ(directed.directions[0].acts_size(), 2);
+  EXPECT_EQ(directed.directions[0].acts(1).paint_floor().image(), "P5 1 1 255\nx");
+  const std::string refused = logged("world.floor.image('/etc/hostname')");
+  EXPECT_NE(refused.find("is not a file that scripts may use"), std::string::npos) << refused;
+}
+
 TEST(DirectorScript, SaysWhatIsWrong) {
   const auto has = [](const std::string& line, const std::string& part) {
     const std::string text = logged(line);
@@ -245,6 +260,8 @@ TEST(DirectorScript, SaysWhatIsWrong) {
   has("world.floor.paint({x = 1, y = 2}, 'red')", "{x =, y =, radius =} or {x =, y =, width =,");
   has("world.floor.paint({x = 1, y = 2, radius = 0}, 'red')", "a size above 0");
   has("world.floor.paint({x = 1, y = 2, radius = 1}, 'reddish')", "'reddish' is no color");
+  has("world.floor.image('FOLDER/no.png')", "no.png: No such file or directory");
+  has("world.floor.image()", "world.floor.image(path)");
   has("world.finish(string.rep('x', 2000))", "at most 1024 bytes");
   has("world.metric('a b', 1)", "the name of a metric");
   has("for i = 1, 10001 do world.remove('box') end", "at most 10000 things");

@@ -1,28 +1,24 @@
 // SPDX-License-Identifier: MIT
-#include "scene/floor_image.h"
+#include "images/image.h"
 
 #include <fmt/format.h>
 #include <png.h>
 
 #include <charconv>
 #include <cmath>
-#include <optional>
 
-#include "scene/scene.h"
-
-namespace ziggurat::scene {
+namespace ziggurat::images {
 namespace {
 
 std::string too_many_pixels(unsigned width, unsigned height) {
-  return fmt::format("has {} x {} pixels; write one with at most {}", width, height,
-                     most_floor_pixels);
+  return fmt::format("has {} x {} pixels; write one with at most {}", width, height, most_pixels);
 }
 
 bool has_right_size(unsigned width, unsigned height) {
-  return width > 0 && height > 0 && height <= most_floor_pixels / width;
+  return width > 0 && height > 0 && height <= most_pixels / width;
 }
 
-std::variant<FloorImage, std::string> read_png(std::string_view bytes) {
+std::variant<Image, std::string> read_png(std::string_view bytes) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   if (png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()) == 0) {
@@ -37,7 +33,7 @@ std::variant<FloorImage, std::string> read_png(std::string_view bytes) {
   if (png_image_finish_read(&png, nullptr, pixels.data(), 0, nullptr) == 0) {
     return fmt::format("is no readable PNG file ({}); save it anew", png.message);
   }
-  FloorImage image{png.width, png.height, {}};
+  Image image{png.width, png.height, {}};
   image.rgb.reserve(pixels.size() / 4 * 3);
   for (std::size_t i = 0; i < pixels.size(); i += 4) {
     image.rgb.insert(image.rgb.end(), &pixels[i], &pixels[i] + 3);
@@ -60,7 +56,7 @@ std::optional<unsigned> take_number(std::string_view& text) {
   return value;
 }
 
-std::variant<FloorImage, std::string> read_anymap(std::string_view bytes) {
+std::variant<Image, std::string> read_anymap(std::string_view bytes) {
   const std::size_t channels = bytes[1] == '6' ? 3 : 1;
   bytes.remove_prefix(2);
   const auto width = take_number(bytes), height = take_number(bytes), most = take_number(bytes);
@@ -71,7 +67,7 @@ std::variant<FloorImage, std::string> read_anymap(std::string_view bytes) {
   if (!has_right_size(*width, *height)) return too_many_pixels(*width, *height);
   const std::size_t pixels = std::size_t{*width} * *height;
   if (bytes.size() < channels * pixels) return "ends before its last pixel; save it anew";
-  FloorImage image{*width, *height, {}};
+  Image image{*width, *height, {}};
   image.rgb.reserve(3 * pixels);
   for (std::size_t i = 0; i < 3 * pixels; ++i) {
     image.rgb.push_back(static_cast<std::uint8_t>(bytes[channels == 3 ? i : i / 3]));
@@ -79,7 +75,7 @@ std::variant<FloorImage, std::string> read_anymap(std::string_view bytes) {
   return image;
 }
 
-/// Pixel of a place on a side of the arena; none outside.
+/// Pixel of a place on a side of the rectangle; none outside.
 std::optional<std::size_t> pixel(double place, double center, double size, unsigned pixels) {
   const double at = std::floor(((place - center) / size + 0.5) * pixels);
   if (!(at >= 0 && at < pixels)) return std::nullopt;
@@ -88,19 +84,20 @@ std::optional<std::size_t> pixel(double place, double center, double size, unsig
 
 }  // namespace
 
-std::uint32_t floor_color(const FloorImage& image, const Arena& arena, double x, double y) {
-  const auto column = pixel(x, arena.center.x(), arena.size.x(), image.width);
-  const auto row = pixel(y, arena.center.y(), arena.size.y(), image.height);
-  if (!column || !row) return floor_without_image;
+std::optional<std::uint32_t> color_at(const Image& image, const Rectangle& covered, double x,
+                                      double y) {
+  const auto column = pixel(x, covered.center[0], covered.size[0], image.width);
+  const auto row = pixel(y, covered.center[1], covered.size[1], image.height);
+  if (!column || !row) return std::nullopt;
   const std::uint8_t* const rgb =
       &image.rgb[3 * ((image.height - 1 - *row) * image.width + *column)];
   return std::uint32_t{rgb[0]} << 16 | std::uint32_t{rgb[1]} << 8 | rgb[2];
 }
 
-std::variant<FloorImage, std::string> read_floor_image(std::string_view bytes) {
+std::variant<Image, std::string> read_image(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG")) return read_png(bytes);
   if (bytes.starts_with("P5") || bytes.starts_with("P6")) return read_anymap(bytes);
   return "is no PNG, PPM or PGM file; convert it to PNG";
 }
 
-}  // namespace ziggurat::scene
+}  // namespace ziggurat::images
