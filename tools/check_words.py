@@ -11,7 +11,7 @@ licence and results of benchmarks are left out.
 
 Comments of the C++ sources below COMMENTED begin with the field's noun, or with a verb. No
 sentence of theirs has more than 25 words; text in parentheses does not count, and a blank line ends a sentence.
-In README.md and docs/ none has more than 30; code counts as one word, a list of it too, and a cell of a table is text of its own.
+In a document none has more than 30; code counts as one word, a list of it too, and a cell of a table is text of its own.
 """
 
 import os
@@ -132,7 +132,7 @@ def paragraphs(text):
 
 def check_sentences(name, text):
     """All long sentences of a document, as file:line: text."""
-    if name != "README.md" and not (name.startswith("docs/") and name.endswith(".md")):
+    if not name.endswith(".md"):
         return []
     found = []
     for number, paragraph in paragraphs(text):

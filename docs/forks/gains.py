@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Which of five gains keeps the block from slipping? From one recorded run: docs/recordings.md, Fork.
 
 usage: gains.py ZIGGURAT OUT.svg

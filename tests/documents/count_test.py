@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Counts the code blocks and commands of README.md and docs/, and lists those that are not run, with the reasons."""
+"""Counts the code blocks and commands of the documents, and lists those that are not run, with the reasons."""
 
 import unittest
 

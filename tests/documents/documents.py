@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Code blocks of README.md and docs/: their kind, their place, and the marks before them.
+"""Code blocks of all documents: their kind, their place, and the marks before them.
 
 A mark is an HTML comment on a line of its own before a block; readers do not see it:
 
@@ -18,6 +18,7 @@ import pathlib
 import re
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGES = ("*.md", "docs/**/*.md", "docker/*.md", "clients/*/README.md", "protocol/recorded/*.md")
 MARK = re.compile(r"\s*<!-- (not run|slow|file|then|beside|goes on|exit|part of)(?:: (.*?))? -->\s*")
 FENCE = re.compile(r"(\s*)(`{3,})(\w*)(?: .*)?")
 HEADING = re.compile(r"(#+) (.*)")
@@ -60,13 +61,14 @@ class Block:
 
 
 def pages():
-    """README.md and all of docs/, as paths from the root."""
-    return ["README.md", *sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").rglob("*.md"))]
+    """Paths from the root."""
+    return [path.relative_to(ROOT).as_posix() for pattern in PAGES for path in sorted(ROOT.glob(pattern))]
 
 
 def name_of(page):
-    """top_README, viewing, tutorial_01-box_README: the page's test."""
-    return "top_README" if page == "README.md" else page.removesuffix(".md").removeprefix("docs/").replace("/", "_")
+    """top_README, viewing, tutorial_01-box_README, clients_python_README: the page's test."""
+    path = page if "/" in page else f"top/{page}"
+    return path.removesuffix(".md").removeprefix("docs/").replace("/", "_")
 
 
 def blocks(page):

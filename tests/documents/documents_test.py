@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Every code block and command of README.md and docs/ works as printed.
+"""Every code block and command of the documents works as printed.
 
 usage: documents_test.py [Documents.test_PAGE]...    a page is top_README, viewing, tutorial_01-box_README, …
 

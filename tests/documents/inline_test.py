@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Commands and options that README.md and docs/ name in running text and tables exist.
+"""Commands and options that documents name in running text and tables exist.
 
 A command in a text, as `ziggurat ctl pause`, must be one of the program's, and its options must be in its help; an option
 alone, as `--record`, in the help of one of our programs.
@@ -17,8 +17,9 @@ from documents import FENCE, ROOT, pages
 BIN = pathlib.Path(os.environ.get("ZIGGURAT_BUILD", ROOT / "build/release")) / "bin"
 SPAN = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z_-]*")
-# Options of unshare, tests, an example and other simulators.
-OF_OTHERS = {"--bind", "--fast", "--gtest_filter", "--gtest_list_tests", "--only", "--pause", "--playback", "--test-name-pattern"}
+# Options of unshare, docker, tests, an example and other simulators.
+OF_OTHERS = {"--bind", "--fast", "--gtest_filter", "--gtest_list_tests", "--only", "--pause", "--playback", "--read-only",
+             "--test-name-pattern", "--tmpfs"}
 
 
 def told(*command):

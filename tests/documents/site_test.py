@@ -16,19 +16,26 @@ HERE = pathlib.Path(__file__).resolve().parent
 QUESTIONS = {  # what a user types, and a page that must be among the first results
     "add noise": "docs/faq.html",
     "attach": "docs/faq.html",
+    "glue two bodies": "docs/faq.html",
     "ground truth": "docs/faq.html",
     "add a light": "docs/faq.html",
     "write a file from lua": "docs/faq.html",
     "debug a lua script": "docs/faq.html",
     "hundred seeds": "docs/faq.html",
-    "headless cluster": "docs/faq.html",
+    "monte carlo": "docs/faq.html",
+    "headless": "docs/faq.html",
+    "gpu": "docs/faq.html",
     "faster": "docs/faq.html",
+    "screenshot": "docs/faq.html",
     "move a robot from outside": "docs/faq.html",
+    "teleport": "docs/faq.html",
     "stop a run": "docs/faq.html",
     "two machines": "docs/faq.html",
     "meshes terrain": "docs/faq.html",
     "urdf": "docs/faq.html",
-    "ros": "docs/faq.html",
+    "ros2": "docs/faq.html",
+    "lidar": "docs/faq.html",
+    "windows": "docs/faq.html",
     "springs": "docs/faq.html",
     "joint torque": "docs/faq.html",
     "several machines keys": "docs/several-machines.html",
@@ -36,6 +43,12 @@ QUESTIONS = {  # what a user types, and a page that must be among the first resu
     "record replay": "docs/recordings.html",
     "gymnasium": "docs/learning.html",
     "slurm": "docs/experiments.html",
+    "phototaxis": "docs/faq.html",  # a word of paths in code
+    "set_velocity": "docs/lua-api.html",
+    "io.open": "docs/faq.html",
+    "opencv": "docs/python-client.html",
+    "docker": "docker/index.html",
+    "cite": "index.html",
     "report card": "docs/hardware-in-the-loop.html",
 }
 FIRST = 5
@@ -55,6 +68,10 @@ class Site(unittest.TestCase):
 
     def test_it_is_built_without_warnings(self):
         self.assertEqual((self.built.returncode, self.built.stderr), (0, ""))
+
+    def test_only_documents_are_searched(self):
+        index = json.loads((self.html / "search/search_index.json").read_text(encoding="utf-8"))
+        self.assertEqual({entry["location"].split("/")[0].split("#")[0] for entry in index["docs"]}, {"docs", "docker", "index.html"})
 
     def test_no_page_loads_anything_from_elsewhere(self):
         loaded = re.compile(r'<(?:script|img|link rel="stylesheet"|iframe)[^>]*(?:src|href)="(?:https?:)?//[^"]*"')

@@ -64,7 +64,8 @@ class CheckWords(unittest.TestCase):
         self.assertIn("docs/a.md:3: a sentence of 32 words", out)
         short = f"{words}. {words}:\n\n- {words}\n- {words} ({words})\n\n| {words} | {words} |\n\n```sh\n{words} {words}\n```\n"
         self.assertEqual(self.run_on("docs/a.md", short)[0], 0)
-        self.assertEqual(self.run_on("bench/a.md", f"{words} {words}\n")[0], 0, "elsewhere it is not checked")
+        self.assertEqual(self.run_on("docker/a.md", f"{words} {words}\n")[0], 1, "in any folder")
+        self.assertEqual(self.run_on("docker/a.txt", f"{words} {words}\n")[0], 0, "that is no document")
 
     def test_leaves_other_comments_alone(self):
         text = '/// Position of a link.\nint a = 0;  ///< of the link [m]\nauto url = "http://What";\n'

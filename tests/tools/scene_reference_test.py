@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """docs/scene-reference.md is whole: it has each attribute that the reader's sources ask for, and each of our scenes.
+docs/scene-format.md, which says what they mean, names each of them, too.
 
 usage: scene_reference_test.py ROOT
 
@@ -43,12 +44,20 @@ def in_scenes(root):
                 yield path, element.tag, name
 
 
+def not_explained(attributes, text):
+    """Attributes that a text does not name; one of a wheel is named with both, as in bias_avg_left."""
+    words = set(re.findall(r"[\w-]+", text))
+    return sorted(name for name in attributes if not {name, re.sub("_(left|right)$", "", name)} & words)
+
+
 def main(root):
     elements, attributes = on_page((root / "docs/scene-reference.md").read_text())
     missing = [f"{path}: {name} is asked for, and not on the page" for path, name in asked_by_sources(root)
                if name not in attributes]
     missing += [f"{path}: {name} of <{element}> is not on the page" for path, element, name in in_scenes(root)
                 if name not in elements.get(element, ()) and name not in OLD]
+    missing += [f"docs/scene-format.md does not name the attribute {name}"
+                for name in not_explained(attributes, (root / "docs/scene-format.md").read_text())]
     assert len(elements) > 60 and len(attributes) > 100, "the page could not be read"
     print("\n".join(dict.fromkeys(missing)) or f"{len(elements)} elements, {len(attributes)} attributes")
     return bool(missing)

@@ -38,8 +38,8 @@ void Disk::check_loss() const {
 }
 
 void Disk::write(std::string_view bytes) {
-  constexpr std::size_t piece = std::size_t{1}
-                                << 20;  // at once, so that a slow disk is seen to go on
+  // [bytes] at once: a disk that takes as much within the patience is seen to go on.
+  constexpr std::size_t piece = std::size_t{1} << 16;
   check_loss();
   for (std::string_view left = bytes; !left.empty();) {
     const ssize_t count = ::write(descriptor_, left.data(), std::min(left.size(), piece));
