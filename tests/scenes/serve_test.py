@@ -74,9 +74,9 @@ class Serve(SceneTest):
         process = self.start("serve", self.scene, "--duration", 0, "--endpoint", "tcp://0.0.0.0:*",
                              "--view=0.0.0.0:0", "--insecure")
         port = self.read_until(process.stdout, r"^endpoint tcp://0\.0\.0\.0:(\d+)$")[1]
-        self.read_until(process.stderr, r"watch this run at http://127\.0\.0\.1:\d+/\?token=")
         self.read_until(process.stderr, f"connect with: ziggurat-lua --connect tcp://127.0.0.1:{port}")
         self.read_until(process.stderr, "from other machines: this machine's name in place of 127.0.0.1")
+        self.read_until(process.stderr, r"watch this run at http://127\.0\.0\.1:\d+/\?token=")
         self.interrupt(process)
         self.finish(process)
 
