@@ -17,6 +17,7 @@
 #include "gallery/ports.h"
 #include "http/port.h"
 #include "reports/console.h"
+#include "text/hosts.h"
 #include "text/numbers.h"
 #include "view/access.h"
 
@@ -96,8 +97,9 @@ int serve_folder(const Arguments& arguments, processes::Signals& signals) {
   }
   const auto port = listen(address, values.has("view"), gallery);
   reports::Console console;
-  console.notice(fmt::format("{} scenes at http://{}{}", gallery.scenes(),
-                             gallery::authority(address.host, port->number()), gallery.path()));
+  const std::string called = gallery::authority(text::host_to_call(address.host), port->number());
+  console.notice(fmt::format("{} scenes at http://{}{}", gallery.scenes(), called, gallery.path()));
+  if (text::is_every_host(address.host)) console.notice(text::note_of_every_host(address.host));
   console.flush();
   while (signals.take().interruptions == 0) {
     gallery.go_on();

@@ -32,9 +32,11 @@ http::Answer html(std::string body) {
   return {200, "text/html; charset=utf-8", {}, std::move(body)};
 }
 
-http::Answer go_to(std::string place) {
+/// @param port  where it is; 0: here
+http::Answer go_to(std::string place, std::uint16_t port = 0) {
   http::Answer answer = text(303, "It is at " + place);
   answer.location = std::move(place);
+  answer.port = port;
   return answer;
 }
 
@@ -120,8 +122,7 @@ http::Answer Gallery::wait() {
   }
   if (!is_listening(settings_.address.host, run_port_))
     return html(notice_page(run_name_ + " is being loaded …", path_, true));
-  return go_to(
-      fmt::format("//{}/?token={}", authority(settings_.address.host, run_port_), settings_.token));
+  return go_to("/?token=" + settings_.token, run_port_);
 }
 
 void Gallery::end_run() {

@@ -19,13 +19,6 @@ std::string_view without_brackets(std::string_view host) {
   return has ? host.substr(1, host.size() - 2) : host;
 }
 
-std::string_view without_port(std::string_view host) {
-  const std::size_t colon = host.rfind(':');
-  if (colon == std::string_view::npos) return host;
-  const bool is_port = host.find_first_not_of("0123456789", colon + 1) == std::string_view::npos;
-  return is_port ? host.substr(0, colon) : host;
-}
-
 bool is_number(std::string_view host) {
   const std::string text(without_brackets(host));
   std::array<std::uint8_t, 16> address;
@@ -40,6 +33,13 @@ bool is_same_name(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+std::string_view without_port(std::string_view host) {
+  const std::size_t colon = host.rfind(':');
+  if (colon == std::string_view::npos) return host;
+  const bool is_port = host.find_first_not_of("0123456789", colon + 1) == std::string_view::npos;
+  return is_port ? host.substr(0, colon) : host;
+}
+
 Address to_address(std::string_view option, const std::string& value) {
   const std::size_t colon = value.rfind(':');
   if (colon == std::string::npos || colon == 0) {
@@ -51,8 +51,8 @@ Address to_address(std::string_view option, const std::string& value) {
     throw text::UsageError(
         fmt::format("{}: port {} is too large; ports are 0 to 65535", option, port));
   }
-  return {std::string(without_brackets(std::string_view(value).substr(0, colon))),
-          static_cast<std::uint16_t>(port)};
+  const std::string_view host = without_brackets(std::string_view(value).substr(0, colon));
+  return {host == "*" ? "0.0.0.0" : std::string(host), static_cast<std::uint16_t>(port)};
 }
 
 bool is_loopback(std::string_view host) {

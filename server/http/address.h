@@ -13,9 +13,12 @@ struct Address {
   std::uint16_t port = 0;  ///< 0: any free one
 };
 
-/// @param value  HOST:PORT; HOST may be in brackets
+/// @param value  HOST:PORT; HOST may be in brackets, and `*` means all addresses of this machine
 /// @throws text::UsageError that names the option
 Address to_address(std::string_view option, const std::string& value);
+
+/// HOST of `Host: HOST:PORT`; an IPv6 address stays in brackets.
+std::string_view without_port(std::string_view host);
 
 /// Only programs of this machine can reach it.
 bool is_loopback(std::string_view host);

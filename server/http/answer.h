@@ -14,6 +14,8 @@ struct Answer {
   std::string gzipped = {};   ///< the same body in gzip, for clients that take it; empty: none
   bool is_immutable = false;  ///< with an etag: never another body under this name
   std::string location = {};  ///< of a redirection (303): where to go; empty: none
+  unsigned port =
+      0;  ///< of a redirection to another port of the host that was called; 0: to this one
 };
 
 }  // namespace ziggurat::http

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <sstream>
+#include <string>
 #include <utility>
 
 #include "http/address.h"
@@ -33,6 +34,14 @@ const char* cache_control(const Answer& answer) {
   return answer.is_immutable ? "public, max-age=31536000, immutable" : "no-cache";
 }
 
+/// Place of a redirection: of another port, under the name by which the client called this one.
+std::string place_of(const Request& request, const Answer& answer) {
+  if (answer.port == 0) return answer.location;
+  const std::string_view called = without_port(view_of(request[Field::host]));
+  return "//" + std::string(called.empty() ? "127.0.0.1" : called) + ":" +
+         std::to_string(answer.port) + answer.location;
+}
+
 /// @param request  may be half read
 /// It closes the connection.
 Response make_response(const Request& request, Answer from) {
@@ -42,7 +51,7 @@ Response make_response(const Request& request, Answer from) {
   response.set("X-Content-Type-Options", "nosniff");
   response.set(Field::cache_control, cache_control(from));
   if (!from.etag.empty()) response.set(Field::etag, from.etag);
-  if (!from.location.empty()) response.set(Field::location, from.location);
+  if (!from.location.empty()) response.set(Field::location, place_of(request, from));
   if (!from.gzipped.empty()) {
     response.set(Field::vary, "Accept-Encoding");
     if (takes_gzip(request)) {

@@ -22,9 +22,7 @@ constexpr int less_important =
 
 Tcp::acceptor listen(asio::io_context& io, std::string_view option, const Address& address) {
   Error error;
-  const std::string host = address.host == "localhost" ? "127.0.0.1"
-                           : address.host == "*"       ? "0.0.0.0"
-                                                       : address.host;
+  const std::string host = address.host == "localhost" ? "127.0.0.1" : address.host;
   const auto found =
       Tcp::resolver(io).resolve(host, std::to_string(address.port), Tcp::resolver::passive, error);
   const auto fail = [&](const std::string& what) {

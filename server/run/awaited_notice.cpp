@@ -5,9 +5,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "run/absent.h"
+#include "text/hosts.h"
 
 namespace ziggurat::run {
 namespace {
@@ -94,9 +97,10 @@ void AwaitedNotice::tell(reports::Progress& progress, std::uint64_t tick, bool g
   auto awaited = by_controller(world_, robots) + fmt::format("{}", fmt::join(directors, ", "));
   const auto [line, detail] = text(robots, directors);
   if (awaited.empty() || (awaited == printed_ && detail <= printed_detail_)) return;
-  const auto where = must_connect
-                         ? fmt::format(" to connect to {}", fmt::join(server_.endpoints(), " or "))
-                         : std::string();
+  std::vector<std::string> endpoints = server_.endpoints();
+  std::ranges::transform(endpoints, endpoints.begin(), text::endpoint_to_call);
+  const auto where =
+      must_connect ? fmt::format(" to connect to {}", fmt::join(endpoints, " or ")) : std::string();
   console_.notice(fmt::format("waiting for {}{}", line, where));
   printed_ = std::move(awaited);
   printed_detail_ = detail;

@@ -52,6 +52,7 @@ class LiveView {
   LiveView(const Options& options, Run run);
 
   std::string page_address() const { return server_.page_address(); }
+  const std::string& host() const { return server_.host(); }
   std::string viewer_address() const { return server_.viewer_address(); }
 
   /// Readable when a viewer wants something.

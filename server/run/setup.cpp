@@ -16,6 +16,7 @@
 #include "processes/scripts.h"
 #include "reports/json_text.h"
 #include "run/build.h"
+#include "text/hosts.h"
 #include "text/numbers.h"
 #include "text/quoting.h"
 
@@ -85,8 +86,9 @@ void announce(const Options& options, const std::vector<std::string>& endpoints,
   console.offer();
 }
 
-void tell_how_to_connect(const Options& options, const std::string& endpoint,
+void tell_how_to_connect(const Options& options, const std::string& listens_at,
                          const supervision::World& world, reports::Console& console) {
+  const std::string endpoint = text::endpoint_to_call(listens_at);
   const bool is_protected = !options.curve_secret.empty();
   const std::string lua =
       fmt::format("connect with: ziggurat-lua --connect {}{}", endpoint,
@@ -121,6 +123,8 @@ void tell_how_to_connect(const Options& options, const std::string& endpoint,
   constexpr std::size_t most = 8;
   for (std::size_t i = 0; i < std::min(most, hints.size()); ++i) console.notice(hints[i]);
   if (hints.size() > most) console.notice(fmt::format("and {} more", hints.size() - most));
+  const std::string note = text::note_of_every_host(text::host_of_endpoint(listens_at));
+  if (!note.empty() && !hints.empty()) console.notice(note);
 }
 
 wire::Run description_of(const supervision::World& world, const std::vector<std::string>& scripts) {
@@ -207,10 +211,13 @@ std::unique_ptr<LiveView> make_showing(const Options& options, const LiveView::R
   if (!options.view) return nullptr;
   auto live_view = std::make_unique<LiveView>(options, run);
   const std::string page = live_view->page_address(), viewer = live_view->viewer_address();
-  const std::string text =
-      options.json ? reports::json_text({{"view", page}, {"viewer", viewer}}) + "\n"
-                   : "ziggurat: watch this run at " + page +
-                         "\nziggurat: or open a Foxglove WebSocket connection to " + viewer + "\n";
+  const auto host = text::note_of_every_host(live_view->host());
+  const std::string note = host.empty() ? "" : "ziggurat: " + host + "\n";
+  const std::string text = options.json
+                               ? reports::json_text({{"view", page}, {"viewer", viewer}}) + "\n"
+                               : "ziggurat: watch this run at " + page +
+                                     "\nziggurat: or open a Foxglove WebSocket connection to " +
+                                     viewer + "\n" + note;
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
   return live_view;
 }

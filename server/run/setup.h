@@ -35,7 +35,7 @@ void announce(const Options& options, const std::vector<std::string>& endpoints,
 
 /// A line on each kind of program that the world waits for: scripts, and the programs of
 /// controllers and directors.
-void tell_how_to_connect(const Options& options, const std::string& endpoint,
+void tell_how_to_connect(const Options& options, const std::string& listens_at,
                          const supervision::World& world, reports::Console& console);
 
 /// Description of a run for its clients. Refers to both arguments.

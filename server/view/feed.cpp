@@ -130,7 +130,7 @@ bool Feed::pass_on(Hub& hub) {
   }
   for (Item& item : items) {
     if (const auto* event = std::get_if<channels::Message>(&item)) {
-      hub.show(event->time_ns, std::span(event, 1));
+      hub.tell(*event);
       continue;
     }
     Tick& tick = std::get<Tick>(item);

@@ -10,8 +10,10 @@ namespace ziggurat::view {
 namespace {
 
 Keep keep_of(const channels::Channel& channel) {
+  using channels::Pace;
   if (channel.kind == channels::Kind::log) return Keep::all;
-  return channels::pace_of(channel.kind) == channels::Pace::latched ? Keep::newest : Keep::nothing;
+  const Pace pace = channels::pace_of(channel.kind);
+  return pace == Pace::latched || pace == Pace::event ? Keep::newest : Keep::nothing;
 }
 
 /// Whether a viewer that subscribes gets the newest message.
@@ -148,7 +150,7 @@ void Hub::handle(Viewer& viewer, const Subscribe& message) {
     }
     if (++subscribers_[wanted] == 1) fresh.push_back(wanted);
   }
-  viewer.send_queue.add_frame(std::move(known));
+  viewer.send_queue.add_to_newest(std::move(known));
   count_subscribers(std::move(fresh));
 }
 
@@ -264,7 +266,7 @@ void Hub::set_channels(std::vector<channels::Channel> list) {
   if (!gone.empty()) count_subscribers({});
 }
 
-void Hub::show(std::int64_t time_ns, std::span<const channels::Message> messages) {
+void Hub::keep(std::int64_t time_ns, std::span<const channels::Message> messages) {
   for (const channels::Message& each : messages) {
     const channels::Channel* found = channel(each.channel);
     if (found && is_kept(found->kind) && subscribers_.contains(each.channel)) {
@@ -272,16 +274,35 @@ void Hub::show(std::int64_t time_ns, std::span<const channels::Message> messages
     }
   }
   time_ns_ = time_ns;
+}
+
+/// Items of those messages to which the viewer subscribes, and the clock before them.
+std::vector<Item> Hub::wanted_of(Viewer& viewer, std::int64_t time_ns,
+                                 std::span<const channels::Message> messages) {
+  std::vector<Item> items;
+  if (!viewer.channels.empty()) tell_time(time_ns, viewer, items);
+  for (const channels::Message& each : messages) {
+    const auto subscription = viewer.subscriptions.find(each.channel);
+    const channels::Channel* found = channel(each.channel);
+    if (!found || subscription == viewer.subscriptions.end()) continue;
+    items.push_back(view::message(subscription->second, each, keep_of(*found)));
+  }
+  return items;
+}
+
+void Hub::show(std::int64_t time_ns, std::span<const channels::Message> messages) {
+  keep(time_ns, messages);
   for (auto& [id, viewer] : viewers_) {
-    std::vector<Item> items;
-    if (!viewer->channels.empty()) tell_time(time_ns, *viewer, items);
-    for (const channels::Message& each : messages) {
-      const auto subscription = viewer->subscriptions.find(each.channel);
-      const channels::Channel* found = channel(each.channel);
-      if (!found || subscription == viewer->subscriptions.end()) continue;
-      items.push_back(view::message(subscription->second, each, keep_of(*found)));
-    }
-    viewer->send_queue.add_frame(std::move(items));
+    viewer->send_queue.add_frame(wanted_of(*viewer, time_ns, messages));
+    viewer->is_over |= viewer->send_queue.is_too_much();
+  }
+}
+
+void Hub::tell(const channels::Message& message) {
+  const std::span<const channels::Message> one(&message, 1);
+  keep(message.time_ns, one);
+  for (auto& [id, viewer] : viewers_) {
+    viewer->send_queue.add_to_newest(wanted_of(*viewer, message.time_ns, one));
     viewer->is_over |= viewer->send_queue.is_too_much();
   }
 }

@@ -66,6 +66,8 @@ class Hub {
   void set_channels(std::vector<channels::Channel> list);
   /// The messages of a tick, to those who subscribe to them.
   void show(std::int64_t time_ns, std::span<const channels::Message> messages);
+  /// The same of a message that has no tick of its own, as an event.
+  void tell(const channels::Message& message);
   void set_parameter(const Parameter& parameter);
   /// @param text  JSON of an answer, or a sentence why it was refused
   enum class Outcome { done, refused };
@@ -88,6 +90,9 @@ class Hub {
   void handle(Viewer& viewer, const CallService& message);
   void handle(Viewer& viewer, const Wrong& message);
   void send(Viewer& viewer, Item item);
+  std::vector<Item> wanted_of(Viewer& viewer, std::int64_t time_ns,
+                              std::span<const channels::Message> messages);
+  void keep(std::int64_t time_ns, std::span<const channels::Message> messages);
   std::string set(const Parameter& parameter);
   const channels::Channel* channel(std::uint32_t id) const;
   void count_subscribers(std::vector<std::uint32_t> fresh);

@@ -14,19 +14,47 @@ bool SendQueue::add_answer(Item item) {
 
 void SendQueue::add_frame(std::vector<Item> items) {
   if (items.empty()) return;
-  Frame frame;
-  for (Item& item : items) {
-    frame.bytes += item.size();
-    frame.items.push_back(std::move(item));
-  }
-  frame_bytes_ += frame.bytes;
-  frames_.push_back(std::move(frame));
+  frames_.emplace_back();
+  for (Item& item : items) add(frames_.back(), std::move(item));
   for (;;) {
     const std::size_t oldest = frames_.front().is_begun ? 1 : 0;
     const bool is_much = frame_bytes_ > most_frames || frames_.size() - oldest > most_waiting;
     if (!is_much || oldest + 1 >= frames_.size()) return;  // the newest stays
     drop(oldest);
   }
+}
+
+void SendQueue::add(Frame& frame, Item item) {
+  frame.bytes += item.size();
+  frame_bytes_ += item.size();
+  if (item.keep == Keep::all) frame.kept += item.size();
+  frame.items.push_back(std::move(item));
+}
+
+/// Counts an item no longer; it is then erased. @return true
+bool SendQueue::take_out(Frame& frame, const Item& item) {
+  frame.bytes -= item.size();
+  frame_bytes_ -= item.size();
+  if (item.keep == Keep::all) frame.kept -= item.size();
+  return true;
+}
+
+void SendQueue::add_to_newest(std::vector<Item> items) {
+  if (frames_.empty()) return add_frame(std::move(items));
+  Frame& frame = frames_.back();
+  for (Item& item : items) {
+    if (item.keep == Keep::newest) {
+      std::erase_if(frame.items, [&](const Item& older) {
+        return older.keep == Keep::newest && older.channel == item.channel &&
+               take_out(frame, older);
+      });
+    }
+    add(frame, std::move(item));
+  }
+  if (frame.kept <= most_kept) return;
+  std::erase_if(frame.items, [&](const Item& oldest) {
+    return oldest.keep == Keep::all && frame.kept > most_kept && take_out(frame, oldest);
+  });
 }
 
 /// Drops a tick; items that must be kept move to the tick behind.
@@ -46,6 +74,7 @@ void SendQueue::drop(std::size_t place) {
     if (is_old) continue;
     if (item->keep == Keep::all && (kept += item->size()) > most_kept) continue;
     heir.bytes += item->size();
+    if (item->keep == Keep::all) heir.kept += item->size();
     frame_bytes_ += item->size();
     heir.items.push_front(std::move(*item));
   }
@@ -53,14 +82,9 @@ void SendQueue::drop(std::size_t place) {
 
 void SendQueue::forget(std::span<const std::uint32_t> channels) {
   for (Frame& frame : frames_) {
-    std::size_t kept = 0;
     std::erase_if(frame.items, [&](const Item& item) {
-      const bool is_gone = std::ranges::binary_search(channels, item.channel);
-      if (!is_gone) kept += item.size();
-      return is_gone;
+      return std::ranges::binary_search(channels, item.channel) && take_out(frame, item);
     });
-    frame_bytes_ -= frame.bytes - kept;
-    frame.bytes = kept;
   }
   std::erase_if(frames_, [](const Frame& frame) { return frame.items.empty(); });
 }
@@ -77,8 +101,7 @@ std::optional<Item> SendQueue::next() {
   Item item = std::move(frame.items.front());
   frame.items.pop_front();
   frame.is_begun = true;
-  frame.bytes -= item.size();
-  frame_bytes_ -= item.size();
+  take_out(frame, item);
   if (frame.items.empty()) frames_.pop_front();
   return item;
 }

@@ -46,6 +46,9 @@ class SendQueue {
   bool add_answer(Item item);
   /// The messages of a tick. If too much waits, earlier ticks are dropped that were not begun.
   void add_frame(std::vector<Item> items);
+  /// Adds items without a tick of their own, as events and answers to subscriptions. They wait with
+  /// the newest tick, so that they never drop one, and replace older ones of Keep::newest.
+  void add_to_newest(std::vector<Item> items);
 
   /// Drops the waiting items of these channels.
   /// @param channels  ascending
@@ -64,9 +67,12 @@ class SendQueue {
   struct Frame {
     std::deque<Item> items;
     std::size_t bytes = 0;
+    std::size_t kept = 0;  // [bytes] of Keep::all
     bool is_begun = false;
   };
   void drop(std::size_t frame);
+  void add(Frame& frame, Item item);
+  bool take_out(Frame& frame, const Item& item);
 
   std::deque<Item> answers_;
   std::deque<Frame> frames_;  // none is empty

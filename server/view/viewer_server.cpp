@@ -19,6 +19,7 @@
 
 #include "http/exchange.h"
 #include "http/listening.h"
+#include "text/hosts.h"
 #include "text/numbers.h"
 #include "view/feed.h"
 #include "view/hub.h"
@@ -364,9 +365,7 @@ struct ViewerServer::State {
   }
 
   std::string address(const char* scheme) const {
-    std::string host = shared.rules.host;
-    if (host == "0.0.0.0" || host == "*") host = "127.0.0.1";
-    if (host == "::") host = "::1";
+    std::string host = text::host_to_call(shared.rules.host);
     if (host.find(':') != std::string::npos) host = "[" + host + "]";
     return fmt::format("{}://{}:{}/?token={}", scheme, host, listening.port(), shared.rules.token);
   }
@@ -401,6 +400,7 @@ ViewerServer::~ViewerServer() {
 }
 
 std::string ViewerServer::page_address() const { return state_->address("http"); }
+const std::string& ViewerServer::host() const { return state_->shared.rules.host; }
 std::string ViewerServer::viewer_address() const { return state_->address("ws"); }
 ViewerRequests& ViewerServer::requests() { return state_->requests; }
 

@@ -47,6 +47,8 @@ class ViewerServer {
   /// With the token: "http://127.0.0.1:8765/?token=…", "ws://…".
   std::string page_address() const;
   std::string viewer_address() const;
+  /// Host at which it listens.
+  const std::string& host() const;
 
   /// Requests of viewers, for the thread of the run.
   ViewerRequests& requests();

@@ -69,6 +69,17 @@ class Serve(SceneTest):
         self.interrupt(process)
         self.assertEqual(self.finish(process).code, INTERRUPTED)
 
+    def test_names_addresses_that_can_be_called(self):
+        """All addresses of a machine have a name to listen at, and none to call."""
+        process = self.start("serve", self.scene, "--duration", 0, "--endpoint", "tcp://0.0.0.0:*",
+                             "--view=0.0.0.0:0", "--insecure")
+        port = self.read_until(process.stdout, r"^endpoint tcp://0\.0\.0\.0:(\d+)$")[1]
+        self.read_until(process.stderr, f"connect with: ziggurat-lua --connect tcp://127.0.0.1:{port}")
+        self.read_until(process.stderr, "from other machines: this machine's name in place of 127.0.0.1")
+        self.read_until(process.stderr, r"watch this run at http://127\.0\.0\.1:\d+/\?token=")
+        self.interrupt(process)
+        self.finish(process)
+
     def test_listens_where_only_this_user_can_connect(self):
         def ctl(*words):
             return subprocess.run([str(ZIGGURAT), "ctl", *words], env=self.environment, text=True,

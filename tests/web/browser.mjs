@@ -70,7 +70,7 @@ export class Run {
 }
 
 /** An empty page. What goes wrong in it is in `problems`, requests to other machines in `foreign`. */
-export async function newPage(browser, size = { width: 1100, height: 560 }) {
+export async function newPage(browser, size = { width: 940, height: 460 }) {
   const context = await browser.newContext({ viewport: size });
   const page = await context.newPage();
   page.problems = [];
@@ -120,6 +120,15 @@ export function isShown(page) { return page.evaluate(() => window.ziggurat.app.r
 export function liveTick(page) { return page.evaluate(() => window.ziggurat.app.timeline.newest.tick); }
 export function shownTick(page) { return page.evaluate(() => window.ziggurat.app.frame.tick); }
 
+/** The tick at which time stands in the page: the picture follows what is chosen at a later redraw. */
+export function pinnedTick(page) {
+  return waitFor(() => page.evaluate(() => {
+    const { app, view } = window.ziggurat;
+    const isShown = app.pinned !== null && app.frame?.sequence === app.pinned && view.poses?.tick === app.frame.tick;
+    return isShown && { tick: app.frame.tick };
+  }), "moment that is shown").then(({ tick }) => tick);
+}
+
 /** Where an entity's reference link is, in the frame that is shown. */
 export function placeOf(page, id) {
   return page.evaluate((name) => {
@@ -159,21 +168,30 @@ export async function decode(page, png) {
 
 /** The picture of a world that stands: drawn as well as the page can. */
 export async function pictureAtRest(page) {
-  await waitFor(() => page.evaluate(() => window.ziggurat.view.isAtRest), "picture at rest");
+  await waitFor(() => page.evaluate(() => {
+    const { app, view } = window.ziggurat;
+    const isShown = app.pinned === null ? view.poses?.tick === app.timeline.newest?.tick : app.frame?.sequence === app.pinned;
+    return isShown && view.isAtRest;
+  }), "picture at rest");
   return picture(page);
 }
 
 /** The picture of the world, without what lies over it. */
 export async function picture(page) {
+  const showOver = (visibility) => page.evaluate((wanted) => {
+    for (const element of document.querySelectorAll(".tools, #notices, .scene-overlay")) element.style.visibility = wanted;
+  }, visibility);
+  await showOver("hidden");
   await page.evaluate(async () => {
-    for (const element of document.querySelectorAll(".tools, #notices")) element.style.visibility = "hidden";
     const frame = () => new Promise((resolve) => requestAnimationFrame(resolve));
     await frame();
     window.ziggurat.view.stage.renderer.getContext().finish(); // all that was asked for is drawn
     await frame(); // and handed over
     await frame();
   });
-  return page.locator("#world").screenshot();
+  const png = await page.locator("#world").screenshot();
+  await showOver("");
+  return png;
 }
 
 /** @param seconds  far more than it takes: machines may be busy */

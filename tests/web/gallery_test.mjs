@@ -50,8 +50,10 @@ test("each scene has a card with a picture and a sentence, and runs", async () =
   const running = async (name) => {
     await page.goto(gallery.address.href);
     await page.locator("article", { hasText: name }).locator(".run").click();
-    await waitFor(steady(() => page.evaluate(() => window.ziggurat?.app.frame?.messages.has("/poses") ?? false)), `world of ${name}`);
-    assert.equal(await page.evaluate(() => window.ziggurat.app.connection.mayControl), true);
+    await waitFor(steady(() => page.evaluate(() => {
+      const { frame, connection } = window.ziggurat?.app ?? {};
+      return connection?.mayControl && frame?.messages.has("/poses");
+    })), `world of ${name}`);
     return new URL(page.url()).host;
   };
   const first = await running("single");
@@ -63,7 +65,7 @@ test("each scene has a card with a picture and a sentence, and runs", async () =
   await page.locator("article", { hasText: "broken" }).locator(".run").click();
   await waitFor(steady(async () => /ended with exit code 1/.test(await page.textContent("body"))), "end of the run that can't begin");
   await page.locator("a").click();
-  assert.equal(await page.locator("h2").count(), 3);
+  await waitFor(async () => (await page.locator("h2").count()) === 3, "the gallery again");
   assert.deepEqual(page.foreign, []);
 });
 

@@ -11,6 +11,7 @@ namespace {
 TEST(Address, OfAnOption) {
   EXPECT_EQ(to_address("--view", "[::1]:0").host, "::1");
   EXPECT_EQ(to_address("--view", "localhost:99").port, 99);
+  EXPECT_EQ(to_address("--view", "*:0").host, "0.0.0.0");
   for (const char* wrong : {"8765", ":8765", "host:", "host:x", "host:65536"}) {
     EXPECT_THROW(to_address("--view", wrong), text::UsageError) << wrong;
   }

@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "http/listening.h"
@@ -80,6 +81,20 @@ TEST(Port, TellsHowLongAnAnswerStays) {
   EXPECT_FALSE(told("Location"));
   given.location = "/there";
   EXPECT_TRUE(told("Location: /there\r\n"));
+}
+
+TEST(Port, SendsToAnotherPortByTheNameThatWasCalled) {
+  Answer there{303, "text/plain", {}, ""};
+  there.location = "/there";
+  there.port = 99;
+  for (const auto& [called, place] : {std::pair("Host: 192.0.2.1:8765\r\n", "//192.0.2.1:99/there"),
+                                      std::pair("Host: [::1]:8765\r\n", "//[::1]:99/there"),
+                                      std::pair("Host: localhost\r\n", "//localhost:99/there"),
+                                      std::pair("", "//127.0.0.1:99/there")}) {
+    const std::string answer = answer_at_port(std::string("GET / HTTP/1.0\r\n") + called + "\r\n",
+                                              "0.0.0.0", [&](auto) { return there; });
+    EXPECT_NE(answer.find(std::string("Location: ") + place + "\r\n"), std::string::npos) << answer;
+  }
 }
 
 TEST(Port, EndsTheConnectionAfterAnAnswer) {

@@ -88,6 +88,43 @@ TEST(Hub, AViewerThatSaysWhenItIsReadyGetsTheNewestTicksThenOnly) {
   EXPECT_EQ(bench.sent(viewer), Sent{});
 }
 
+TEST(Hub, WhoComesToAWorldThatStandsGetsTheTickWhateverElseItSubscribes) {
+  Bench bench;
+  std::vector<channels::Channel> list;
+  std::vector<channels::Message> tick;
+  for (std::uint32_t id = 1; id <= 9; ++id) {
+    const Kind kind = id == 9 ? Kind::barrier : id == 8 ? Kind::log : Kind::observation;
+    list.push_back({id, "/topic" + std::to_string(id), kind, &schema, 0});
+    if (id < 8) tick.push_back(message_of(id, std::to_string(id)));
+  }
+  bench.hub.set_channels(list);
+  const auto subscribe = [&](Viewer& viewer) {
+    bench.sent(viewer);
+    for (std::uint32_t id = 1; id <= 9; ++id) {  // each by a message of its own, as browsers do
+      bench.say(viewer, R"({"op":"subscribe","subscriptions":[{"id":)" + std::to_string(id) +
+                            R"(,"channelId":)" + std::to_string(id) + "}]}");
+    }
+  };
+  subscribe(bench.hub.add(Permission::look));
+  bench.hub.show(5, tick);
+  Viewer& second = bench.hub.add(Permission::look);
+  bench.say(second, R"({"op":"ready"})");
+  bench.sent(second);
+  second.is_ready = false;
+  subscribe(second);
+  for (int i = 0; i < 20; ++i) {
+    bench.hub.tell(message_of(9, "barrier" + std::to_string(i)));
+    bench.hub.tell(message_of(8, "line" + std::to_string(i)));
+  }
+  bench.say(second, R"({"op":"ready"})");
+  Sent sent = bench.sent(second);
+  for (const auto& each : tick)
+    EXPECT_TRUE(std::ranges::count(sent, each.content->bytes())) << each.channel;
+  EXPECT_TRUE(std::ranges::count(sent, "barrier19"));
+  EXPECT_FALSE(std::ranges::count(sent, "barrier18")) << "the newest is enough";
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(std::ranges::count(sent, "line" + std::to_string(i)));
+}
+
 TEST(Hub, NonsenseIsAnsweredAndEndsAtLast) {
   Bench bench;
   Viewer& viewer = bench.hub.add(Permission::steer);

@@ -77,6 +77,22 @@ TEST(SendQueue, ManyLinesDoNotTakeTheWorldWithThem) {
   EXPECT_EQ(std::ranges::count(all, '1'), 0);
 }
 
+TEST(SendQueue, EventsDropNoTickAndAreBounded) {
+  SendQueue queue;
+  queue.add_frame({item(1, 10, Keep::nothing, 'T')});
+  for (int i = 0; i < 300; ++i) {
+    queue.add_to_newest({item(8, SendQueue::most_kept / 4, Keep::all, 'l')});
+    queue.add_to_newest({item(9, 10, Keep::newest, 'b')});
+  }
+  EXPECT_EQ(queue.size(), 20 + SendQueue::most_kept);
+  EXPECT_EQ(queue.dropped(), 0u);
+  const std::string all = marks(queue);
+  EXPECT_EQ(all[0], 'T');
+  EXPECT_EQ(std::ranges::count(all, 'l'), 4);
+  EXPECT_EQ(std::ranges::count(all, 'b'), 1);
+  EXPECT_EQ(queue.size(), 0u);
+}
+
 TEST(SendQueue, WhatIsForgottenWaitsNoLonger) {
   SendQueue queue;
   queue.add_frame({item(1, 10, Keep::nothing, 'a'), item(2, 10, Keep::nothing, 'b')});
