@@ -2,22 +2,24 @@
 // What the page costs in a browser, per frame that it draws: processor time of its own thread, in which scripts run, and of
 // the thread and process that do the drawing. Without graphics processor the latter is most, and only the former is what a
 // laptop would also have to do. Processor time depends little on what else the machine does. With `robots`, foot-bots drive
-// in a run of the real program at real time, and its ticks are measured with the page and without, in turn.
+// in a run of the real program at real time, and its ticks are measured with the page and without, in turn. With `jumps`, how
+// long jumps on the time line take.
 //
 // usage: node bench/page.mjs [LINKS...]           in the project's folder; ZIGGURAT_BIN is the folder of the programs, whose
 //        node bench/page.mjs robots [ROBOTS...]   build has the page, and the packages of tests/web (target web_tests)
+//        node bench/page.mjs jumps [TICKS]
 import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { pathToFileURL } from "node:url";
+import { measureJumps } from "./page/jumps.mjs";
 import { newPage, openBrowser, openPage, playerFile, Run, waitFor, ziggurat } from "../tests/web/browser.mjs";
 
 const seconds = 10;
 const screen = { width: 1280, height: 720 };
-const areRobots = process.argv[2] === "robots";
-const named = process.argv.slice(areRobots ? 3 : 2).map(Number);
-const counts = named.length > 0 ? named : areRobots ? [100, 500, 2000] : [500, 5000];
+const mode = /^[a-z]/.test(process.argv[2] ?? "") ? process.argv[2] : "links";
+const numbers = process.argv.slice(2).filter((word) => /^\d/.test(word)).map(Number);
 const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
 const browser = await openBrowser();
@@ -135,5 +137,11 @@ async function driveRobots(count) {
   rmSync(folder, { recursive: true });
 }
 
-for (const count of counts) await (areRobots ? driveRobots : drawLinks)(count);
+const modes = {
+  links: async (counts) => { for (const count of counts.length > 0 ? counts : [500, 5000]) await drawLinks(count); },
+  robots: async (counts) => { for (const count of counts.length > 0 ? counts : [100, 500, 2000]) await driveRobots(count); },
+  jumps: ([ticks]) => measureJumps(browser, screen, ticks),
+};
+if (!modes[mode]) throw new Error(`no measurement is called ${mode}; write one of ${Object.keys(modes).join(", ")}`);
+await modes[mode](numbers);
 await browser.close();
