@@ -71,6 +71,7 @@ export class View {
   private readonly labels = new Labels(); // texts that robots drew
   private world: World | null = null;
   private frame: Frame | null = null;
+  drawn: Frame | null = null; // of the last picture that was asked for
   private readonly shade = new Shade();
   readonly motion = new Motion();
   private readonly trails = new Trails();
@@ -103,7 +104,7 @@ export class View {
 
   /** Forgets the world, before that of another source is shown. */
   forget(): void {
-    this.world = this.frame = this.poses = null;
+    this.world = this.frame = this.drawn = this.poses = null;
     this.trails.clear();
     this.labels.show([], () => null);
     this.motion.forget();
@@ -128,8 +129,9 @@ export class View {
     const before = isNewWorld ? null : this.poses;
     const distance = frame.sequence - (this.frame?.sequence ?? frame.sequence);
     const isEarlier = this.frame !== null && frame.timeNs < this.frame.timeNs;
-    const isJump = isEarlier || distance < 0 || distance > longestGap; // the user jumped, or the world began anew
-    if (isJump) this.trails.clear();
+    const isAway = isEarlier || distance < 0 || distance > longestGap; // the user jumped far, or the world began anew
+    const isJump = isAway || (isPaused && distance > 1);
+    if (isAway) this.trails.clear();
     this.poses = poses;
     this.frame = frame;
     const isAnother = selected.join() !== this.selected.join() || this.trailed.some((id) => !this.trails.has(id));
@@ -138,6 +140,7 @@ export class View {
     if (before && !isAnother && isSame(before, poses)) {
       this.stage.isDirty ||= hasLines || this.hadLines;
       this.hadLines = hasLines;
+      if (!this.stage.isDirty) this.drawn = frame;
       this.settle(frame);
       return true;
     }
@@ -225,6 +228,7 @@ export class View {
       if (this.motion.shown) this.choose(this.motion.shown, this.stage.camera, this.stage.height, isFine);
       this.drawLines(now);
       this.stage.render();
+      this.drawn = this.frame;
       this.drawnAt = now;
     }
     this.drewBefore = isMoving;

@@ -14,6 +14,9 @@ export class Lanes {
   readonly element = make("canvas.line", { id: "timeline", title: "All that this page has seen: drag to look back" }) as HTMLCanvasElement;
   private shown: LaneMarks[] = [];
   private key = "";
+  private drawn = "";
+  /** On the processor: where that draws the world, too, hundreds of marks would keep the world's next frame waiting for seconds. */
+  private readonly context = this.element.getContext("2d", { willReadFrequently: true })!;
 
   constructor(private readonly app: App) {
     const { element } = this;
@@ -78,11 +81,14 @@ export class Lanes {
     const [width, height] = [Math.round(this.element.clientWidth * ratio), Math.round(this.element.clientHeight * ratio)];
     if (this.element.width !== width) this.element.width = width;
     if (this.element.height !== height) this.element.height = height;
-    const draw = this.element.getContext("2d")!;
-    const style = getComputedStyle(this.element);
+    const draw = this.context;
     const x = (sequence: number): number =>
       Math.round((sequence - timeline.first) / Math.max(timeline.length - 1, 1) * (width - 2 * ratio));
     const shown = x(pinned ?? timeline.last);
+    const drawn = [width, height, shown, timeline.first, timeline.length, this.key, document.documentElement.dataset.theme].join();
+    if (drawn === this.drawn) return;
+    this.drawn = drawn;
+    const style = getComputedStyle(this.element);
     const lanesEnd = laneHeight * this.shown.length * ratio;
     const middle = (lanesEnd + height) / 2;
     draw.clearRect(0, 0, width, height);
