@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <variant>
+
 #include "words_of.h"
 #include "world/layout.h"
 
@@ -42,6 +45,32 @@ TEST(Archive, TakesPicturesOfTheSizeOfTheirCameraOnly) {
     EXPECT_NE(camera.fault_of(size).find("another size than its camera"), std::string::npos)
         << size;
   }
+}
+
+TEST(Archive, GivesBackTheImageThatLiesOnAFloor) {
+  const Layout layout;
+  State state;
+  FloorPaint laid{{1, 2}, {3, 4}};
+  laid.image = std::get<0>(floor_image("P5 1 1 255\nx"));
+  state.floor = {laid};
+  std::vector<std::byte> bytes;
+  auto writer = math::Archive::writer(bytes);
+  archive(writer, layout, state);
+
+  State read;
+  auto reader = math::Archive::reader(bytes);
+  archive(reader, layout, read);
+  ASSERT_EQ(read.floor.size(), 1u);
+  EXPECT_EQ(read.floor[0].half_size, laid.half_size);
+  EXPECT_EQ(read.floor[0].image->file, laid.image->file);
+  EXPECT_EQ(hash(read, {}), hash(state, {}));
+  EXPECT_NE(hash(read, {}), hash(State{}, {}));
+
+  std::ranges::replace(bytes, std::byte{'P'}, std::byte{'Q'});
+  auto damaged = math::Archive::reader(bytes);
+  EXPECT_NE(
+      words_of<math::ArchiveError>([&] { archive(damaged, layout, read); }).find("is no image"),
+      std::string::npos);
 }
 
 }  // namespace
