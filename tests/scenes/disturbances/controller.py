@@ -11,6 +11,7 @@ import multiprocessing
 import os
 import random
 import struct
+import time
 
 import ziggurat
 from ziggurat import protocol_pb2 as v1
@@ -34,6 +35,7 @@ class Board:
         self.first_missed = processes.Array("q", [-1] * ROBOTS, lock=False)  # tick of the first miss, or -1
         self.resumed = processes.Array("q", [0] * ROBOTS, lock=False)
         self.ended = processes.Array("q", [0] * ROBOTS, lock=False)
+        self.gate = processes.Value("q", 1 << 60, lock=False)  # the first tick that none answers yet
 
 
 def control(index, endpoint, folder, board, talks):
@@ -78,6 +80,8 @@ def _answer_ticks(index, session, board, talks):
         if order and not _misbehave(order, session, tick.number):
             session.abandon()
             return False
+        while tick.number >= board.gate.value:
+            time.sleep(0.002)
         _command(robot, tick.number, index, talks)
         if session.missed and board.first_missed[index] < 0:
             board.first_missed[index] = tick.number - 1
