@@ -3,7 +3,7 @@
 import * as three from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { World } from "../model/messages";
-import { lookAt, type Box } from "./framing";
+import { lookAt, wayToCamera, type Box } from "./framing";
 import { Ground, plainRadius } from "./ground";
 import { isSoftware, levels, Quality } from "./quality";
 import { Sky } from "./sky";
@@ -15,7 +15,7 @@ export interface Look { eye: Vector; at: Vector; fieldOfView: number }
 
 const sunDirection = new three.Vector3(-0.42, -0.62, 1.15).normalize(); // as in `ziggurat render`; shadows fall beside things at first
 const themes = {
-  light: { horizon: 0xe3e8ec, zenith: 0xa4b2bc, ground: 0xb9bcc0, light: 0xd4d6d9, dark: 0xc3c6ca, outside: 0xaeb1b6, text: "#4c535c",
+  light: { horizon: 0xe3e8ec, zenith: 0xa4b2bc, ground: 0xb9bcc0, light: 0xd4d6d9, dark: 0xc3c6ca, outside: 0xb8bbc0, text: "#4c535c",
            sun: 2.3, ambient: 1.5 },
   dark: { horizon: 0x2b313a, zenith: 0x0c0f14, ground: 0x24272d, light: 0x3a3e46, dark: 0x31353c, outside: 0x23262b, text: "#aab2bd",
           sun: 2.0, ambient: 1.0 },
@@ -138,8 +138,7 @@ export class Stage {
 
   /** Shows the whole of a box. */
   frame(box: Box): void {
-    const way = new three.Vector3(0.55, -0.75, 0.62).normalize().toArray();
-    this.set(lookAt(box, way, this.camera.fov, this.camera.aspect));
+    this.set(lookAt(box, wayToCamera(this.camera.aspect), this.camera.fov, this.camera.aspect));
   }
 
   /** Looks straight down; +y is up on the screen. */
