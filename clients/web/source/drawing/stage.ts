@@ -9,6 +9,7 @@ import { isSoftware, levels, Quality } from "./quality";
 import { Sky } from "./sky";
 import type { Vector } from "../model/pose";
 
+const fineShadows = 4096; // [px], of the shadow map of a picture that stays
 const mostLinksWithShadows = 200; // while they move, without graphics processor
 
 export interface Look { eye: Vector; at: Vector; fieldOfView: number }
@@ -69,9 +70,7 @@ export class Stage {
   private applyQuality(): void {
     const { pixels, shadowSize, shadows } = levels[this.quality.level];
     this.setPixels(pixels);
-    this.sun.shadow.mapSize.set(shadowSize, shadowSize);
-    this.sun.shadow.map?.dispose();
-    this.sun.shadow.map = null;
+    this.setShadowSize(shadowSize);
     this.castShadows();
     if (shadows !== null && this.renderer.shadowMap.type !== shadows) {
       this.renderer.shadowMap.type = shadows;
@@ -89,6 +88,16 @@ export class Stage {
 
   /** Drawn pixels per pixel of the screen of a picture that stays; without graphics processor they smooth its edges. */
   private get finePixels(): number { return this.isSlow ? 2 : Math.min(window.devicePixelRatio, 2); }
+
+  /** @param size  of the shadow map, along each side [px] */
+  private setShadowSize(size: number): void {
+    const { shadow } = this.sun;
+    if (shadow.mapSize.x === size && shadow.map) return;
+    shadow.mapSize.set(size, size);
+    shadow.map?.dispose();
+    shadow.map = null;
+    this.shadowsChange();
+  }
 
   /** What casts shadows has moved. */
   shadowsChange(): void { this.renderer.shadowMap.needsUpdate = true; }
@@ -201,6 +210,7 @@ export class Stage {
       this.isFine = isFine;
       if (isFine) this.renderer.setPixelRatio(this.finePixels);
       else this.setPixels(levels[this.quality.level].pixels);
+      this.setShadowSize(isFine ? Math.max(levels[this.quality.level].shadowSize, fineShadows) : levels[this.quality.level].shadowSize);
       if (!this.shadowsMove) this.castShadows();
     }
     const distance = this.camera.position.distanceTo(this.controls.target);
