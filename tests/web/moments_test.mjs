@@ -9,6 +9,7 @@ import { isShown, liveTick, openBrowser, openFile, openPage, pinnedTick, root, R
 
 const vehicle = "scenes/dynamics3d_multi_body_test.argos";
 const robots = `${root}tests/web/robots.argos`;
+const directed = `${root}tests/web/directed.argos`;
 const ticks = 60;
 
 let browser, folder, exported;
@@ -107,9 +108,9 @@ test("an exported page opens at a tick; plots, pictures, films and links of it",
 });
 
 test("a running world is shown at a tick as soon as it comes; metrics are plotted; the tree; a phone", { timeout: 180_000 }, async () => {
-  const run = await Run.start(robots);
+  const run = await Run.start(directed);
   try {
-    const page = await openPage(browser, run.address, `tick=40&tab=plots&plot=${encodeURIComponent("/metrics:large/ticks")}`, { width: 390, height: 844 });
+    const page = await openPage(browser, run.address, `tick=40&tab=plots&plot=${encodeURIComponent("/metrics:large/ticks")}&plot=${encodeURIComponent("/metrics:judge/half")}`, { width: 390, height: 844 });
     await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
     // A page that draws slowly is sent fewer ticks: time stands at the newest of them, up to that of the address.
     const stands = await pinnedTick(page);
@@ -119,9 +120,11 @@ test("a running world is shown at a tick as soon as it comes; metrics are plotte
     assert.equal(await shownTick(page), stands);
 
     await page.locator(".side").last().click();
-    await waitFor(async () => (await page.locator(".plot-box .label").allTextContents()).join() === "large ticks", "label of the metric");
-    const values = await page.evaluate(() => window.ziggurat.app.series[0].values);
-    assert.ok(values.length > 3 && values.every((value, i) => i === 0 || value > values[i - 1]), `${values}`);
+    await waitFor(async () => (await page.locator(".plot-box .label").allTextContents()).join() === "large ticks,judge half", "labels of the metrics");
+    await waitFor(() => page.evaluate(() => window.ziggurat.app.series.every(({ values }) => values.length > 3)), "values of both");
+    const [ticks, half] = await page.evaluate(() => window.ziggurat.app.series.map(({ values }) => values));
+    for (const values of [ticks, half]) assert.ok(values.every((value, i) => i === 0 || value > values[i - 1]), `${values}`);
+    assert.ok(half.every((value) => Number.isInteger(2 * value)) && half.some((value) => !Number.isInteger(value)), `${half}`);
     await page.locator(".side").last().click();
 
     const line = await page.locator("#timeline").boundingBox(), play = await page.locator("#play").boundingBox();

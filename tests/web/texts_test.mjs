@@ -110,7 +110,7 @@ test("a recording with 300 long lines is shown at once", { timeout: 180_000 }, a
   await page.goto(`${pathToFileURL(playerFile)}#tab=log`);
   await waitFor(() => page.evaluate(() => window.ziggurat !== undefined), "page");
   await page.locator("#recording-file").setInputFiles(file);
-  await waitFor(() => page.evaluate(() => window.ziggurat.app.log.length >= 309), "the log");
+  await waitFor(() => page.evaluate(() => window.ziggurat.app.log.entries.length >= 309), "the log");
   await page.keyboard.press("End");
   await waitFor(async () => (await page.locator(".log .line").count()) >= 299, "lines");
   const took = await answerTime(page);
@@ -120,7 +120,7 @@ test("a recording with 300 long lines is shown at once", { timeout: 180_000 }, a
   console.log(`300 lines of ${letters} characters: an answer after ${took.toFixed(2)} s`);
   assert.ok(took < 5 + 20 * idle, `an empty page takes ${idle} s`);
   assert.ok((await longestText(page)) < mostOfAnyText);
-  const kept = await page.evaluate(() => Math.max(...window.ziggurat.app.log.map(({ text }) => text.length)));
+  const kept = await page.evaluate(() => Math.max(...window.ziggurat.app.log.entries.map(({ text }) => text.length)));
   assert.equal(kept, 10_000);
   await openLine(page);
   assert.deepEqual(page.problems, []);

@@ -141,10 +141,11 @@ const tools = make("div.tools", {},
   make("button", { title: "Look at all that moves (a)", click: () => app.look() }, "All"),
   make("button", { title: "From the top (o)", click: () => { view.stage.top(); app.looked(); } }, "Top"));
 const scene = new SceneOverlay(app, canvas, () => tree.found);
-const film = new Film(app);
+const paint = scene.paint.bind(scene);
+const film = new Film(app, paint);
 const filmTime = make("span.number");
 const share = make("div.tools.share", {},
-  make("button", { id: "picture", title: "Save a picture of what you see (j)", click: () => savePicture(app) }, icon("picture")),
+  make("button", { id: "picture", title: "Save a picture of what you see (j)", click: () => savePicture(app, paint) }, icon("picture")),
   make("button", { id: "film", title: "Begin a film of what you see, or end and save it (w)", click: () => film.toggle() }, icon("film"), filmTime),
   make("button", { id: "link", title: "Copy a link to this moment (q)", click: () => void copyLink(app) }, icon("link")));
 part("center").append(scene.element, tools, share);
@@ -172,7 +173,7 @@ new Pointer(app, canvas, (x, y, z) => change.setPlace(x, y, z));
 listenToKeys(app, {
   open: chooseFile, help: () => (help.open ? help.close() : openHelp()), theme: toggleTheme,
   search: () => tree.search.focus(), speed: (by) => time.changeSpeed(by),
-  picture: () => savePicture(app), film: () => film.toggle(), link: () => void copyLink(app),
+  picture: () => savePicture(app, paint), film: () => film.toggle(), link: () => void copyLink(app),
 });
 
 let shownKey = "";

@@ -6,7 +6,7 @@ import { colorOf, palette } from "../source/drawing/colors";
 import { makePoses, makeWorld } from "../source/data/generated";
 import { Bodies } from "../source/drawing/bodies";
 import { Detail, detailOf, isInside, ofProcessor, sizeOnScreen } from "../source/drawing/detail";
-import { boxOf, firstBox, lookAt, Settling, type Box } from "../source/drawing/framing";
+import { boxOf, firstBox, lookAt, Settling, wayToCamera, type Box } from "../source/drawing/framing";
 import { marksOf, stepOf } from "../source/drawing/ground";
 import { Lines } from "../source/drawing/lines";
 import { drawMarkers } from "../source/drawing/overlays";
@@ -79,9 +79,15 @@ test("the first view has the floor and what stands on it, of a far larger floor 
   assert.ok(Math.abs(things.low[0] + 0.1424) < 0.003 && things.high[2] > 0.1);
   assert.equal(boxOf(world, poses, () => false), null);
   const box = firstBox(world, poses);
-  assert.deepEqual([box.low[0], box.high[1], box.low[2]].map((value) => Math.round(100 * value)), [-15, 15, 0]);
+  assert.deepEqual([box.low[0], box.high[1], box.low[2]].map((value) => Math.round(100 * value)), [-16, 17, 0]);
   const wide = firstBox({ ...world, arenaSize: [50, 50, 1] }, poses);
   assert.ok(wide.high[0] < 0.3);
+});
+
+test("the first view is from higher in a tall picture", () => {
+  const [wide, tall] = [wayToCamera(1.6), wayToCamera(0.5)];
+  for (const way of [wide, tall]) assert.ok(Math.abs(Math.hypot(...way) - 1) < 1e-9);
+  assert.ok(tall[2] > wide[2] && Math.abs(tall[0]) < Math.abs(wide[0]));
 });
 
 test("what falls settles once, and what never rests does not", () => {

@@ -10,13 +10,14 @@ import { mergedGeometry, roomFor } from "../source/drawing/merged";
 import { levels, Quality, roundness } from "../source/drawing/quality";
 import { makeGeometry, partsOf } from "../source/drawing/shapes";
 import { makeWorld } from "../source/data/generated";
-import type { Camera, Description, Observation, Poses, World } from "../source/model/messages";
+import type { Camera, Description, Log, Observation, Poses, World } from "../source/model/messages";
 import { isPictureOf } from "../source/model/pictures";
 import { compose, rotate } from "../source/model/pose";
 import { bytesText, fixed, observed } from "../source/model/readings";
 import { nameOf, numberAt, numbersIn, parseName } from "../source/model/series";
 import { beginning, visible } from "../source/model/texts";
 import { fromAddress, settingsAtFirst, toAddress } from "../source/model/settings";
+import { LogLines, mostLines } from "../source/model/log";
 
 function near(a: ArrayLike<number>, b: number[], bound = 1e-12): void {
   assert.equal(a.length, b.length);
@@ -216,4 +217,13 @@ test("a merged mesh has each copy's corners and number", () => {
   assert.deepEqual([of("copy", vertices - 1), of("copy", vertices)], [[0], [1]]);
   assert.equal(merged.index!.array[corners + 5], box.index!.array[5] + vertices);
   assert.deepEqual([1, 256, 257].map(roomFor), [256, 256, 512]);
+});
+
+test("a log keeps its newest lines, and counts those that it does not", () => {
+  const log = new LogLines();
+  for (let i = 0; i < mostLines + 1; ++i) log.add({ level: 2, name: "robot", message: `line ${i}` } as Log, i, 0.1 * i);
+  assert.equal(log.lost, 1000);
+  assert.equal(log.entries.length, mostLines + 1 - log.lost);
+  assert.equal(log.entries[0].text, "line 1000");
+  assert.equal(log.entries.at(-1)!.text, `line ${mostLines}`);
 });

@@ -74,14 +74,17 @@ export class Bodies {
     this.paint(colorOf);
   }
 
-  /** How high an entity's largest link is, about [m]. */
+  /** Above its origin, where a text hides no part of an entity that is seen from a slope [m]. */
   heightOf(entity: number): number {
-    let height = 0.02;
+    let height = 0.02, reach = 0;
     for (const { link, first, end } of this.bodies) {
       if (this.entities[link] !== entity) continue;
-      for (let i = first; i < end; ++i) height = Math.max(height, this.parts[i].position[2] + this.boxSizes[i][2]);
+      for (let i = first; i < end; ++i) {
+        height = Math.max(height, this.parts[i].position[2] + this.boxSizes[i][2]);
+        reach = Math.max(reach, this.boxSizes[i][0], this.boxSizes[i][1]);
+      }
     }
-    return height;
+    return height + 0.5 * reach;
   }
 
   /** Colours all parts. */

@@ -5,6 +5,13 @@ import { halfExtents, place, packed, rotate, type Quaternion, type Vector } from
 import { boundsOf, partsOf } from "./shapes";
 import type { Look } from "./stage";
 
+/** The way to the camera, of length one: in a tall picture from higher and along a side, which fills more of it. */
+export function wayToCamera(aspect: number): Vector {
+  const way: Vector = aspect < 0.9 ? [0.16, -0.75, 0.9] : [0.55, -0.75, 0.62];
+  const length = Math.hypot(...way);
+  return way.map((value) => value / length) as Vector;
+}
+
 export interface Box { low: Vector; high: Vector }
 
 const margin = 0.95; // of half the picture
@@ -43,9 +50,18 @@ export function arenaOf({ arenaSize, arenaCenter }: World): Box {
   return { low: [cx - x / 2, cy - y / 2, 0], high: [cx + x / 2, cy + y / 2, 0] };
 }
 
+/** How wide the strip of the scale is that lies beside a floor [m]. */
+export function scaleWidth(x: number, y: number): number { return 0.055 * Math.max(Math.min(x, y), 0.25 * Math.max(x, y)); }
+
+/** A floor with the numbers beside it. */
+function withScale({ low, high }: Box): Box {
+  const width = scaleWidth(high[0] - low[0], high[1] - low[1]);
+  return { low: [low[0] - 0.8 * width, low[1] - 1.2 * width, 0], high: [high[0] + 1.2 * width, high[1] + 1.3 * width, 0] };
+}
+
 /** The floor and what stands on it; of a floor that is far larger, the middle. */
 export function firstBox(world: World, poses: Poses): Box {
-  const arena = arenaOf(world);
+  const arena = world.hasFloor ? withScale(arenaOf(world)) : arenaOf(world);
   const things = boxOf(world, poses, (entity) => !world.entities[entity].removed);
   if (!things) return arena;
   const reach = Math.max(things.high[0] - things.low[0], things.high[1] - things.low[1], things.high[2]);

@@ -3,7 +3,7 @@
 // plain around all of it.
 import * as three from "three";
 import type { World } from "../model/messages";
-import { arenaOf } from "./framing";
+import { arenaOf, scaleWidth } from "./framing";
 
 export interface GroundColors { light: number; dark: number; outside: number; text: string }
 
@@ -42,8 +42,8 @@ export function marksOf(low: number, high: number): { at: number; text: string }
   return marks;
 }
 
-/** A strip of ticks and numbers below them. */
-function scalePicture(low: number, high: number, depth: number, axis: string, color: string): HTMLCanvasElement {
+/** A strip of ticks and numbers below them. @param from  numbers that are less are left out: another strip has one at that corner */
+function scalePicture(low: number, high: number, depth: number, axis: string, color: string, from = low): HTMLCanvasElement {
   const length = high - low + 2 * depth;
   const perMetre = Math.min(64 / depth, 4096 / length);
   const canvas = document.createElement("canvas");
@@ -62,7 +62,7 @@ function scalePicture(low: number, high: number, depth: number, axis: string, co
     context.moveTo(x, 0);
     context.lineTo(x, 0.2 * height);
     context.stroke();
-    context.fillText(i === marks.length - 1 ? `${axis} ${text} m` : text, x, 0.56 * height);
+    if (at >= from - 1e-9) context.fillText(i === marks.length - 1 ? `${axis} ${text} m` : text, x, 0.56 * height);
   });
   return canvas;
 }
@@ -113,7 +113,7 @@ export class Ground {
     const lit = new three.Color(colors.outside).multiplyScalar(litFromAbove);
     this.addPlane(2 * plainRadius, 2 * plainRadius, center, -0.0006, this.isSlow
       ? new three.MeshBasicMaterial({ ...behind, color: lit }) : new three.MeshLambertMaterial(behind), 2, 16);
-    const depth = 0.055 * Math.max(Math.min(x, y), 0.25 * Math.max(x, y));
+    const depth = scaleWidth(x, y);
     this.addEdge(low, high, 0.7 * depth, colors, litFromAbove);
     this.addScale(low, high, depth, colors.text);
     this.addAxes(2 * tile);
@@ -168,7 +168,7 @@ export class Ground {
       return mesh;
     };
     strip(scalePicture(x0, x1, depth, "x", color), x1 - x0 + 2 * depth, [(x0 + x1) / 2, y0 - 0.7 * depth]);
-    strip(scalePicture(y0, y1, depth, "y", color), y1 - y0 + 2 * depth, [x1 + 0.7 * depth, (y0 + y1) / 2])
+    strip(scalePicture(y0, y1, depth, "y", color, y0 + 1.2 * depth), y1 - y0 + 2 * depth, [x1 + 0.7 * depth, (y0 + y1) / 2])
       .rotation.z = Math.PI / 2;
   }
 

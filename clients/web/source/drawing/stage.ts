@@ -3,19 +3,20 @@
 import * as three from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { World } from "../model/messages";
-import { lookAt, type Box } from "./framing";
+import { lookAt, wayToCamera, type Box } from "./framing";
 import { Ground, plainRadius } from "./ground";
 import { isSoftware, levels, Quality } from "./quality";
 import { Sky } from "./sky";
 import type { Vector } from "../model/pose";
 
+const fineShadows = 4096; // [px], of the shadow map of a picture that stays
 const mostLinksWithShadows = 200; // while they move, without graphics processor
 
 export interface Look { eye: Vector; at: Vector; fieldOfView: number }
 
 const sunDirection = new three.Vector3(-0.42, -0.62, 1.15).normalize(); // as in `ziggurat render`; shadows fall beside things at first
 const themes = {
-  light: { horizon: 0xe3e8ec, zenith: 0xa4b2bc, ground: 0xb9bcc0, light: 0xd4d6d9, dark: 0xc3c6ca, outside: 0xaeb1b6, text: "#4c535c",
+  light: { horizon: 0xe3e8ec, zenith: 0xa4b2bc, ground: 0xb9bcc0, light: 0xd4d6d9, dark: 0xc3c6ca, outside: 0xb8bbc0, text: "#4c535c",
            sun: 2.3, ambient: 1.5 },
   dark: { horizon: 0x2b313a, zenith: 0x0c0f14, ground: 0x24272d, light: 0x3a3e46, dark: 0x31353c, outside: 0x23262b, text: "#aab2bd",
           sun: 2.0, ambient: 1.0 },
@@ -69,9 +70,7 @@ export class Stage {
   private applyQuality(): void {
     const { pixels, shadowSize, shadows } = levels[this.quality.level];
     this.setPixels(pixels);
-    this.sun.shadow.mapSize.set(shadowSize, shadowSize);
-    this.sun.shadow.map?.dispose();
-    this.sun.shadow.map = null;
+    this.setShadowSize(shadowSize);
     this.castShadows();
     if (shadows !== null && this.renderer.shadowMap.type !== shadows) {
       this.renderer.shadowMap.type = shadows;
@@ -89,6 +88,16 @@ export class Stage {
 
   /** Drawn pixels per pixel of the screen of a picture that stays; without graphics processor they smooth its edges. */
   private get finePixels(): number { return this.isSlow ? 2 : Math.min(window.devicePixelRatio, 2); }
+
+  /** @param size  of the shadow map, along each side [px] */
+  private setShadowSize(size: number): void {
+    const { shadow } = this.sun;
+    if (shadow.mapSize.x === size && shadow.map) return;
+    shadow.mapSize.set(size, size);
+    shadow.map?.dispose();
+    shadow.map = null;
+    this.shadowsChange();
+  }
 
   /** What casts shadows has moved. */
   shadowsChange(): void { this.renderer.shadowMap.needsUpdate = true; }
@@ -138,8 +147,7 @@ export class Stage {
 
   /** Shows the whole of a box. */
   frame(box: Box): void {
-    const way = new three.Vector3(0.55, -0.75, 0.62).normalize().toArray();
-    this.set(lookAt(box, way, this.camera.fov, this.camera.aspect));
+    this.set(lookAt(box, wayToCamera(this.camera.aspect), this.camera.fov, this.camera.aspect));
   }
 
   /** Looks straight down; +y is up on the screen. */
@@ -202,6 +210,7 @@ export class Stage {
       this.isFine = isFine;
       if (isFine) this.renderer.setPixelRatio(this.finePixels);
       else this.setPixels(levels[this.quality.level].pixels);
+      this.setShadowSize(isFine ? Math.max(levels[this.quality.level].shadowSize, fineShadows) : levels[this.quality.level].shadowSize);
       if (!this.shadowsMove) this.castShadows();
     }
     const distance = this.camera.position.distanceTo(this.controls.target);

@@ -1,29 +1,25 @@
 // SPDX-License-Identifier: MIT
 // What the page knows and does; panels show it and call it. Nothing here touches the document.
 import type { Listener, Message, Source, Status, Value } from "../data/source";
-import type { Coloring } from "../drawing/colors";
 import type { View, Layer } from "../drawing/view";
-import { layers, mostRobotsAtOnce } from "../drawing/view";
+import { layers } from "../drawing/view";
 import { Collisions } from "../model/collisions";
 import { Connections, lanes, type Lane } from "../model/marks";
 import type { Barrier, Contacts, Entity, Log, Robot, World } from "../model/messages";
 import { Playback } from "../model/playback";
 import { Recorded } from "../model/recorded";
-import { metricsTopic } from "../model/metrics";
 import { nameOf, Series, type SeriesName } from "../model/series";
 import type { Settings, Tab } from "../model/settings";
-import { beginning, kept } from "../model/texts";
+import { LogLines } from "../model/log";
+import { beginning } from "../model/texts";
 import { Timeline, type Frame, type Frames, type Mark } from "../model/timeline";
 import { Moments } from "./moments";
+import { wantedTopics } from "./wanted";
 
-export interface LogEntry { sequence: number; seconds: number; name: string; level: number; text: string; length: number }
 export interface Notice { level: "info" | "warning" | "error"; text: string }
 
-const mostName = 200; // characters of who logged a line
 /** A frame that began less than this before may not be whole [ms]: its messages arrive one by one. */
 const arrivalTime = 5;
-/** With more links than this, collisions are looked for only while the layer of contacts is on. */
-const mostLinksForCollisions = 300;
 
 export class App implements Listener {
   private seen = new Timeline(); // of a running world
@@ -34,7 +30,7 @@ export class App implements Listener {
   connection: Status = { phase: "connecting", text: "", mayControl: false, session: "" };
   topicNames: string[] = [];
   parameters = new Map<string, unknown>();
-  log: LogEntry[] = [];
+  log = new LogLines();
   barrier: Barrier | null = null;
   series: Series[] = [];
   pauseOnText = "";
@@ -64,7 +60,7 @@ export class App implements Listener {
     this.collisions = new Collisions();
     this.connections = new Connections();
     this.moments.forget();
-    this.log = [];
+    this.log = new LogLines();
     this.barrier = null;
     this.parameters.clear();
     this.session = "";
@@ -93,7 +89,7 @@ export class App implements Listener {
     if (status.phase === "open" && this.session !== "" && status.session !== this.session) {
       this.seen.clear();
       this.collisions = new Collisions();
-      this.log = [];
+      this.log = new LogLines();
       this.pinned = null;
       this.onNotice({ level: "info", text: "The server was started again." });
     }
@@ -133,10 +129,7 @@ export class App implements Listener {
     if (text !== "") this.seen.mark("collision", text);
   }
 
-  logged({ level, message: text, name }: Log, sequence: number, seconds: number): void {
-    this.log.push({ sequence, seconds, name: kept(name, mostName), level, text: kept(text), length: text.length });
-    if (this.log.length > 5000) this.log.splice(0, 1000);
-  }
+  logged(line: Log, sequence: number, seconds: number): void { this.log.add(line, sequence, seconds); }
 
   private takeLog(message: Message): void {
     const line = message.read<Log>();
@@ -154,25 +147,7 @@ export class App implements Listener {
   want(): void {
     const newest = this.seen.newest?.world ?? null; // while the page looks back, too
     this.wantedFor = newest;
-    const wanted = new Set(["/world", "/poses", "/log", "/barrier", "/phases", metricsTopic]);
-    const robots = newest?.robots ?? [];
-    const selected = this.selectedRobot;
-    const areShown = (newest !== null && robots.length <= mostRobotsAtOnce) || selected !== null || this.view.shown.has("everyone");
-    for (const layer of layers) {
-      const isOfRobots = layer.name === "rays" || layer.name === "radio";
-      if ("topic" in layer && this.view.shown.has(layer.name) && (areShown || !isOfRobots)) wanted.add(layer.topic);
-    }
-    if ((newest?.links.length ?? Infinity) <= mostLinksForCollisions) wanted.add("/contacts");
-    for (const { name } of this.series) wanted.add(name.topic);
-    for (const robot of robots.length <= mostRobotsAtOnce ? robots : selected ? [selected] : []) {
-      wanted.add(`/robots/${robot.description.id}/observation`);
-      wanted.add(`/robots/${robot.description.id}/command`);
-    }
-    if (selected && this.settings.tab === "camera") {
-      wanted.add("/detections");
-      for (const { id } of selected.description.cameras) wanted.add(`/robots/${selected.description.id}/cameras/${id}/image`);
-    }
-    this.source.want(wanted);
+    this.source.want(wantedTopics(this, newest));
   }
 
   // --- what is shown --------------------------------------------------------------------------------
@@ -361,25 +336,6 @@ export class App implements Listener {
     this.looked();
   }
 
-  /** Moves what is drawn smoothly from tick to tick, or as the ticks come. */
-  toggleMotion(): void {
-    this.settings.isSmooth = this.view.motion.isOn = !this.settings.isSmooth;
-    this.onNotice({ level: "info", text: this.settings.isSmooth ? "Motion between ticks is drawn." : "Each tick is drawn as it is." });
-    this.onSettings();
-  }
-
-  /** Colours robots in the next way: as in the scene, by model, by controller. */
-  setColoring(coloring: Coloring): void {
-    this.settings.coloring = coloring;
-    this.view.setColoring(coloring);
-    this.onSettings();
-  }
-
-  follow(id: string | null): void {
-    this.settings.followed = this.view.followed = id;
-    this.onSettings();
-  }
-
   toggleTrail(id: string): void {
     const { trailed } = this.settings;
     this.settings.trailed = trailed.includes(id) ? trailed.filter((other) => other !== id) : [...trailed, id];
@@ -397,12 +353,6 @@ export class App implements Listener {
     }
     this.settings.plots = this.series.map((series) => series.name);
     this.want();
-    this.onSettings();
-  }
-
-  /** Whether each series has a chart of its own. */
-  setApart(isApart: boolean): void {
-    this.settings.apart = isApart;
     this.onSettings();
   }
 

@@ -5,6 +5,7 @@ import { colorings } from "../drawing/colors";
 import { layers } from "../drawing/view";
 import type { Tab } from "../model/settings";
 import type { App } from "./app";
+import { follow, setColoring, toggleMotion } from "./looks";
 
 export interface Actions { open(): void; help(): void; theme(): void; search(): void; speed(by: 1 | -1): void;
                           picture(): void; film(): void; link(): void }
@@ -56,8 +57,8 @@ function act(app: App, actions: Actions, event: KeyboardEvent): boolean {
     case "v": return done(app.tool = "select");
     case "m": return app.mayChange && done(app.tool = "move");
     case "u": return done(app.tool = app.tool === "ruler" ? "select" : "ruler");
-    case "i": return done(app.toggleMotion());
-    case "y": return done(app.setColoring(colorings[(colorings.indexOf(app.settings.coloring) + 1) % colorings.length]));
+    case "i": return done(toggleMotion(app));
+    case "y": return done(setColoring(app, colorings[(colorings.indexOf(app.settings.coloring) + 1) % colorings.length]));
     case "s": return done(app.toggleBookmark());
     case "j": return done(actions.picture());
     case "w": return done(actions.film());
@@ -70,7 +71,7 @@ function act(app: App, actions: Actions, event: KeyboardEvent): boolean {
   if (selected === null) return false;
   switch (key) {
     case "f": return done(app.look(selected));
-    case "g": return done(app.follow(app.settings.followed === selected ? null : selected));
+    case "g": return done(follow(app, app.settings.followed === selected ? null : selected));
     case "t": return done(app.toggleTrail(selected));
     case "Delete": case "Backspace": return app.mayChange && done(void app.call("/remove", { entity: selected }));
   }

@@ -15,12 +15,20 @@ function moment(app: App): string {
   return frame ? `${(recorded ? recorded.secondsOf(frame) : Number(frame.timeNs) * 1e-9).toFixed(2)} s · tick ${frame.tick}` : "";
 }
 
+/** Draws what lies over the world. @param ratio  pixels of the picture by those of the page */
+export type Paint = (draw: CanvasRenderingContext2D, ratio: number) => void;
+
 /** Saves what is seen of the world as PNG, drawn as well as the page can. */
-export function savePicture(app: App): void {
+export function savePicture(app: App, paint: Paint): void {
   const { stage } = app.view;
   stage.aim(true);
   stage.render();
-  stage.canvas.toBlob((blob) => { // a copy of the pixels is made now
+  const picture = document.createElement("canvas");
+  [picture.width, picture.height] = [stage.canvas.width, stage.canvas.height];
+  const draw = picture.getContext("2d")!;
+  draw.drawImage(stage.canvas, 0, 0);
+  paint(draw, picture.width / stage.canvas.clientWidth);
+  picture.toBlob((blob) => {
     if (blob) save(blob, `${titleOf(app)} tick ${app.frame?.tick ?? 0}.png`);
     else app.notice("error", "The browser made no picture.");
   });
@@ -52,7 +60,7 @@ export class Film {
   private drawn = 0;
   private firstTick = 0;
 
-  constructor(private readonly app: App) {
+  constructor(private readonly app: App, private readonly paint: Paint) {
     window.addEventListener("beforeunload", (event) => { if (this.isRunning) event.preventDefault(); });
   }
 
@@ -96,8 +104,10 @@ export class Film {
     const now = performance.now();
     const draw = this.canvas.getContext("2d")!;
     const { width, height } = this.canvas;
-    if (hasDrawn) draw.drawImage(this.app.view.stage.canvas, 0, 0, width, height);
-    else if (now - this.drawn < 1000 / filmRate) return;
+    if (hasDrawn) {
+      draw.drawImage(this.app.view.stage.canvas, 0, 0, width, height);
+      this.paint(draw, width / this.app.view.stage.canvas.clientWidth);
+    } else if (now - this.drawn < 1000 / filmRate) return;
     this.drawn = now;
     // The time is written anew also while nothing moves: the recorder takes pictures that change only.
     draw.font = "14px system-ui, sans-serif";

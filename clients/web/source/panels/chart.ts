@@ -28,7 +28,8 @@ function marks(values: number[], step: number): string[] {
     const digits = Math.min(Math.max(Math.ceil(Math.log10(most / step)), 0), 6);
     return values.map((value) => (value === 0 ? "0" : value.toExponential(digits)));
   }
-  const digits = Math.min(Math.max(Math.ceil(-Math.log10(step) - 1e-9), 0), 9);
+  let digits = 0; // as many as the step has: 2.5 has one
+  while (digits < 9 && Math.abs(step - Number(step.toFixed(digits))) > 1e-6 * step) ++digits;
   return values.map((value) => value.toFixed(digits).replace(/^-(0\.?0*)$/, "$1"));
 }
 
@@ -62,7 +63,8 @@ export class Chart {
     return {
       width: this.width, height, legend: { show: false }, padding: [8, 26, 0, 4],
       cursor: { y: false, sync: { key: "time" }, drag: { x: true, y: false } }, scales: { x: { time: false } },
-      series: [{}, ...this.curves.map(({ stroke }) => ({ stroke, width: 1.5, points: { show: false } }))],
+      series: [{}, ...this.curves.map(({ stroke }) => ({ stroke, width: 1.5,
+        points: { show: (plot: uPlot, series: number) => Array.from(plot.data[series]).filter((value) => value != null).length === 1 } }))],
       axes: [
         { ...axis, size: 24, values: (_, at, _axis, _space, step) => marks(at, step).map((text) => `${text} s`) },
         { ...axis, values: (_, at, _axis, _space, step) => marks(at, step),

@@ -34,7 +34,7 @@ export class Controllers implements Panel {
         : status.freeRobots.length > 0 ? "Waits for controllers" : "Waits for no controller"),
       status.freeRobots.length > 0 ? make("p.warn", {}, `Without controller: ${status.freeRobots.slice(0, 12).join(", ")}`) : "",
       status.goneRobots.length > 0 ? make("p.muted", {}, `Left for good: ${status.goneRobots.slice(0, 12).join(", ")}`) : "",
-      this.phases(), make("h3", {}, "Controllers"), this.sessions(status.sessions),
+      this.phases(), ...(status.sessions.length > 0 ? [make("h3", {}, "Controllers"), this.sessions(status.sessions)] : []),
       histograms.length > 0 ? make("h3", {}, "Time to answer") : "", ...histograms.slice(0, mostSessions).map((one) => this.histogram(one)));
   }
 

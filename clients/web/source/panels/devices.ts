@@ -7,6 +7,7 @@ import { nameOf } from "../model/series";
 import type { Frame } from "../model/timeline";
 import { icon, longText, make, restOf, setText } from "./element";
 import type { Panel } from "./panel";
+import { follow } from "../page/looks";
 
 interface Row { text: HTMLElement; bar: HTMLElement | null; plot: HTMLElement | null; reading: Reading }
 
@@ -80,7 +81,7 @@ export class Devices implements Panel {
         + (entity.model ? ` · ${entity.model}` : "") + (robot ? ` · ${robot.controller}` : ""))),
       make("div.actions", {},
         make("button", { click: () => app.look(entity.id), title: "Look at it (F)" }, "Look"),
-        make("button.follow", { click: () => app.follow(app.settings.followed === entity.id ? null : entity.id), title: "Move with it (G)" }, "Follow"),
+        make("button.follow", { click: () => follow(app, app.settings.followed === entity.id ? null : entity.id), title: "Move with it (G)" }, "Follow"),
         make("button.trail", { click: () => app.toggleTrail(entity.id), title: "Draw its path (T)" }, "Trail"),
         app.mayChange ? make("button.danger", { click: () => void app.call("/remove", { entity: entity.id }), title: "Remove it (Delete)",
                                 id: "remove" }, "Remove") : null),

@@ -5,8 +5,9 @@ import { layers } from "../drawing/view";
 import type { App } from "../page/app";
 import { make } from "./element";
 import type { Panel } from "./panel";
+import { setColoring } from "../page/looks";
 
-const names: Record<Coloring, string> = { scene: "as in the scene", model: "by model", controller: "by controller" };
+const names: Record<Coloring, string> = { scene: "of the scene", model: "by model", controller: "by controller" };
 
 export class Layers implements Panel {
   readonly element = make("section.layers", {}, make("h2", {}, "Layers"));
@@ -23,8 +24,8 @@ export class Layers implements Panel {
       grid.append(make("label", { title: `key ${key}` }, box, label));
     }
     for (const coloring of colorings) this.colors.append(make("option", { value: coloring }, names[coloring]));
-    this.colors.addEventListener("change", () => app.setColoring(this.colors.value as Coloring));
-    this.element.append(grid, make("label.colors", { title: "Colours of robots (y)" }, "Robots coloured", this.colors));
+    this.colors.addEventListener("change", () => setColoring(app, this.colors.value as Coloring));
+    this.element.append(grid, make("label.colors", { title: "Colours of robots (y)" }, "Robot colours", this.colors));
   }
 
   update(): void {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What robots and the server logged.
-import type { App, LogEntry } from "../page/app";
-import { longText, make } from "./element";
+import type { LogEntry } from "../model/log";
+import type { App } from "../page/app";
+import { longText, make, setText } from "./element";
 import type { Panel } from "./panel";
 
 const mostLines = 300;
@@ -13,6 +14,7 @@ export class LogPanel implements Panel {
   private readonly pauseOn = make("input", { placeholder: "Pause when a line contains …", "aria-label": "Pause when a line contains" }) as HTMLInputElement;
   private readonly only = make("input", { type: "checkbox" }) as HTMLInputElement;
   private readonly pausing = make("div.chooser", {}, this.pauseOn);
+  private readonly lost = make("p.muted.lost", { title: "A recording has all lines: ziggurat run --record" });
   private key = "";
   private last: LogEntry | undefined;
   private shown: LogEntry[] = [];
@@ -20,23 +22,25 @@ export class LogPanel implements Panel {
   constructor(private readonly app: App) {
     this.pauseOn.addEventListener("change", () => { app.pauseOnText = this.pauseOn.value; });
     this.element.append(make("div.chooser", {}, this.filter, make("label", {}, this.only, "selected only")),
-                        this.pausing, this.lines);
+                        this.pausing, this.lost, this.lines);
   }
 
   update(): void {
     const { app } = this;
     this.pausing.hidden = !app.connection.mayControl;
     if (document.activeElement !== this.pauseOn) this.pauseOn.value = app.pauseOnText;
-    const last = app.log.at(-1);
+    const { entries, lost } = app.log;
+    const last = entries.at(-1);
     const key = `${this.filter.value}|${this.only.checked}|${app.settings.selected}|${app.pinned}`;
     if (key === this.key && last === this.last) return;
     this.key = key;
     this.last = last;
     const until = app.pinned ?? Infinity;
     const text = this.filter.value.toLowerCase();
-    const shown = app.log.filter((entry) => entry.sequence <= until
+    const shown = entries.filter((entry) => entry.sequence <= until
       && (!this.only.checked || entry.name === app.settings.selected)
       && (text === "" || `${entry.name} ${entry.text}`.toLowerCase().includes(text))).slice(-mostLines);
+    setText(this.lost, lost > 0 ? `The ${lost} oldest lines are not kept by this page.` : "");
     const isAtEnd = this.lines.scrollTop + this.lines.clientHeight > this.lines.scrollHeight - 30;
     this.show(shown);
     if (isAtEnd) this.lines.scrollTop = this.lines.scrollHeight;

@@ -9,6 +9,7 @@ import { csvOf } from "../model/table";
 import { Chart, type Curve } from "./chart";
 import { make } from "./element";
 import type { Panel } from "./panel";
+import { setApart } from "../page/looks";
 
 // Colours that are told apart also by those who do not see some of them: Okabe and Ito's.
 const strokes = ["#2f86d1", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#8c6d1f", "#7a7f87"];
@@ -35,7 +36,7 @@ export class Plots implements Panel {
       if (this.path.value !== "") this.app.togglePlot({ topic: this.topic.value, path: this.path.value });
       this.path.value = "";
     });
-    this.apart.addEventListener("change", () => app.setApart(this.apart.checked));
+    this.apart.addEventListener("change", () => setApart(app, this.apart.checked));
     this.element.append(make("div.chooser", {}, this.topic, this.path), this.actions, this.list);
   }
 

@@ -56,6 +56,7 @@ class Compass {
 export class SceneOverlay {
   readonly element = make("div.scene-overlay");
   private readonly names: HTMLElement[] = [];
+  private readonly places = new WeakMap<HTMLElement, [number, number]>(); // of texts [px]
   private readonly length = make("span.name.ruler");
   private readonly place = make("span.place.number", { title: "The place under the pointer [m]" });
   private readonly compass = new Compass();
@@ -82,6 +83,27 @@ export class SceneOverlay {
     if (this.pointer !== this.seenPointer && now - this.lookedAt > lookEvery) this.lookUnder(now);
     this.showNames();
     this.showRuler();
+  }
+
+  /** Draws the names and the ruler's length into a picture of the world. @param ratio  its pixels by those of the page */
+  paint(draw: CanvasRenderingContext2D, ratio: number): void {
+    draw.save();
+    draw.scale(ratio, ratio);
+    draw.font = "12px system-ui, sans-serif";
+    draw.textBaseline = "middle";
+    draw.textAlign = "center";
+    for (const element of [...this.names, this.length]) {
+      const at = element.hidden ? undefined : this.places.get(element);
+      if (!at) continue;
+      const text = element.textContent ?? "";
+      const isRuler = element === this.length;
+      const width = draw.measureText(text).width + 10, height = 17;
+      draw.fillStyle = isRuler ? "#cc3311" : getComputedStyle(document.body).getPropertyValue("--panel");
+      draw.fillRect(at[0] - width / 2, at[1] - height, width, height);
+      draw.fillStyle = isRuler ? "#fff" : getComputedStyle(document.body).getPropertyValue("--text");
+      draw.fillText(text, at[0], at[1] - height / 2);
+    }
+    draw.restore();
   }
 
   private lookUnder(now: number): void {
@@ -125,6 +147,7 @@ export class SceneOverlay {
   private move(text: HTMLElement, point: Vector | null): void {
     const at = point && this.app.view.onScreen(point);
     text.hidden = !at;
+    if (at) this.places.set(text, at);
     if (at) text.style.transform = `translate(${at[0].toFixed(1)}px, ${at[1].toFixed(1)}px) translate(-50%, -100%)`;
   }
 }
