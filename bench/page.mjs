@@ -5,7 +5,7 @@
 //
 // usage: node bench/page.mjs [links] [LINKS...]   bodies without a server
 //        node bench/page.mjs robots [ROBOTS...]   foot-bots that drive, and what the page costs the server
-//        node bench/page.mjs jumps [TICKS]        how long jumps on the time line take
+//        node bench/page.mjs jumps [TICKS [PAST]] how long jumps on the time line take
 //        node bench/page.mjs memory [MINUTES]     memory of the page and of the server
 //
 // In the project's folder; ZIGGURAT_BIN is the folder of the programs, whose build has the page, and the packages of tests/web
@@ -31,7 +31,7 @@ async function drawLinks(browser, count) {
 const modes = {
   links: async (browser) => { for (const count of numbers.length > 0 ? numbers : [500, 5000]) await drawLinks(browser, count); },
   robots: async (browser) => { for (const count of numbers.length > 0 ? numbers : [100, 500, 2000]) await driveRobots(browser, screen, count); },
-  jumps: (browser) => measureJumps(browser, screen, numbers[0]),
+  jumps: (browser) => measureJumps(browser, screen, numbers[0], numbers[1]),
   memory: (browser) => measureMemory(browser, screen, numbers[0]),
 };
 if (!modes[mode]) throw new Error(`no measurement is called ${mode}; write one of ${Object.keys(modes).join(", ")}`);
