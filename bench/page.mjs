@@ -5,7 +5,8 @@
 //
 // usage: node bench/page.mjs [links] [LINKS...]   bodies without a server
 //        node bench/page.mjs robots [ROBOTS...]   foot-bots that drive, and what the page costs the server
-//        node bench/page.mjs jumps [TICKS]        how long jumps on the time line take
+//        node bench/page.mjs jumps [TICKS [PAST]] how long jumps on the time line take
+//        node bench/page.mjs memory [MINUTES]     memory of the page and of the server
 //
 // In the project's folder; ZIGGURAT_BIN is the folder of the programs, whose build has the page, and the packages of tests/web
 // (target web_tests).
@@ -13,6 +14,7 @@ import { pathToFileURL } from "node:url";
 import { newPage, openBrowser, playerFile } from "../tests/web/browser.mjs";
 import { measureFrames } from "./page/frames.mjs";
 import { measureJumps } from "./page/jumps.mjs";
+import { measureMemory } from "./page/memory.mjs";
 import { driveRobots } from "./page/robots.mjs";
 
 const screen = { width: 1280, height: 720 };
@@ -29,7 +31,8 @@ async function drawLinks(browser, count) {
 const modes = {
   links: async (browser) => { for (const count of numbers.length > 0 ? numbers : [500, 5000]) await drawLinks(browser, count); },
   robots: async (browser) => { for (const count of numbers.length > 0 ? numbers : [100, 500, 2000]) await driveRobots(browser, screen, count); },
-  jumps: (browser) => measureJumps(browser, screen, numbers[0]),
+  jumps: (browser) => measureJumps(browser, screen, numbers[0], numbers[1]),
+  memory: (browser) => measureMemory(browser, screen, numbers[0]),
 };
 if (!modes[mode]) throw new Error(`no measurement is called ${mode}; write one of ${Object.keys(modes).join(", ")}`);
 const browser = await openBrowser();

@@ -50,8 +50,8 @@ async function tell(what, page) {
   console.log(`${what}: ${jumps} jumps; frame known after ${of("known")}, drawing begun after ${of("drawn")}, drawn after ${of("done")}`);
 }
 
-/** @param count  ticks of the recording, and of the running world's past */
-export async function measureJumps(browser, screen, count = 10_001) {
+/** @param count  ticks of the recording, @param past  of the running world, of which the page is sent as many as it draws */
+export async function measureJumps(browser, screen, count = 10_001, past = count - 1) {
   const folder = mkdtempSync(`${tmpdir()}/zj`);
   const [recording, exported] = [`${folder}/run.mcap`, `${folder}/run.html`];
   execFileSync(ziggurat, ["run", vehicle, "--ticks", String(count), "--record", recording, "--quiet"], { cwd: root, stdio: "ignore" });
@@ -66,7 +66,7 @@ export async function measureJumps(browser, screen, count = 10_001) {
   const run = await Run.start(vehicle, "--duration=0", "--real-time=20", "--view=127.0.0.1:0");
   const live = await openPage(browser, run.address, "", screen);
   const length = () => live.evaluate(() => window.ziggurat.app.timeline.length);
-  await waitFor(async () => (await length()) >= count - 1, `${count - 1} ticks in the page`, longestWait);
+  await waitFor(async () => (await length()) >= past, `${past} ticks in the page`, longestWait);
   await tell(`running world, ${await length()} ticks of the past`, live);
   await live.context().close();
   await run.stop();

@@ -35,6 +35,20 @@ using Kinds = std::bitset<static_cast<std::size_t>(Kind::metrics) + 1>;
 
 constexpr std::size_t index_of(Kind kind) { return static_cast<std::size_t>(kind); }
 
+/// Whether its messages are made of what robots sense.
+constexpr bool shows_observations(Kind kind) {
+  switch (kind) {
+    case Kind::detections:
+    case Kind::radio:
+    case Kind::observation:
+    case Kind::image:
+    case Kind::annotations:
+      return true;
+    default:
+      return false;
+  }
+}
+
 /// When a channel has a message.
 enum class Pace {
   latched,  ///< when it changes; a viewer that subscribes gets the newest one

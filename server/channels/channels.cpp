@@ -154,6 +154,7 @@ void Channels::encode(const Moment& moment, Pace pace, std::span<const std::uint
                          [](const Channel& one, std::uint32_t other) { return one.id < other; });
     if (channel == list_.end()) return;
     if (channel->id != id || pace_of(channel->kind) != pace) continue;
+    if (!moment.has_observations && shows_observations(channel->kind)) continue;
     std::shared_ptr<const Content> content;
     if (channel->kind == Kind::image) {
       content = picture_of(world_, channel->place, moment);

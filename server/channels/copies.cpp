@@ -8,20 +8,31 @@ namespace ziggurat::channels {
 Moment TickCopy::view() const {
   Moment moment{state, observations, commands, contacts, phases};
   if (rays) moment.rays = *rays;
+  moment.has_observations = has_observations;
   return moment;
 }
 
-void copy(const Moment& from, bool with_images, TickCopy& to) {
-  to.state = from.state;
+namespace {
+
+void copy_observations(const Moment& from, Sensed sensed, TickCopy& to) {
   world::for_each_row(world::sensed, [&](auto i) {
     constexpr auto& row = std::get<i>(world::sensed);
     using Field = std::remove_cvref_t<decltype(to.observations.*row.values)>;
-    if (std::is_same_v<Field, std::vector<world::Image>> && !with_images) {
+    if (std::is_same_v<Field, std::vector<world::Image>> &&
+        sensed != Sensed::numbers_and_pictures) {
       (to.observations.*row.values) = {};
     } else {
       to.observations.*row.values = from.observations.*row.values;
     }
   });
+}
+
+}  // namespace
+
+void copy(const Moment& from, Sensed sensed, TickCopy& to) {
+  to.state = from.state;
+  to.has_observations = sensed != Sensed::nothing;
+  if (to.has_observations) copy_observations(from, sensed, to);
   to.commands = from.commands;
   to.contacts.assign(from.contacts.begin(), from.contacts.end());
   to.phases = from.phases;

@@ -35,6 +35,9 @@ struct PopulationCopy {
   }
 };
 
+/// Observations that are copied.
+enum class Sensed { nothing, numbers, numbers_and_pictures };
+
 struct TickCopy {
   world::State state;
   world::Observations observations;
@@ -42,13 +45,13 @@ struct TickCopy {
   std::vector<world::Contact> contacts;
   timing::PhaseTimes phases;
   std::optional<std::vector<world::Ray>> rays;  ///< of all devices; nothing: State::rays
+  bool has_observations = false;                ///< otherwise they are of another tick
 
   Moment view() const;
 };
 
-/// Pictures are left out unless they are wanted.
 /// @param to  keeps its memory
-void copy(const Moment& from, bool with_images, TickCopy& to);
+void copy(const Moment& from, Sensed sensed, TickCopy& to);
 
 /// Memory of a copy, about [bytes].
 std::size_t size_of(const TickCopy& copy);

@@ -37,6 +37,7 @@ struct Moment {
   std::span<const world::Contact> contacts;
   timing::PhaseTimes phases;                             ///< of the tick before
   std::optional<std::span<const world::Ray>> rays = {};  ///< of all devices; nothing: State::rays
+  bool has_observations = true;  ///< otherwise channels that show them have no message
 };
 
 /// Layers of `/scene` besides the shapes of links.

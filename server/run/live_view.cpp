@@ -116,12 +116,22 @@ void LiveView::populate() {
   shown_image_ = world::image_on(world.simulation.state().floor);
 }
 
+/// Observations that channels show which are wanted.
+channels::Sensed LiveView::sensed() const {
+  using channels::Sensed;
+  if (wants(Kind::image)) return Sensed::numbers_and_pictures;
+  for (std::size_t kind = 0; kind < kinds_.size(); ++kind) {
+    if (kinds_.test(kind) && shows_observations(static_cast<Kind>(kind))) return Sensed::numbers;
+  }
+  return Sensed::nothing;
+}
+
 void LiveView::show_tick() {
-  if (!wanted_.empty()) server_.show(moment(), {wanted_, {}, wants(Kind::image)});
+  if (!wanted_.empty()) server_.show(moment(), {wanted_, {}, sensed()});
 }
 
 void LiveView::show_all(const std::vector<std::uint32_t>& wanted) {
-  if (!wanted.empty()) server_.show(moment(), {wanted, wanted, wants(Kind::image)});
+  if (!wanted.empty()) server_.show(moment(), {wanted, wanted, sensed()});
 }
 
 void LiveView::tick(const timing::PhaseTimes& phases) {

@@ -95,6 +95,7 @@ class LiveView {
   void show_metrics();
   bool wants(channels::Kind kind) const { return kinds_.test(channels::index_of(kind)); }
   channels::Moment moment() const;
+  channels::Sensed sensed() const;
 
   const Run run_;
   view::ViewerServer server_;

@@ -52,7 +52,7 @@ void Feed::set_layers(const channels::Layers& layers) {
 
 void Feed::show(const channels::Moment& moment, Wanted wanted) {
   Tick tick{take_copy(), std::move(wanted)};
-  channels::copy(moment, tick.wanted.pictures, *tick.world);
+  channels::copy(moment, tick.wanted.sensed, *tick.world);
   const std::lock_guard lock(mutex_);
   waiting_.push_back(std::move(tick));
   if (++ticks_ > most_ticks) drop_oldest();
@@ -113,7 +113,7 @@ void Feed::encode(const Tick& tick, std::vector<channels::Message>& to) {
   channels_.encode(moment, Pace::answer, tick.wanted.latched, to);
 }
 
-bool Feed::pass_on(Hub& hub) {
+void Feed::pass_on(Hub& hub) {
   std::deque<Item> items;
   std::shared_ptr<const channels::PopulationCopy> population;
   {
@@ -141,7 +141,6 @@ bool Feed::pass_on(Hub& hub) {
     give_back(tick);
   }
   messages_.clear();
-  return population || !items.empty();
 }
 
 }  // namespace ziggurat::view

@@ -19,9 +19,9 @@ namespace ziggurat::view {
 
 /// Channels that a tick is encoded for: ids, ascending.
 struct Wanted {
-  std::vector<std::uint32_t> tick;     ///< for messages of each tick
-  std::vector<std::uint32_t> latched;  ///< for latched messages and commands
-  bool pictures = false;               ///< some of them show pictures
+  std::vector<std::uint32_t> tick;                      ///< for messages of each tick
+  std::vector<std::uint32_t> latched;                   ///< for latched messages and commands
+  channels::Sensed sensed = channels::Sensed::nothing;  ///< that they show
 };
 
 class Feed {
@@ -43,8 +43,8 @@ class Feed {
 
   // On the server's thread.
 
-  /// Encodes what waits, and passes it on. @returns whether there was anything
-  bool pass_on(Hub& hub);
+  /// Encodes what waits, and passes it on.
+  void pass_on(Hub& hub);
 
  private:
   struct Tick {

@@ -42,10 +42,6 @@ constexpr std::size_t longest_message_to_steer = std::size_t{2} << 20;  // [byte
 constexpr std::chrono::milliseconds time_of_a_message_to_look{20}, time_of_a_message_to_steer{2};
 constexpr int most_messages_at_once = 1000;  // some clients subscribe to each topic by itself
 constexpr std::array protocols{"foxglove.websocket.v1", "foxglove.sdk.v1"};
-// While ticks come, the server's thread looks for them so often: to wake it for each would cost the
-// run more than to copy it.
-constexpr std::chrono::milliseconds interval{5};
-constexpr int longest_idle = 20;  // looks in vain, until it sleeps
 
 /// The protocol that both speak; empty: there is none.
 std::string protocol_in(std::string_view offered) {
@@ -284,7 +280,6 @@ struct ViewerServer::State {
         listening(listen(io, settings.address,
                          [this](http::Tcp::socket socket) { take(std::move(socket)); })),
         pause(io),
-        next_look(io),
         thread(http::serve(io)) {}
 
   /// Ends the oldest connection that is no viewer.
@@ -330,37 +325,22 @@ struct ViewerServer::State {
     });
   }
 
-  /// Something waits in the feed.
+  /// Something waits in the feed. Ticks are shown sixty times a second at most, and each wakes the
+  /// server's thread: to look for them again and again would cost more.
   void wake() {
-    if (!looks.exchange(true)) asio::post(io, [this] { look(); });
-  }
-
-  /// Takes what waits in the feed, again and again until nothing comes any more.
-  void look() {
-    if (pass_on()) {
-      idle = 0;
+    if (is_awake.exchange(true)) return;
+    asio::post(io, [this] {
+      is_awake = false;
+      pass_on();
       pump();
-    } else if (++idle > longest_idle) {
-      idle = 0;
-      looks = false;
-      if (pass_on()) {  // came just now
-        pump();
-        wake();
-      }
-      return;
-    }
-    next_look.expires_after(interval);
-    next_look.async_wait([this](Error error) {
-      if (!error) look();
     });
   }
 
-  /// Without memory for what waits it is lost, and the next looks go on.
-  bool pass_on() {
+  /// Without memory for what waits it is lost, and the run goes on.
+  void pass_on() {
     try {
-      return feed.pass_on(shared.hub);
+      feed.pass_on(shared.hub);
     } catch (const std::bad_alloc&) {
-      return true;
     }
   }
 
@@ -376,10 +356,9 @@ struct ViewerServer::State {
   std::list<std::weak_ptr<http::Exchange>> exchanges;  // the oldest first
   asio::io_context io{1};                              // behind what its connections use
   http::Listening listening;
-  asio::steady_timer pause, next_look;
+  asio::steady_timer pause;
   Feed feed;
-  std::atomic<bool> looks = false;  // the thread looks into the feed now and then
-  int idle = 0;                     // looks in vain
+  std::atomic<bool> is_awake = false;  // the thread is about to look into the feed
   std::thread thread;
 };
 

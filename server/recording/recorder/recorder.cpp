@@ -176,7 +176,9 @@ void Recorder::populate(const channels::Population& population) {
 
 void Recorder::tick(const channels::Moment& moment) {
   auto copied = std::make_shared<channels::TickCopy>(shared_->take_copy());
-  channels::copy(moment, moment.state.tick % picture_interval_ == 0, *copied);
+  const bool has_pictures = moment.state.tick % picture_interval_ == 0;
+  using channels::Sensed;
+  channels::copy(moment, has_pictures ? Sensed::numbers_and_pictures : Sensed::numbers, *copied);
   const std::size_t size = size_of(*copied);
   add(
       [shared = shared_.get(), copied = std::move(copied)](Recording& to) {

@@ -42,8 +42,8 @@ struct Watched {
     feed.populate({world.scene, world.path, world.scene_hash, 1, 0, world.simulation.layout(),
                    world.simulation.entities(), world.simulation.state()});
   }
-  void show_tick() { feed.show(moment(), {ids, {}, false}); }
-  void show_all() { feed.show(moment(), {ids, ids, false}); }
+  void show_tick() { feed.show(moment(), {ids, {}, channels::Sensed::numbers}); }
+  void show_all() { feed.show(moment(), {ids, ids, channels::Sensed::numbers}); }
   /// Messages that the viewer receives: topics with their ticks, as "/poses 3".
   std::vector<std::string> sent() {
     feed.pass_on(hub);
@@ -108,6 +108,14 @@ TEST(Feed, WhatMustArriveGoesToALaterTick) {
     watched.show_tick();
   }
   EXPECT_EQ(watched.sent(), (Sent{"/world -", "/poses 4", "/poses 5"}));
+}
+
+TEST(Feed, TicksWithoutObservationsHaveNoMessagesThatShowThem) {
+  Watched watched({"/poses", "/robots/arm/observation"});
+  watched.show_tick();
+  EXPECT_EQ(watched.sent(), (Sent{"/poses 0", "/robots/arm/observation -"}));
+  watched.feed.show(watched.moment(), {watched.ids, {}, channels::Sensed::nothing});
+  EXPECT_EQ(watched.sent(), (Sent{"/poses 0"}));
 }
 
 TEST(Feed, AnswersGoWithTheirTicks) {
