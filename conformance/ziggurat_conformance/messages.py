@@ -40,8 +40,8 @@ def leave(peer: str, *positions: int, reason: str = "DONE", **fields) -> Send:
     return Send(peer, {"leave": {"robots": list(positions), "reason": reason, **fields}})
 
 
-def heartbeat(peer: str, sequence: int) -> Send:
-    return Send(peer, {"heartbeat": {"sequence": sequence}})
+def heartbeat(peer: str, sequence: int, times: int = 1) -> Send:
+    return Send(peer, {"heartbeat": {"sequence": sequence}}, times)
 
 
 def hear_error(peer: str, code: str, severity: str = "DISCARD", **pattern) -> Hear:

@@ -77,14 +77,15 @@ class Peer:
             )
         self.socket.connect(endpoint)
 
-    def send(self, message: protocol.ClientMessage) -> None:
-        self.transcript.add(self.name, "──▶", wire.text_of(message))
+    def send(self, message: protocol.ClientMessage, times: int = 1) -> None:
+        self.transcript.add(self.name, "──▶", wire.text_of(message) + (f", {times} times" if times > 1 else ""))
         data = wire.encode(message, self.form)
         state = self._session.state
         faults = self._session.said(message, len(data))
         if self._session.is_certain:
             self._answers.said(state, message, faults)
-        self._send((data,))
+        for _ in range(times):
+            self._send((data,))
 
     def send_frames(self, frames: tuple[bytes, ...]) -> None:
         shown = ", ".join(f"{len(f)} bytes {f[:24]!r}{'…' if len(f) > 24 else ''}" for f in frames)

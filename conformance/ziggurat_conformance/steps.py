@@ -57,6 +57,7 @@ class Zeros:
 class Send:
     peer: str
     message: dict  # of ClientMessage
+    times: int = 1  # in a row, as fast as the peer can
 
 
 @dataclass(frozen=True)
@@ -84,6 +85,7 @@ class Skip:
 
     peer: str
     kind: str
+    behind: str = ""  # answers of this kind: each restarts the wait
 
 
 @dataclass(frozen=True)
@@ -184,7 +186,7 @@ class Stage:
     def send(self, step: Send) -> None:
         peer = self.peer(step.peer)
         fields = _resolved(self, peer, step.message)
-        peer.send(wire.from_dict(protocol.ClientMessage, fields))
+        peer.send(wire.from_dict(protocol.ClientMessage, fields), step.times)
 
     def frames(self, step: Frames) -> None:
         self.peer(step.peer).send_frames(step.frames)
@@ -204,10 +206,10 @@ class Stage:
         deadline = time.monotonic() + self.patience
         last = time.monotonic() + longest_wait(self.patience)
         while time.monotonic() < deadline:
-            message = _heard(peer, deadline - time.monotonic(), False)
+            message = _heard(peer, deadline - time.monotonic(), step.behind == "heartbeat")
             if message is not None and wire.kind_of(message) == step.kind:
                 return
-            if message is not None and wire.kind_of(message) == "loading":
+            if message is not None and wire.kind_of(message) in ("loading", step.behind):
                 deadline = min(time.monotonic() + self.patience, last)
         raise Failed(f"{step.peer} heard no {step.kind} within {self.patience:g} s")
 

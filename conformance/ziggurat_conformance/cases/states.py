@@ -91,7 +91,7 @@ CASES = [
          (join("p", "*"), *observe("p"), answer("p"), *observe("p"), Check("beat", _beats))),
     Case("M7.flood", "Who floods is thrown out, and the others are served",
          (join("p", "arm0"), join("q", "arm1", "arm2", "arm3"), *observe("p", "q"),
-          *[heartbeat("p", n) for n in range(20000)], Skip("p", "error"), Hang("p"), join("x", "arm0"),
+          heartbeat("p", 0, times=20000), Skip("p", "error", behind="heartbeat"), Hang("p"), join("x", "arm0"),
           *observe("x"), answer("x"), answer("q"), *observe("x", "q")), Level.SECURE),
     Case("M8.request", "A Request of a controller is FORBIDDEN",
          (join("p", "*"), *observe("p"), Send("p", {"request": {"id": 5, "pause": {}}}),
