@@ -12,8 +12,9 @@ namespace {
 Keep keep_of(const channels::Channel& channel) {
   using channels::Pace;
   if (channel.kind == channels::Kind::log) return Keep::all;
-  const Pace pace = channels::pace_of(channel.kind);
-  return pace == Pace::latched || pace == Pace::event ? Keep::newest : Keep::nothing;
+  if (channel.kind == channels::Kind::barrier) return Keep::newest;
+  // Metrics belong to their tick: they are dropped with it.
+  return channels::pace_of(channel.kind) == Pace::latched ? Keep::newest : Keep::nothing;
 }
 
 /// Whether a viewer that subscribes gets the newest message.

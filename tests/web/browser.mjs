@@ -113,12 +113,18 @@ export async function openFile(browser, path, hash = "", size = undefined) {
   return page;
 }
 
-/** Whether a page from the disk shows its recording. */
-export function isShown(page) { return page.evaluate(() => window.ziggurat.app.recorded !== null && window.ziggurat.view.poses !== null); }
+/** Whether a page shows a recording. @param name  of its file; "": of any */
+export function isShown(page, name = "") {
+  return page.evaluate((wanted) => {
+    const { app, view } = window.ziggurat;
+    return app.recorded !== null && (wanted === "" || app.source.name === wanted) && app.frame !== null && view.poses !== null;
+  }, name);
+}
 
 /** The tick of the newest frame that the page has. */
 export function liveTick(page) { return page.evaluate(() => window.ziggurat.app.timeline.newest.tick); }
-export function shownTick(page) { return page.evaluate(() => window.ziggurat.app.frame.tick); }
+/** The tick that is shown; null: none is yet. */
+export function shownTick(page) { return page.evaluate(() => window.ziggurat.app.frame?.tick ?? null); }
 
 /** The tick at which time stands in the page: the picture follows what is chosen at a later redraw. */
 export function pinnedTick(page) {

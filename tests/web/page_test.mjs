@@ -50,12 +50,13 @@ async function show(page, hash) {
 function onePage(scene, { options = [], size }, define) {
   describe(scene.replace(root, ""), () => {
     const at = {};
-    before(async () => {
-      at.run = await Run.start(scene, ...options);
-      at.page = await openPage(browser, at.run.address, "", size);
-    }, limit);
-    after(() => at.run?.stop());
+    after(async () => {
+      await at.page?.context().close();
+      await at.run?.stop();
+    });
     define((name, hash, body) => test(name, limit, async () => {
+      at.run ??= await Run.start(scene, ...options);
+      at.page ??= await openPage(browser, at.run.address, "", size);
       await show(at.page, hash);
       await body(at.page, at);
       checkTrouble(at.page);

@@ -89,6 +89,7 @@ test("a damaged file gives a sentence; one that is dropped on the page plays, st
   await page.locator("#overlay", { hasText: "Drop a recording" }).waitFor();
   await checkDamaged(page);
   await dropFile(page, readFileSync(recording), "drop.mcap");
+  await waitFor(() => isShown(page, "drop.mcap"), "the file that was dropped"); // one that is damaged may be shown, too
   await checkPlaying(page);
   await page.keyboard.press("e"); // asks for a file, which is there already
   await page.locator("#recording-file").setInputFiles(recording);
