@@ -66,7 +66,7 @@ export function firstBox(world: World, poses: Poses): Box {
   if (!things) return arena;
   const reach = Math.max(things.high[0] - things.low[0], things.high[1] - things.low[1], things.high[2]);
   const isSmall = Math.max(arena.high[0] - arena.low[0], arena.high[1] - arena.low[1]) < wide * reach;
-  const around = 0.15 * reach;
+  const around = 0.4 * reach; // enough floor to see where things stand
   const low = [0, 1].map((i) => (world.hasFloor && isSmall ? Math.min(arena.low[i], things.low[i]) : things.low[i] - around));
   const high = [0, 1].map((i) => (world.hasFloor && isSmall ? Math.max(arena.high[i], things.high[i]) : things.high[i] + around));
   return { low: [low[0], low[1], world.hasFloor ? Math.min(0, things.low[2]) : things.low[2]], high: [high[0], high[1], things.high[2]] };
