@@ -91,7 +91,8 @@ export async function driveRobots(browser, screen, count) {
   const port = await freePort();
   const run = await Run.start(scene, "--real-time", "1", "--metrics", `127.0.0.1:${port}`, "--view=127.0.0.1:0");
   const status = `http://127.0.0.1:${port}/status`;
-  await waitFor(async () => Number((await (await fetch(status)).json()).tick) > 10, "ticks"); // it waits for a viewer at first
+  // It waits for a viewer at first, and has no status before its first tick.
+  await waitFor(async () => Number((await (await fetch(status)).json().catch(() => ({}))).tick) > 10, "ticks");
   const found = { alone: [], seen: [] };
   for (let turn = 0; turn < turns; ++turn) {
     await sleep(2000);
