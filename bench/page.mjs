@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the page costs in a browser, per frame that it draws: processor time of its own thread, in which scripts run, and of
+// Cost of the page in a browser, per frame that it draws: processor time of its own thread, in which scripts run, and of
 // the thread and process that do the drawing. Without graphics processor the latter is most, and only the former is what a
 // laptop would also have to do. Processor time depends little on what else the machine does.
 //

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What viewers cost: CPU time of the run's thread per tick without and with one that subscribes to what
+// Cost of viewers: CPU time of the run's thread per tick without and with one that subscribes to what
 // the page does, and memory of ten that never read. In one run a viewer subscribes and unsubscribes by turns of some
 // seconds, so that what else the machine does falls on both kinds, and each turn is compared with its neighbours.
 //
@@ -19,7 +19,7 @@ const counts = process.argv[2] === "--instructions";
 const [program, scene, turns = counts ? 400 : 20, seconds = 2] = process.argv.slice(counts ? 3 : 2);
 const protocol = foxglove.FoxgloveClient.SUPPORTED_SUBPROTOCOL;
 const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
-/** What the page subscribes to at first, in a world with few robots and links. */
+/** Topics that the page subscribes at first, in a world with few robots and links. */
 const page = /^\/(world|poses|log|barrier|phases|rays|radio|contacts|robots\/[^/]+\/(observation|command))$/;
 const all = /./;
 
@@ -77,7 +77,7 @@ function estimate(list) {
   return [mean, Math.sqrt(list.reduce((sum, value) => sum + (value - mean) ** 2, 0) / (list.length - 1) / list.length)];
 }
 
-/** What a viewer of these topics adds to a tick, at so many times real time. */
+/** Time that a viewer of these topics adds to a tick, at so many times real time. */
 async function measure(factor, topics, name) {
   const { child, url } = await start("--duration=0", `--real-time=${factor}`);
   const watcher = await connect(url, /^\/barrier$/, true); // each 250 ms, in both kinds of turns

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What frames of a page cost: how many are drawn, and what they take of the page's thread and of the process that draws.
+// Frames of a page: how many are drawn, and what they take of the page's thread and of the process that draws.
 import { waitFor } from "../../tests/web/browser.mjs";
 
 export const seconds = 10; // that are measured
@@ -17,7 +17,7 @@ async function look(page, session) {
            frames: await page.evaluate(() => window.ziggurat.framesDrawn()) };
 }
 
-/** What drawing costs for some seconds, as a line. */
+/** Cost of drawing for some seconds, as a line. */
 export async function measureFrames(page) {
   const session = await page.context().newCDPSession(page);
   await session.send("Performance.enable", { timeDomain: "threadTicks" });

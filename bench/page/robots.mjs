@@ -32,7 +32,7 @@ function step()
 end
 `;
 
-/** So many foot-bots in a walled square, six of them on each square metre. */
+/** A scene of so many foot-bots in a walled square, six of them on each square metre. */
 function sceneOf(count) {
   const side = Math.sqrt(0.16 * count), inside = side / 2 - 0.15;
   const wall = (id, size, x, y) => `<box id="${id}" size="${size},0.2" movable="false"><body position="${x},${y},0"/></box>`;
@@ -73,7 +73,7 @@ function cpuOf(pid) {
   return { run: of(pid), all: readdirSync(`/proc/${pid}/task`).reduce((sum, thread) => sum + of(thread), 0) };
 }
 
-/** What ticks take for some seconds, each [ms]. */
+/** Times of ticks for some seconds, each [ms]. */
 async function measureTicks(pid, status) {
   const tick = async () => Number((await (await fetch(status)).json()).tick);
   const [first, before, begin] = [await tick(), cpuOf(pid), performance.now()];
@@ -91,7 +91,7 @@ export async function driveRobots(browser, screen, count) {
   const port = await freePort();
   const run = await Run.start(scene, "--real-time", "1", "--metrics", `127.0.0.1:${port}`, "--view=127.0.0.1:0");
   const status = `http://127.0.0.1:${port}/status`;
-  // It waits for a viewer at first, and has no status before its first tick.
+  // The run waits for a viewer at first, and has no status before its first tick.
   await waitFor(async () => Number((await (await fetch(status)).json().catch(() => ({}))).tick) > 10, "ticks");
   const found = { alone: [], seen: [] };
   for (let turn = 0; turn < turns; ++turn) {

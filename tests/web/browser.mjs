@@ -135,7 +135,7 @@ export function pinnedTick(page) {
   }), "moment that is shown").then(({ tick }) => tick);
 }
 
-/** Where an entity's reference link is, in the frame that is shown. */
+/** Place of an entity's reference link in the frame that is shown. */
 export function placeOf(page, id) {
   return page.evaluate((name) => {
     const { app, view } = window.ziggurat;
@@ -144,7 +144,7 @@ export function placeOf(page, id) {
   }, id);
 }
 
-/** Where a point of the world is on the page [px]. */
+/** Place of a point of the world on the page [px]. */
 export function onScreen(page, point) {
   return page.evaluate((place) => {
     const { view } = window.ziggurat;

@@ -27,7 +27,7 @@ after(async () => {
   if (folder) rmSync(folder, { recursive: true });
 });
 
-/** What a page must not have: messages of trouble, and requests to other machines. */
+/** Faults that a page must not have: messages of trouble, and requests to other machines. */
 function checkTrouble(page) {
   assert.deepEqual(page.problems, []);
   assert.deepEqual(page.foreign, []);

@@ -36,7 +36,7 @@ after(async () => {
   if (folder) rmSync(folder, { recursive: true });
 });
 
-/** How long the page needs to answer [s], after it has drawn. */
+/** Time that the page needs to answer [s], after it has drawn. */
 async function answerTime(page) {
   const begin = Date.now();
   await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve))));

@@ -106,7 +106,7 @@ export class Chunks {
   }
 }
 
-/** How many of an ascending list are not above a value. */
+/** Number of elements of an ascending list that are not above a value. */
 export function upperBound<T>(list: readonly T[], value: number, keyOf: (one: T) => number): number {
   let low = 0, high = list.length;
   while (low < high) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a recording must have: a type of its messages, and a world that can be read.
+// Parts that a recording must have: a type of its messages, and a world that can be read.
 import type { Container } from "../data/container";
 import { makeDecoder, Unreadable, type Decoder } from "../data/decode";
 import { checkWorld } from "./check";

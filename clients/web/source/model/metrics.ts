@@ -4,7 +4,7 @@
 
 export const metricsTopic = "/metrics";
 
-/** Of /inputs. */
+/** Fields of /inputs. */
 export interface Metrics { metrics: { robot: string; name: string; value: number }[] }
 
 /** Each as ROBOT/NAME, as in a run's summary. */

@@ -17,7 +17,7 @@ export class Motion {
   private came = -Infinity; // when the newest tick came [s]
   private gap = 0; // mean time between ticks [s]
 
-  /** What is drawn now; null: nothing. */
+  /** Poses that are drawn now; null: nothing. */
   get shown(): Poses | null { return this.duration > 0 ? this.between : this.target; }
   get isMoving(): boolean { return this.duration > 0; }
 

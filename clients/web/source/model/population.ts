@@ -64,7 +64,7 @@ export function partsOf(world: World): string[][] {
   return parts;
 }
 
-/** Those whose id, type or parts have a text, in lower case. */
+/** Entities whose id, type or parts have a text, in lower case. */
 export function matching(world: World, { type, members }: Group, text: string): number[] {
   if (text === "" || type.toLowerCase().includes(text)) return members;
   const parts = partsOf(world);

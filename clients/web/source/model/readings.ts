@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What one robot senses and is told, device by device, with the place of each number in its message,
+// Readings and commands of one robot, device by device, with the place of each number in its message,
 // so that it can be plotted.
 import { JointType, type Command, type Description, type DeviceField, type DeviceKind, type Floats, type Joint, type Observation, type World }
   from "./messages";
@@ -82,7 +82,7 @@ export function jointsOf(world: World, entity: number): Joints {
   return (id) => world.joints.find((joint) => joint.entity === entity && joint.id === id);
 }
 
-/** Of a joint's position or velocity; empty: it is not known. */
+/** Unit of a joint's position or velocity; empty: it is not known. */
 function unitOf(joint: ReturnType<Joints>, mode: number): string {
   const unit = joint?.type === JointType.prismatic ? "m" : joint?.type === JointType.revolute ? "rad" : "";
   return unit !== "" && modes[mode] === "velocity" ? `${unit}/s` : unit;
@@ -168,7 +168,7 @@ function addRows(out: Collector, robot: Description, o: Observation): void {
   }
 }
 
-/** How many LEDs and tags each camera sees. */
+/** Numbers of LEDs and tags that each camera sees. */
 function addCounts(out: Collector, robot: Description, o: Observation): void {
   let leds = 0, directional = 0, tags = 0;
   for (const camera of robot.cameras.slice(0, mostReadings)) {

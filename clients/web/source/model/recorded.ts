@@ -29,7 +29,7 @@ const mostReads = 2; // at the same time: of a drag over many chunks only some a
 /** A series that is filled with every so many frames of the file. */
 interface Filling { series: Series; stride: number; done: () => void }
 
-/** Of /inputs, protocol/ziggurat/v1/run.proto: acts of supervisors and viewers, and metrics. */
+/** Fields of /inputs, protocol/ziggurat/v1/run.proto: acts of supervisors and viewers, and metrics. */
 interface Inputs extends Metrics { acts: Record<string, Record<string, unknown> | undefined>[] }
 
 export class Recorded implements Source, Frames {
@@ -337,7 +337,7 @@ export class Recorded implements Source, Frames {
     }
   }
 
-  /** Those of a chunk, which stays in memory if there is room: load() tells what is damaged when the place is looked at. */
+  /** Messages of a chunk, which stays in memory if there is room: load() tells what is damaged when the place is looked at. */
   private async messagesOf(part: Part): Promise<RawMessage[]> {
     if (part.state !== "away") return part.messages.length > 0 ? part.messages : this.container.read(part.chunk).catch(() => []);
     try {
@@ -377,5 +377,5 @@ export class Recorded implements Source, Frames {
 /** The topic of the file that has what is shown under a topic. */
 function recordedTopic(topic: string): string { return topic === metricsTopic ? "/inputs" : topic; }
 
-/** Of a message in the file. */
+/** Key of a message in the file. */
 function keyOf({ channel, timeNs, data }: RawMessage): string { return `${channel} ${timeNs} ${data.byteOffset}`; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the user has chosen, as it stands in the address after "#", so that a link shows the same view.
+// Choices of the user, as they stand in the address after "#", so that a link shows the same view.
 import { colorings, type Coloring } from "../drawing/colors";
 import type { Look } from "../drawing/stage";
 import { layers, layersAtFirst, type Layer } from "../drawing/view";
@@ -61,7 +61,7 @@ function vector(text: string | null): [number, number, number] | null {
   return text && numbers.length === 3 && numbers.every(Number.isFinite) ? numbers as [number, number, number] : null;
 }
 
-/** What can't be understood is left out. */
+/** Settings of an address; words that can't be understood are left out. */
 export function fromAddress(text: string): Settings {
   const parts = new URLSearchParams(text.replace(/^#/, ""));
   const settings = settingsAtFirst();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the page has seen: a bounded buffer of frames. A frame has the messages of one tick; they
+// Past that the page has seen: a bounded buffer of frames. A frame has the messages of one tick; they
 // stay encoded, so that an hour of a small world fits.
 import type { Message } from "../data/source";
 import type { Poses, World } from "./messages";
@@ -99,7 +99,7 @@ export class Timeline implements Frames {
 
   tickOf(sequence: number): number | null { return this.at(sequence)?.tick ?? null; }
 
-  /** Of the newest run: its ticks only grow. */
+  /** Frame of a tick in the newest run, whose ticks only grow. */
   sequenceOf(tick: number): number | null {
     let low = Math.max(this.first, this.runBegin), high = this.last;
     const at = (sequence: number): number => this.tickOf(sequence) ?? 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the page knows and does; panels show it and call it. Nothing here touches the document.
+// State of the page and what it does; panels show it and call it. Nothing here touches the document.
 import type { Listener, Message, Source, Status, Value } from "../data/source";
 import type { View, Layer } from "../drawing/view";
 import { layers } from "../drawing/view";

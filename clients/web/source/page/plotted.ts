@@ -13,14 +13,14 @@ export async function wholeSeries(app: App): Promise<Series[]> {
   return whole;
 }
 
-/** What can be plotted of a topic; null: it has no message near the frame that is shown. */
+/** Numbers of a topic that can be plotted; null: it has no message near the frame that is shown. */
 export function numbersOf({ recorded, timeline, pinned }: App, topic: string): { path: string; value: number }[] | null {
   if (recorded && topic === metricsTopic) return [...recorded.metrics].map(([path, value]) => ({ path, value }));
   const message = timeline.message(topic, pinned ?? timeline.last);
   return message && plottable(topic, message.read());
 }
 
-/** Of what is shown, for names of files: the scene without its folder and ending. */
+/** Name of what is shown, for files: the scene without its folder and ending. */
 export function titleOf({ world, source }: App): string {
   return beginning(world?.scene ?? source.name, 100).replace(/^.*\//, "").replace(/\.argos$/, "");
 }

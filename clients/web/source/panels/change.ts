@@ -18,7 +18,7 @@ function escape(text: string): string {
   return text.replace(/[&<>"]/g, (letter) => `&#${letter.charCodeAt(0)};`);
 }
 
-/** What can be spawned in a world. */
+/** Elements that can be spawned in a world. */
 function choicesOf(world: World): Choice[] {
   const models = world.models.filter(({ id }) => id.length <= mostName).map(({ id: model, kind }) => ({
     label: `${model} (${kindName(kind)})`,

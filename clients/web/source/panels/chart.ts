@@ -14,7 +14,7 @@ const line = 17; // [px], of the legend in a picture
 const font = "10px system-ui";
 const letter = 6; // [px], of the axes' font, about
 
-/** Where the newest run begins: after a reset time begins again, and only what follows is drawn. */
+/** Beginning of the newest run: after a reset time begins again, and only what follows is drawn. */
 function begin({ times }: Series): number {
   let at = Math.max(times.length - 1, 0);
   while (at > 0 && times[at - 1] < times[at]) --at;

@@ -63,7 +63,7 @@ export class Devices implements Panel {
       ({ device, readings: readings.slice(0, mostRows), more: more + Math.max(readings.length - mostRows, 0) }))]);
   }
 
-  /** What the robot's tags show: servers leave it out of commands, which other viewers could not read with it. */
+  /** Payloads of the robot's tags: servers leave them out of commands, which other viewers could not read with it. */
   private payloads(world: World, frame: Frame): Uint8Array[] {
     const selected = this.app.selected?.index;
     const changed = new Map((frame.messages.get("/poses")?.read<Poses>().tagPayloads ?? []).map(({ tag, payload }) => [tag, payload]));
@@ -101,7 +101,7 @@ export class Devices implements Panel {
     const count = readings.length + more;
     const rows = readings.map((reading) => this.makeRow(title, device, reading));
     const hasFan = device === "Proximity" && title === "Senses" && this.levelSensors().length > 2;
-    // What the fan shows is not listed at once: other devices would be far below.
+    // Rays that the fan shows are not listed at once: other devices would be far below.
     const list = hasFan && rows.length > mostBesideFan
       ? [make("details.values", {}, make("summary.muted", {}, "Numbers"), ...rows)] : rows;
     this.element.append(make("details.device", { open: true }, make("summary", {}, device,

@@ -42,7 +42,7 @@ export class Header implements Panel {
     setText(this.rate, this.rateText());
   }
 
-  /** How fast the world runs, over the last two seconds of wall time. */
+  /** Speed of the world over the last two seconds of wall time. */
   private rateText(): string {
     const newest = this.app.timeline.newest;
     if (!newest || this.app.recorded || this.app.parameters.get("phase") !== "running") {

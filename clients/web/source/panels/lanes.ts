@@ -42,7 +42,7 @@ export class Lanes {
     return this.shown[Math.floor((event.clientY - this.element.getBoundingClientRect().top) / laneHeight)];
   }
 
-  /** Those near the mouse: of its lane, or of all. The nearest is the last. */
+  /** Marks near the mouse: of its lane, or of all. The nearest is the last. */
   private marksAt(event: PointerEvent): Mark[] {
     const sequence = this.sequenceAt(event);
     const far = ({ sequence: at }: Mark): number => Math.abs(at - sequence);

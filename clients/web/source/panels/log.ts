@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What robots and the server logged.
+// Lines that robots and the server logged.
 import type { LogEntry } from "../model/log";
 import type { App } from "../page/app";
 import { longText, make, setText } from "./element";

@@ -70,7 +70,7 @@ export class Plots implements Panel {
     }
   }
 
-  /** It stays as it was first known: the robot may be gone later. */
+  /** A label stays as it was first known: the robot may be gone later. */
   private labelOf(series: Series): Label | null {
     if (series.label) return series.label;
     const { frame, timeline, world } = this.app;
