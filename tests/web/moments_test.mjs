@@ -114,7 +114,13 @@ test("a running world is shown at a tick as soon as it comes; metrics are plotte
     await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
     // A page that draws slowly is sent fewer ticks: time stands at the newest of them, up to that of the address.
     const stands = await pinnedTick(page);
-    const next = await page.evaluate(() => window.ziggurat.app.timeline.tickOf(window.ziggurat.app.pinned + 1));
+    const next = await waitFor(() => page.evaluate((tick) => {
+      const { pinned, timeline } = window.ziggurat.app;
+      for (let sequence = pinned + 1; sequence <= timeline.last; ++sequence) {
+        if (timeline.tickOf(sequence) > tick) return timeline.tickOf(sequence);
+      }
+      return null;
+    }, stands), "a later tick");
     assert.ok(stands <= 40 && next > 40, `${stands}, then ${next}`);
     await waitFor(async () => (await liveTick(page)) > 42, "ticks after it");
     assert.equal(await shownTick(page), stands);

@@ -47,6 +47,13 @@ test("ticks of a running world are found in its newest run", () => {
   assert.deepEqual([0, 1, 2, 12].map((tick) => timeline.sequenceOf(tick)), [6, 6, 7, null]);
 });
 
+test("time stands at a tick's poses, not at a later frame without any", () => {
+  const timeline = seen(10, 6); // tick 20 is at 0.4 s
+  put(timeline, "/phases", 420_000_000, {});
+  put(timeline, "/poses", 440_000_000, makePoses(1, 22));
+  assert.deepEqual([20, 21, 22].map((tick) => timeline.sequenceOf(tick)), [5, 5, 7]);
+});
+
 test("the address has a moment and bookmarks; a moment that comes is waited for, one that is over is told", () => {
   const settings = { ...settingsAtFirst(), tick: 14, bookmarks: [12, 40], hiddenLanes: ["log" as const], apart: true };
   assert.deepEqual(fromAddress(`#${toAddress(settings)}`), settings);

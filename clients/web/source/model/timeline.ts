@@ -109,6 +109,8 @@ export class Timeline implements Frames {
       if (at(middle) <= tick) low = middle;
       else high = middle - 1;
     }
+    // Frames whose poses were not sent have the tick of the frame before them, and no picture of their own.
+    while (low > Math.max(this.first, this.runBegin) && at(low - 1) === at(low)) --low;
     return low;
   }
 
