@@ -74,7 +74,7 @@ export class Bodies {
     this.paint(colorOf);
   }
 
-  /** Above its origin, where a text hides no part of an entity that is seen from a slope [m]. */
+  /** Height above its origin at which a text hides no part of an entity that is seen from a slope [m]. */
   heightOf(entity: number): number {
     let height = 0.02, reach = 0;
     for (const { link, first, end } of this.bodies) {

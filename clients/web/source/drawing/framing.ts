@@ -50,7 +50,7 @@ export function arenaOf({ arenaSize, arenaCenter }: World): Box {
   return { low: [cx - x / 2, cy - y / 2, 0], high: [cx + x / 2, cy + y / 2, 0] };
 }
 
-/** How wide the strip of the scale is that lies beside a floor [m]. */
+/** Width of the strip of the scale that lies beside a floor [m]. */
 export function scaleWidth(x: number, y: number): number { return 0.055 * Math.max(Math.min(x, y), 0.25 * Math.max(x, y)); }
 
 /** A floor with the numbers beside it. */

@@ -7,7 +7,7 @@ export const mostShown = 300; // of it at first
 
 const unseen = /[\u0000-\u0008\u000b-\u001f\u007f-\u009f\p{Cf}\p{Zl}\p{Zp}]/gu;
 
-/** Characters that are not seen, or change the order of what stands around it, as \u202e: as the server writes it on a terminal. */
+/** Characters that are not seen, or change the order of what stands around them, as \u202e: as the server writes it on a terminal. */
 export function visible(text: string): string {
   return text.replace(unseen, (one) => `\\u${(one.codePointAt(0) ?? 0).toString(16).padStart(4, "0")}`);
 }
