@@ -82,12 +82,8 @@ void fill(const PoseSource& source, const Moment& from, v1::Poses& to) {
     const math::Vector3 field = magnet.turn * from.state.magnet_fields[i];
     add(math::Vector3(magnet.own + source.dialect * field), *to.mutable_magnet_moments());
   }
-  // World has the image, which hides what is below in the arena.
-  const auto image =
-      std::ranges::find_if(from.state.floor.rbegin(), from.state.floor.rend(),
-                           [](const world::FloorPaint& region) { return region.image != nullptr; });
-  for (const world::FloorPaint& region :
-       std::ranges::subrange(image.base(), from.state.floor.end())) {
+  for (const world::FloorPaint& region : from.state.floor) {
+    if (region.image) continue;  // World has it
     for (const double value : region.center) to.add_floor_paints(value);
     for (const double value : region.half_size) to.add_floor_paints(value);
     to.add_floor_paints(region.is_disc ? 1 : 0);

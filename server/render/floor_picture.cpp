@@ -47,10 +47,12 @@ FloorPicture floor_picture(const Model& model, const std::vector<world::FloorPai
   const auto pixel = [&](unsigned column, unsigned row) {
     return &picture.rgba[4 * (std::size_t{row} * x.count + column)];
   };
+  const images::Rectangle ground{{model.arena_center.x(), model.arena_center.y()},
+                                 {2 * model.arena_half_size.x(), 2 * model.arena_half_size.y()}};
   for (unsigned row = 0; model.floor_image && row < y.count; ++row) {
     for (unsigned column = 0; column < x.count; ++column)
       if (const auto color =
-              images::color_at(*model.floor_image, model.ground, x.center(column), y.center(row)))
+              images::color_at(*model.floor_image, ground, x.center(column), y.center(row)))
         set(pixel(column, row), *color);
   }
   for (const world::FloorPaint& region : painted) {

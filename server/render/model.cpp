@@ -58,7 +58,6 @@ Model make_model(const scene::Scene& scene, const std::vector<scene::Entity>& en
   model.arena_center = scene.arena.center.head<2>();
   model.arena_half_size = 0.5 * scene.arena.size.head<2>();
   model.floor_image = scene.floor_image;
-  model.ground = scene::ground_of(scene.arena);
   const double side = std::clamp(scene.arena.size.head<2>().minCoeff(), 0.01, 1e4);
   model.tile = round_tile(side);
   return model;

@@ -26,7 +26,6 @@ struct Model {
   math::Vector2 arena_center = math::Vector2::Zero();     ///< [m]
   math::Vector2 arena_half_size = math::Vector2::Zero();  ///< [m]
   std::shared_ptr<const images::Image> floor_image;       ///< over the arena; null: none
-  images::Rectangle ground;                               ///< of the arena
 };
 
 void add_bodies(const scene::Entity& entity, Model& model);

@@ -31,7 +31,7 @@ std::string endpoint_to_call(std::string_view endpoint) {
   const std::string_view host = host_of_endpoint(endpoint);
   if (!is_every_host(host)) return std::string(endpoint);
   const std::string called = host_to_call(host);
-  return fmt::format(fmt::runtime(host == "::" ? "{}[{}]{}" : "{}{}{}"), tcp, called,
+  return fmt::format("{}{}{}", tcp, host == "::" ? "[" + called + "]" : called,
                      endpoint.substr(endpoint.rfind(':')));
 }
 

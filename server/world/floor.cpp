@@ -56,16 +56,15 @@ bool is_valid(const FloorPaint& paint) {
 }
 
 bool paint(std::vector<FloorPaint>& floor, const FloorPaint& region) {
-  std::erase_if(floor, [&](const FloorPaint& lower) { return hides(region, lower); });
+  std::erase_if(floor,
+                [&](const FloorPaint& lower) { return region.image || hides(region, lower); });
   if (floor.size() >= most_floor_paints) return false;
   floor.push_back(region);
   return true;
 }
 
 const FloorImage* image_on(const std::vector<FloorPaint>& floor) {
-  const auto found =
-      std::find_if(floor.rbegin(), floor.rend(), [](const auto& region) { return region.image; });
-  return found == floor.rend() ? nullptr : found->image.get();
+  return floor.empty() ? nullptr : floor.front().image.get();
 }
 
 std::optional<Color> painted_color(const std::vector<FloorPaint>& floor, double x, double y) {

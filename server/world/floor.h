@@ -49,7 +49,7 @@ inline constexpr double largest_floor_length = 1e6;
 /// Whether center, size and color are within their bounds, and an image is no disc.
 bool is_valid(const FloorPaint& paint);
 
-/// Paints a region over others. Those that it hides wholly are forgotten.
+/// Paints a region over others, and forgets those that it hides wholly; an image hides all.
 /// @param floor  in the order of painting
 /// @return       false: there are too many already, and nothing changes
 bool paint(std::vector<FloorPaint>& floor, const FloorPaint& region);

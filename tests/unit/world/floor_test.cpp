@@ -43,9 +43,10 @@ FloorPaint with_image(double width, double height) {
 TEST(Floor, HasTheColoursOfAnImage) {
   std::vector<FloorPaint> floor;
   paint(floor, disc(0, 0, 0.5, 1));
+  paint(floor, disc(2, 0, 0.5, 1));
   EXPECT_EQ(image_on(floor), nullptr);
   ASSERT_TRUE(paint(floor, with_image(4, 2)));
-  EXPECT_EQ(floor.size(), 1u) << "it hides what is below";
+  EXPECT_EQ(floor.size(), 1u) << "it hides all, also beside it";
   ASSERT_TRUE(paint(floor, disc(1, 0, 0.25, 0x0000FF)));
   EXPECT_EQ(image_on(floor), floor[0].image.get());
   EXPECT_EQ(painted_color(floor, -0.01, 0.9), 0xFF0000U);
