@@ -78,6 +78,7 @@ void touch_floor(const Tree& tree, int index, std::vector<ContactPoint>& out) {
 void remember(std::vector<ContactPoint>& now, const std::vector<ContactPoint>& before) {
   for (std::size_t i = 0; i < now.size() && now.size() == before.size(); ++i) {
     now[i].impulse = before[i].impulse;
+    now[i].carried = !before[i].impulse.isZero(0);
   }
 }
 

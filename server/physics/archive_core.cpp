@@ -39,6 +39,7 @@ void ContactCache::CachedPoint::archive(math::Archive& archive) {
   archive("impulse", impulse);
   archive("angular_impulse", angular_impulse);
   archive("gap", gap);
+  archive("carried", carried);
 }
 
 void ContactCache::CachedPair::archive(math::Archive& archive) {

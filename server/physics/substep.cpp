@@ -281,6 +281,7 @@ bool NewtonCore::predict_contacts(const SubstepPart& part,
     swap_velocities(system_.trees, prediction_);
     if (!colliders_.add_predictions(prediction_.trees, system_, part.time_step)) break;
     any = true;
+    contacts_.store_estimates();
     contacts = part.active ? contacts_.find_contacts(part.time_step, *part.active, part.force_share)
                            : contacts_.find_contacts(part.time_step);
     woke = wake_disturbed(part, contacts, woke);

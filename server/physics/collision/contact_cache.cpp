@@ -292,6 +292,7 @@ void ContactCache::match_points(const contact::Manifold& found, CachedPair& pair
     now.gap = point.distance;
     now.impulse.setZero();
     now.angular_impulse.setZero();
+    now.carried = false;
     int nearest = -1;
     double least = same;
     for (int j = 0; j < old_count; ++j) {
@@ -305,6 +306,7 @@ void ContactCache::match_points(const contact::Manifold& found, CachedPair& pair
       taken[nearest] = true;
       now.impulse = old[nearest].impulse;
       now.angular_impulse = old[nearest].angular_impulse;
+      now.carried = old[nearest].carried;
     }
   }
 }
@@ -327,6 +329,7 @@ void ContactCache::append_contacts(const CachedPair& pair) {
       set_contact_points(a, pair.points[i].on_a, b, pair.points[i].on_b, together_gap_, contact);
       set_point_velocity(a, b, time_step_, contact);
     }
+    contact.carried = force_share_ > 0 && pair.points[i].carried;
     contact.impulse = force_share_ * pair.points[i].impulse;
     contact.angular_impulse = force_share_ * pair.points[i].angular_impulse;
     cache_indices_.push_back({static_cast<int>(&pair - pairs_.data()), i});

@@ -53,6 +53,8 @@ class ContactCache {
   /// Stores the impulses that the solver has written.
   /// @param more  parts of the substep are still to come
   void store_impulses(bool more = false);
+  /// Stores the impulses of a prediction: the next find_contacts() begins from them.
+  void store_estimates();
   /// Stores the impulses of an impact that the solver has written: for list_contacts(), not for the
   /// next solution.
   void add_impact_impulses();
@@ -76,6 +78,7 @@ class ContactCache {
     math::Vector3 point{0, 0, 0};
     math::Vector3 impulse{0, 0, 0}, angular_impulse{0, 0, 0};  // for all forces of a substep
     double gap = 0;
+    bool carried = false;  // it had an impulse when it was stepped last
     void archive(math::Archive& archive);
   };
   // Begins a line of the cache.

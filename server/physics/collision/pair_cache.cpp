@@ -98,7 +98,17 @@ void ContactCache::store_impulses(bool more) {
     if (force_share_ == 0) continue;
     point.impulse = contacts_[i].impulse / force_share_;
     point.angular_impulse = contacts_[i].angular_impulse / force_share_;
+    point.carried = !contacts_[i].impulse.isZero(0);
     pair.force_share = force_share_;
+  }
+}
+
+void ContactCache::store_estimates() {
+  if (force_share_ == 0) return;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    CachedPoint& point = pairs_[cache_indices_[i].pair].points[cache_indices_[i].point];
+    point.impulse = contacts_[i].impulse / force_share_;
+    point.angular_impulse = contacts_[i].angular_impulse / force_share_;
   }
 }
 

@@ -41,7 +41,8 @@ struct ContactPoint {
   double rolling_friction = 0;       ///< lever arm of rolling friction [m]
   double spinning_friction = 0;      ///< lever arm of spinning friction, about the normal [m]
   double restitution = 0;  ///< coefficient of restitution: separation over approach speed, 0 to 1
-  /// Impulse on a in world axes. In: of the last substep, 0 if it is new. Out: of this one.
+  bool carried = false;    ///< it had an impulse in the last substep
+  /// Impulse on a in world axes. In: a first estimate, 0 if there is none. Out: of this substep.
   Vector3 impulse{0, 0, 0};          ///< [N s]
   Vector3 angular_impulse{0, 0, 0};  ///< of rolling and spinning friction [N m s]
 };

@@ -31,7 +31,7 @@ void add_scaled(double factor, const double* row, double* w, int n) {
   for (int k = 0; k < size_of<N>(n); ++k) w[k] += factor * row[k];
 }
 
-/// M = C C^T in place, C lower.
+/// M = C C^T in place, C lower, with the inverses of its diagonal.
 void factor_in_place(double* m, int n) {
   for (int j = 0; j < n; ++j) {
     for (int k = 0; k < j; ++k) {
@@ -39,7 +39,8 @@ void factor_in_place(double* m, int n) {
       for (int i = j; i < n; ++i) m[i * n + j] -= factor * m[i * n + k];
     }
     const double inverse = 1 / std::sqrt(m[j * n + j]);
-    for (int i = j; i < n; ++i) m[i * n + j] *= inverse;
+    for (int i = j + 1; i < n; ++i) m[i * n + j] *= inverse;
+    m[j * n + j] = inverse;
   }
 }
 
@@ -50,7 +51,7 @@ void whiten(const double* c, int size, double* x) {
   for (int i = 0; i < n; ++i) {
     double sum = x[i];
     for (int k = 0; k < i; ++k) sum -= c[i * n + k] * x[k];
-    x[i] = sum / c[i * n + i];
+    x[i] = sum * c[i * n + i];
   }
 }
 
@@ -59,7 +60,7 @@ void unwhiten(const double* c, int n, double* x) {
   for (int i = n - 1; i >= 0; --i) {
     double sum = x[i];
     for (int k = i + 1; k < n; ++k) sum -= c[k * n + i] * x[k];
-    x[i] = sum / c[i * n + i];
+    x[i] = sum * c[i * n + i];
   }
 }
 

@@ -309,8 +309,12 @@ void VelocitySolver::interior_point_step(Problem& problem, double step_length) {
   }
 }
 
-/// @return  whether the miss became small enough; otherwise the problem holds the best state met
+/// The method ends without success where some steps bring the law no nearer: complementarity falls
+/// then, but to a point whose friction is not opposed to slip.
+/// @return  whether the residual became small enough; otherwise the problem holds the best iterate
 bool VelocitySolver::interior_point(Problem& problem, SolverResult& outcome) {
+  constexpr int most_stalled = 8;
+  constexpr double nearer = 0.9;  // times the best residual
   // From no impulses: those of the last substep may hold each other up to any size.
   for (Constraint& constraint : problem.constraints) {
     for (int r = 0; r < solved_rows(constraint); ++r) constraint.impulse[r] = 0;
@@ -322,7 +326,8 @@ bool VelocitySolver::interior_point(Problem& problem, SolverResult& outcome) {
   best_.save(problem);
   if (!(scale + pushed > 0)) return false;
   enter_cones(problem, std::max(0.1 * scale, pushed));
-  for (int i = 0; i < options.most_interior_point_steps; ++i) {
+  for (int i = 0, stalled = 0; i < options.most_interior_point_steps && stalled < most_stalled;
+       ++i) {
     ++outcome.interior_point_steps;
     momentum_residual(problem, residual_);
     const double product = linearise_interior_point(problem);
@@ -336,6 +341,7 @@ bool VelocitySolver::interior_point(Problem& problem, SolverResult& outcome) {
     compute_constraint_velocities(problem);
     outcome.residual = current_residual(problem, scale);
     if (!std::isfinite(outcome.residual)) break;
+    stalled = outcome.residual < nearer * best ? 0 : stalled + 1;
     if (outcome.residual < best) {
       best = outcome.residual;
       best_.save(problem);

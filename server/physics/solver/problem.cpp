@@ -218,7 +218,7 @@ Vector3 Problem::point_bias_acceleration(int tree, int link, const Vector3& poin
 /// Sets the target velocity and compliance of a contact without restitution. Touching surfaces are
 /// stiff springs, equal for all points of a pair. So redundant contacts share a load by their
 /// penetration; rigid ones share it by their history.
-void Problem::set_normal_target(Constraint& constraint) const {
+void Problem::set_normal_target(Constraint& constraint, const ContactPoint& contact) const {
   constraint.target_velocity[0] = -constraint.gap / time_step;
   if (compliance_factor == 0) {
     constraint.target_velocity[0] = std::min(0.0, constraint.target_velocity[0]);
@@ -227,8 +227,7 @@ void Problem::set_normal_target(Constraint& constraint) const {
   const auto inverse = [&](int index) { return index >= 0 ? 1 / total_mass[index] : 0; };
   constraint.target_velocity[0] =
       std::min(most_penetration / time_step, constraint.target_velocity[0]);
-  if (constraint.gap > 0 && constraint.impulse[0] == 0)
-    return;  // an impact is stopped at the surface
+  if (constraint.gap > 0 && !contact.carried) return;  // an impact is stopped at the surface
   constraint.compliance = compliance_factor * (inverse(constraint.a) + inverse(constraint.b));
   if (weight > 0)
     constraint.compliance =
@@ -268,7 +267,7 @@ void Problem::add_rotation_correction(Constraint& constraint, const ContactPoint
   constraint.gap_acceleration = normal.dot(faster) + normal_turns.dot(speed);
   const double alone = std::max(0.0, constraint.target_velocity[0]);
   constraint.target_velocity[0] -= time_step / 2 * constraint.gap_acceleration;
-  if (constraint.impulse[0] == 0 && !contact.has_point_velocity)
+  if (!contact.carried && !contact.has_point_velocity)
     constraint.target_velocity[0] =
         std::min(constraint.target_velocity[0], alone);  // the face of an impact is unknown
 }
@@ -299,7 +298,7 @@ void Problem::add(const ContactPoint& contact, int a, int b, int source) {
     constraint.impulse[r] =
         constraint.frame.col(r % 3).dot(r < 3 ? contact.impulse : contact.angular_impulse);
   constraint.impulse[0] = std::max(0.0, constraint.impulse[0]);
-  set_normal_target(constraint);
+  set_normal_target(constraint, contact);
   if (a >= 0 && b >= 0) add_rotation_correction(constraint, contact);
   constraint.restitution = contact.restitution;
   if (a >= 0 && b >= 0 && a != b) add_coupling(a, b);

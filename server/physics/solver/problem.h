@@ -93,7 +93,7 @@ struct Problem {
   void compute_mobility(Constraint& constraint) const;
   Vector3 point_bias_acceleration(int tree, int link, const Vector3& point,
                                   const ContactPoint& contact) const;
-  void set_normal_target(Constraint& constraint) const;
+  void set_normal_target(Constraint& constraint, const ContactPoint& contact) const;
   void add_rotation_correction(Constraint& constraint, const ContactPoint& contact) const;
 };
 

@@ -65,28 +65,6 @@ void displace_unconstrained(Tree& tree, std::span<const double> by) {
   displace_tree(tree, rotates ? by : std::array{0.0, 0.0, 0.0, by[3], by[4], by[5]});
 }
 
-/// Writes the impulses of contacts, servos and limits, in world axes.
-void write_impulses(const Problem& problem, const ConstraintLists& constraints) {
-  for (const Constraint& constraint : problem.constraints) {
-    const auto& g = constraint.impulse;
-    switch (constraint.kind) {
-      case Constraint::Kind::contact: {
-        ContactPoint& contact = constraints.contacts[constraint.source];
-        contact.impulse = constraint.frame * Vector3(g[0], g[1], g[2]);
-        contact.angular_impulse = constraint.frame * Vector3(g[3], g[4], g[5]);
-        break;
-      }
-      case Constraint::Kind::servo:
-        constraints.servos[constraint.source].impulse = g[0];
-        break;
-      case Constraint::Kind::limit:  // along the joint at the lower bound, against it at the upper
-        constraints.limits[constraint.source].impulse =
-            problem.jacobian[constraint.jacobian_a] * g[0];
-        break;
-    }
-  }
-}
-
 /// Sets the velocities of a solution, and computes displacements; unconstrained trees have moved
 /// already.
 void set_velocities(const Problem& problem, std::span<const unsigned char> is_free,
@@ -271,6 +249,27 @@ void assemble_problem(const IslandStep& step) {
         break;
       case IslandItem::Kind::limit:
         problem.add(constraints.limits[index], index_of(constraints.limits[index].tree), index);
+        break;
+    }
+  }
+}
+
+void write_impulses(const Problem& problem, const ConstraintLists& constraints) {
+  for (const Constraint& constraint : problem.constraints) {
+    const auto& g = constraint.impulse;
+    switch (constraint.kind) {
+      case Constraint::Kind::contact: {
+        ContactPoint& contact = constraints.contacts[constraint.source];
+        contact.impulse = constraint.frame * Vector3(g[0], g[1], g[2]);
+        contact.angular_impulse = constraint.frame * Vector3(g[3], g[4], g[5]);
+        break;
+      }
+      case Constraint::Kind::servo:
+        constraints.servos[constraint.source].impulse = g[0];
+        break;
+      case Constraint::Kind::limit:  // along the joint at the lower bound, against it at the upper
+        constraints.limits[constraint.source].impulse =
+            problem.jacobian[constraint.jacobian_a] * g[0];
         break;
     }
   }

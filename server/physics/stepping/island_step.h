@@ -94,6 +94,9 @@ struct IslandOutcome {
 /// Assembles the velocity problem of an island.
 void assemble_problem(const IslandStep& step);
 
+/// Writes the impulses of a solution to contacts, servos and limits, in world axes.
+void write_impulses(const Problem& problem, const ConstraintLists& constraints);
+
 /// Advances an island by a step.
 IslandOutcome step_island(const IslandStep& step);
 

@@ -113,6 +113,7 @@ bool System::predict_velocities(std::span<Limit> limits, double far,
     if (step.island.trees.size() > most_bodies) continue;
     assemble_problem(step);
     solve_velocities(memory.problem, memory.solver);
+    write_impulses(memory.problem, constraints_);
     out.trees.insert(out.trees.end(), step.island.trees.begin(), step.island.trees.end());
     out.velocities.insert(out.velocities.end(), memory.problem.velocity.begin(),
                           memory.problem.velocity.end());

@@ -45,6 +45,7 @@ struct Ball {
     contact.gap = centre.z() - radius;
     if (!contacts.empty()) {
       contact.impulse = contacts[0].impulse;
+      contact.carried = !contact.impulse.isZero(0);
       contact.angular_impulse = contacts[0].angular_impulse;
     }
     contacts.clear();

@@ -80,6 +80,7 @@ struct Touching {
         if (other.normal.dot(contact.normal) > 0.9 && away < least) {
           least = away;
           contact.impulse = other.impulse;
+          contact.carried = !other.impulse.isZero(0);
         }
       }
     }
