@@ -78,8 +78,16 @@ class Proximity final : public Kind {
 
   void start(Tick& tick) override { tick.observations.proximity.resize(sensors_.size(), 0); }
 
+  /// Rays of several robots are cast at once, by the threads of the physics.
   void sense(Tick& tick) override {
-    for (Robot& robot : robots_) sense(tick, robot);
+    constexpr std::size_t block = 8;  // robots that a thread takes at once
+    dynamics::Team* const team = tick.physics.team();
+    rays_.resize(sensors_.size());
+    candidates_.resize(team ? team->size() : 1);
+    dynamics::share_in_blocks(team, robots_.size(), block, [&](std::size_t i, unsigned member) {
+      cast(tick, robots_[i], candidates_[member]);
+    });
+    for (Robot& robot : robots_) read(tick, robot);
   }
 
   bool casts_rays() const override { return !sensors_.empty(); }
@@ -102,32 +110,34 @@ class Proximity final : public Kind {
     math::RandomStream random;
   };
 
-  /// The rays of a robot's sensors, and what is near all of them.
-  /// @param own  the robot's entity, which they ignore
-  void aim(const Tick& tick, const world::Range& sensors, std::span<const std::size_t> own) {
-    segments_.clear();
-    math::Vector3 low = math::Vector3::Constant(HUGE_VAL), high = -low;
-    for (std::size_t i = sensors.begin; i < sensors.end(); ++i) {
-      const world::ProximityLayout& ray = tick.layout.proximity[i];
-      const math::Pose start = world::pose_of(tick.state, ray.mount);
-      const math::Vector3 way = start.orientation * ray.direction;
-      const math::Vector3 end = start.position + ray.range * way;
-      segments_.push_back({start.position, end});
-      low = low.cwiseMin(start.position).cwiseMin(end);
-      high = high.cwiseMax(start.position).cwiseMax(end);
-    }
-    tick.rays.find(low, high, own, candidates_);
-  }
-
-  void sense(Tick& tick, Robot& robot) {
+  /// Casts the rays of a robot's sensors. It changes nothing of other robots.
+  void cast(const Tick& tick, const Robot& robot, physics::Candidates& candidates) {
     const world::RobotLayout& layout = tick.layout.robots[robot.index];
     if (tick.state.is_absent(layout.entity)) return;
     const std::array own{layout.entity};
-    aim(tick, layout.proximity, own);
+    math::Vector3 low = math::Vector3::Constant(HUGE_VAL), high = -low;
+    for (std::size_t i = layout.proximity.begin; i < layout.proximity.end(); ++i) {
+      const world::ProximityLayout& place = tick.layout.proximity[i];
+      const math::Pose start = world::pose_of(tick.state, place.mount);
+      const math::Vector3 way = start.orientation * place.direction;
+      rays_[i].start = start.position;
+      rays_[i].end = start.position + place.range * way;
+      low = low.cwiseMin(rays_[i].start).cwiseMin(rays_[i].end);
+      high = high.cwiseMax(rays_[i].start).cwiseMax(rays_[i].end);
+    }
+    tick.rays.find(low, high, own, candidates);
+    for (std::size_t i = layout.proximity.begin; i < layout.proximity.end(); ++i) {
+      Ray& ray = rays_[i];
+      ray.hit = tick.rays.cast({ray.start, ray.end, own, sensors_[i].sees_floor}, candidates);
+    }
+  }
+
+  void read(Tick& tick, Robot& robot) {
+    const world::RobotLayout& layout = tick.layout.robots[robot.index];
+    if (tick.state.is_absent(layout.entity)) return;
     for (std::size_t i = layout.proximity.begin; i < layout.proximity.end(); ++i) {
       const Sensor& sensor = sensors_[i];
-      const auto& [start, end] = segments_[i - layout.proximity.begin];
-      const auto hit = tick.rays.cast({start, end, own, sensor.sees_floor}, candidates_);
+      const auto& [start, end, hit] = rays_[i];
       double reading = 0;
       if (hit) {
         reading = sensor.footbot ? footbot_proximity_reading(hit->distance)
@@ -143,14 +153,15 @@ class Proximity final : public Kind {
     }
   }
 
-  struct Segment {
+  struct Ray {
     math::Vector3 start, end;
+    std::optional<physics::RayHit> hit;
   };
 
-  std::vector<Sensor> sensors_;     // parallel to Layout::proximity
-  std::vector<Robot> robots_;       // that have sensors
-  std::vector<Segment> segments_;   // of the robot under way
-  physics::Candidates candidates_;  // of these
+  std::vector<Sensor> sensors_;                  // parallel to Layout::proximity
+  std::vector<Ray> rays_;                        // of each sensor
+  std::vector<Robot> robots_;                    // that have sensors
+  std::vector<physics::Candidates> candidates_;  // of each thread: of the robot under way
 };
 
 }  // namespace

@@ -98,9 +98,7 @@ void archive_fields(math::Archive& archive, ContactCache& contacts) {
   }
   contacts.near_pairs_.clear();
   contacts.contacts_.clear();
-  contacts.cache_indices_.clear();
-  contacts.pairs_of_part_.clear();
-  contacts.overlap_candidates_.clear();
+  contacts.listed_.clear();
 }
 
 /// Checks pairs that were read, because they index lists. Each is of two entities in the order of

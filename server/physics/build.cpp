@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "physics/build.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "physics/bodies/bodies.h"
@@ -104,6 +105,8 @@ Body make_body(const scene::Entity& entity, const scene::Physics& physics, std::
   if (entity.flight)
     body.flight = FlyingBody{.limits = *entity.flight, .target = hover_at(entity.pose)};
   if (physics.magnetism) set_magnet_cores(body, entity);
+  body.carries_magnets = std::ranges::any_of(
+      body.links, [](const LinkBody& link) { return link.carrier != LinkBody::carries_itself; });
   return body;
 }
 

@@ -76,6 +76,9 @@ class NewtonCore {
   /// Substeps are shared by so many threads, with the same bits for any number.
   /// @throws std::system_error if the system allows no more threads; then nothing changes
   void set_threads(unsigned threads);
+  dynamics::Team* team() const { return system_.team(); }  ///< null: one thread
+  /// See dynamics::System.
+  std::uint64_t sleep_changes() const { return system_.sleep_changes(); }
   friend void set_joint(NewtonCore& core, JointIndex joint, double position, double velocity);
   /// Forgets of an entity that was put somewhere else what it remembers of contacts, joints and
   /// steps.

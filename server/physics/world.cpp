@@ -48,13 +48,16 @@ struct World::Parts {
   double length;            // of an internal substep [s]
   std::size_t stepped = 0;  // so many bodies have been through a step; the rest is as placed
   std::size_t link_count = 0, magnet_count = 0;
-  std::vector<Twist> motions;         // memory of read(), kept so that a tick does not allocate it
+  std::vector<std::vector<Twist>> motions{1};  // memory of read(), of each thread
+  std::uint64_t sleep_changes = 0;    // when all was read, see dynamics::System::sleep_changes()
   std::vector<LinkContact> contacts;  // the same of list_contacts()
 
   std::vector<Body> bodies;
   NewtonCore core;
   Plugins plugins;
   ExternalForces* pushes = nullptr;  // one of the plug-ins
+
+  void read(const Body& body, world::State& state, std::vector<Twist>& motions_of_parts) const;
 };
 
 World::World(const scene::Physics& physics, double substep)
@@ -228,33 +231,56 @@ void World::step(timing::Stopwatch* watch) {
   }
 }
 
-void World::set_threads(unsigned threads) { parts_->core.set_threads(threads); }
+void World::set_threads(unsigned threads) {
+  parts_->core.set_threads(threads);
+  parts_->motions.resize(std::max(1U, threads));
+}
+
+dynamics::Team* World::team() const { return parts_->core.team(); }
 
 void World::read(world::State& state) const {
-  for (std::size_t entity = 0; entity < parts_->bodies.size(); ++entity) {
-    if (!parts_->bodies[entity].links.empty()) read(entity, state);  // not removed
-  }
+  parts_->sleep_changes = 0;
+  read_moved(state);
+}
+
+void World::read_moved(world::State& state) const {
+  constexpr std::size_t block = 16;  // bodies that a thread takes at once
+  Parts& p = *parts_;
+  const std::uint64_t changes = p.core.sleep_changes();
+  const bool skips_sleepers = std::exchange(p.sleep_changes, changes) == changes;
+  state.origins.resize(p.bodies.size());
+  state.links.resize(p.link_count);
+  dynamics::share_in_blocks(team(), p.bodies.size(), block, [&](std::size_t i, unsigned member) {
+    const Body& body = p.bodies[i];
+    if (body.links.empty()) return;  // removed
+    if (skips_sleepers && !body.turns_asleep() && body.sleeps()) return;
+    p.read(body, state, p.motions[member]);
+  });
 }
 
 void World::read(std::size_t entity, world::State& state) const {
   Parts& p = *parts_;
   state.origins.resize(p.bodies.size());
   state.links.resize(p.link_count);
-  Body& body = p.bodies[entity];
-  const bool stepped = entity < p.stepped;
-  body.motions(p.motions);
+  p.read(p.bodies[entity], state, p.motions.front());
+}
+
+void World::Parts::read(const Body& body, world::State& state,
+                        std::vector<Twist>& motions_of_parts) const {
+  const bool was_stepped = body.entity < stepped;
+  body.motions(motions_of_parts);
   for (std::size_t i = 0; i < body.links.size(); ++i) {
     const LinkBody& link = body.links[i];
     world::LinkState& out = state.links[body.first_link + i];
     out.pose = link.placed;
-    if (stepped && link.moves) out.pose = link_pose(body, link);
-    const Twist motion = body.motion(link, p.motions);
+    if (was_stepped && link.moves) out.pose = link_pose(body, link);
+    const Twist motion = body.motion(link, motions_of_parts);
     out.angular_velocity = from_bullet(motion.angular_velocity);
     const math::Vector3 arm = out.pose.orientation * -link.center.position;
     out.velocity = from_bullet(motion.velocity) + out.angular_velocity.cross(arm);
   }
   const math::Pose& reference = state.links[body.first_link + body.reference_link].pose;
-  state.origins[entity] = stepped ? reference * body.origin_from_reference : body.placed;
+  state.origins[body.entity] = was_stepped ? reference * body.origin_from_reference : body.placed;
 }
 
 void archive_fields(math::Archive& archive, World& world) {

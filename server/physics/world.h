@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "physics/bodies/values.h"
+#include "physics/stepping/team.h"
 #include "scene/scene.h"
 #include "timing/stopwatch.h"
 #include "world/commands.h"
@@ -117,11 +118,16 @@ class World {
   /// Substeps are shared by so many threads, with the same bits for any number. 1 at first.
   /// @throws std::system_error if the system allows no more threads; then nothing changes
   void set_threads(unsigned threads);
+  /// The team of set_threads(), for other work between substeps; null: one thread.
+  dynamics::Team* team() const;
 
   /// Writes origins and links; tick and time are the caller's.
   void read(world::State& state) const;
   /// The same of one entity that is present.
   void read(std::size_t entity, world::State& state) const;
+  /// The same as read(), of a state that was read before and has not been changed since: what has
+  /// slept since then is left out.
+  void read_moved(world::State& state) const;
 
   /// Stiffness of the scene's magnetic bonds: the product of substep and rate that is the largest
   /// share of a safe one, and its entity; 0 without magnetism.

@@ -104,7 +104,7 @@ Parts::Parts(const scene::Scene& scene, const Options& options, world::Layout& i
 }
 
 void Parts::look_around() {
-  if (devices.casts_rays()) rays.update(state);
+  if (devices.casts_rays()) rays.update(state, physics.team());
   if (devices.needs_index()) index->build(state);
   looks_are_old = false;
 }
@@ -258,7 +258,7 @@ void Parts::step(timing::Stopwatch* watch) {
   commands.pushes.clear();
   state.tick += 1;
   state.time_ns = std::llround(static_cast<long double>(state.tick) * 1e9L / ticks_per_second);
-  physics.read(state);
+  physics.read_moved(state);
   if (const auto entity = first_not_finite(layout, state)) {
     throw std::runtime_error(fmt::format(
         "tick {}: the pose or velocity of '{}' is not finite any more; look for forces, speeds or "

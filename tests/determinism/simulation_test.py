@@ -1,22 +1,26 @@
 # SPDX-License-Identifier: MIT
 """The simulation alone: the same scene, seed and commands give the same hash at every tick: in a second run, after other
-scenes in the same process (Simulation), and by the same sources compiled differently, by another compiler or at another
+scenes in the same process, with any number of threads (Simulation), and by the same sources compiled differently, by another compiler or at another
 optimisation level (OtherProgram)."""
 
 import os
 import pathlib
 import subprocess
+import sys
+import tempfile
 import unittest
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TOP / "bench"))
+import scenes as made_scenes
 PROBE = os.environ["ZIGGURAT_PROBE"]
 SCENES = [TOP / "tests/scenes/arms.argos", *sorted(each for each in (TOP / "scenes").glob("*.argos") if not each.is_symlink())]
 TICKS = 40
 
 
-def hashes(probe, *scenes):
+def hashes(probe, *scenes, threads=1):
     """A list of hash lines per scene."""
-    done = subprocess.run([probe, str(TICKS), *map(str, scenes)], capture_output=True, text=True)
+    done = subprocess.run([probe, "--threads", str(threads), str(TICKS), *map(str, scenes)], capture_output=True, text=True)
     if done.returncode != 0:
         raise AssertionError(done.stderr)
     return [part.splitlines()[1:] for part in done.stdout.split("scene ")[1:]]
@@ -45,6 +49,16 @@ class Simulation(Same):
     def test_after_other_scenes(self):
         """Each after those before it, and once more after all that follow it."""
         self.assert_same(hashes(PROBE, *SCENES, *reversed(SCENES)), self.alone + self.alone[::-1])
+
+    def test_with_any_number_of_threads(self):
+        """Robots that drive and sense: enough of them that threads share each loop."""
+        with tempfile.TemporaryDirectory() as folder:
+            scene = pathlib.Path(folder) / "swarm.argos"
+            made_scenes.swarm(100).write(scene)
+            scene.with_name("wander.lua").write_text(made_scenes.WANDER)
+            alone = hashes(PROBE, scene)
+            for threads in (2, 3, 8):
+                self.assert_same(hashes(PROBE, scene, threads=threads), alone)
 
 
 class OtherProgram(Same):

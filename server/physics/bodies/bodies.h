@@ -104,8 +104,9 @@ struct Body {
   std::optional<GroundMotion> ground;  ///< robots on wheels, and bodies on a plane
   std::optional<Turret> turret;
   std::optional<FlyingBody> flight;
-  bool is_grippable = false;  ///< grippers may hold it
-  bool watched = false;       ///< contacts of one of its links are
+  bool is_grippable = false;     ///< grippers may hold it
+  bool watched = false;          ///< contacts of one of its links are
+  bool carries_magnets = false;  ///< spheres that turn freely
 
   std::optional<Articulation> articulation;  ///< in the core; none: it was removed
 
@@ -118,6 +119,8 @@ struct Body {
   void apply_force(std::size_t part, const btVector3& force);    ///< at the centre of mass [N]
   void apply_torque(std::size_t part, const btVector3& torque);  ///< [N m]
   bool sleeps() const;  ///< at rest until something touches or pushes it
+  /// Whether a turret or a magnet of it may turn while it sleeps.
+  bool turns_asleep() const { return turret.has_value() || carries_magnets; }
 
   /// Motion of every part.
   void motions(std::vector<Twist>& out) const;

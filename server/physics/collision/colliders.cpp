@@ -62,6 +62,15 @@ std::optional<Collider> make_collider(const Body& body, const scene::Entity& ent
   return collider;
 }
 
+/// Slack of a group's new box.
+/// @param step  how far it moves in the substep [m]
+btVector3 slack_of(const ColliderGroup& group, double step) {
+  const btVector3 size = group.high - group.low;
+  const double most = share_of_size * std::min({size.x(), size.y(), size.z()});
+  const double ahead = std::max(least_slack, std::min(steps_ahead * step, most));
+  return {ahead, ahead, ahead};
+}
+
 /// Largest speed of a point of a collider [m/s].
 double speed_of(const Collider& collider) {
   return collider.velocity.length() + collider.angular_velocity.length() * collider.radius;
@@ -220,25 +229,29 @@ btTransform Colliders::pose(const Collider& collider, const dynamics::System& sy
   return collider.is_centred ? part : part * collider.in_part;
 }
 
+/// Whether a group's box in the broad phase is neither too small nor much too large.
+bool Colliders::fits_box(const ColliderGroup& group, double step, bool shrinks) const {
+  const btBroadphaseProxy& proxy = *group.proxy;
+  if (!inside(proxy.m_aabbMin, proxy.m_aabbMax, group.low, group.high)) return false;
+  if (!shrinks) return true;
+  const btVector3 slack = slack_of(group, step);
+  return inside(group.low - 3 * slack, group.high + 3 * slack, proxy.m_aabbMin, proxy.m_aabbMax);
+}
+
 /// Updates a group's box in the broad phase when it is too small or much too large. Bullet's boxes
 /// only grow: a fast body would keep a large one, with a neighbour in each pair, forever.
 /// @param step     how far it moves in the substep [m]
 /// @param shrinks  whether a box may be too large
 void Colliders::update_box(ColliderGroup& group, double step, bool shrinks) {
-  const btVector3 size = group.high - group.low;
-  const double most = share_of_size * std::min({size.x(), size.y(), size.z()});
-  const double ahead = std::max(least_slack, std::min(steps_ahead * step, most));
-  const btVector3 slack(ahead, ahead, ahead);
-  const btBroadphaseProxy& proxy = *group.proxy;
-  const bool fits = !shrinks || inside(group.low - 3 * slack, group.high + 3 * slack,
-                                       proxy.m_aabbMin, proxy.m_aabbMax);
-  if (fits && inside(proxy.m_aabbMin, proxy.m_aabbMax, group.low, group.high)) return;
+  if (fits_box(group, step, shrinks)) return;
+  const btVector3 slack = slack_of(group, step);
   broadphase_.setAabbForceUpdate(group.proxy, group.low - slack, group.high + slack, nullptr);
   check_near_pairs(
       static_cast<std::size_t>(broadphase_.getOverlappingPairCache()->getNumOverlappingPairs()));
 }
 
 void Colliders::update_poses(const dynamics::System& system, double time_step) {
+  near_floor_.resize(all.size());
   for (std::size_t i = inserted_; i < groups.size(); ++i)
     update_poses(groups[i], system, time_step);  // with boxes that last
   insert_new_groups();
@@ -270,20 +283,17 @@ void Colliders::update_changed(const dynamics::System& system, double time_step,
   constexpr std::size_t block = 16;  // groups that a thread takes at once
   const std::size_t count = changed_.size();
   steps_.resize(count);
-  const bool is_shared = team && count >= 4 * block;
-  if (is_shared) {
-    team->share((count + block - 1) / block, [&](std::size_t number, unsigned) {
-      for (std::size_t i = number * block; i < std::min(count, (number + 1) * block); ++i)
-        steps_[i] = update_poses(groups[changed_[i]], system, time_step);
-    });
-  }
+  dynamics::share_in_blocks(team, count, block, [&](std::size_t i, unsigned) {
+    ColliderGroup& group = groups[changed_[i]];
+    steps_[i].length = update_poses(group, system, time_step);
+    steps_[i].fits_box = fits_box(group, steps_[i].length, shrinks);
+  });
   const double fast = speculative_margin(*this, time_step) / 2;
   for (std::size_t i = 0; i < count; ++i) {
     ColliderGroup& group = groups[changed_[i]];
-    if (!is_shared) steps_[i] = update_poses(group, system, time_step);
-    if (steps_[i] > fast) fast_entities.push_back(static_cast<int>(group.entity));
+    if (steps_[i].length > fast) fast_entities.push_back(static_cast<int>(group.entity));
     if (group.moves) updated_groups_.push_back(changed_[i]);
-    update_box(group, steps_[i], shrinks);
+    if (!steps_[i].fits_box) update_box(group, steps_[i].length, shrinks);
   }
 }
 
@@ -298,6 +308,7 @@ void Colliders::follow(ColliderGroup& group, const dynamics::System& system) {
 
 void Colliders::update_poses(const dynamics::System& system, double time_step,
                              const TreeSet& active) {
+  near_floor_.resize(all.size());
   insert_new_groups();
   updated_groups_.clear();
   predicted.clear();
@@ -343,9 +354,16 @@ double Colliders::update_poses(ColliderGroup& group, const dynamics::System& sys
     const double speed = speed_of(collider);
     collider.reach += 1.3 * time_step * speed;
     fastest = std::max(fastest, speed);
+    note_floor(i);
   }
   enclose(group);
   return time_step * fastest;
+}
+
+/// Notes whether a collider may come near the floor.
+void Colliders::note_floor(std::size_t collider) {
+  const Collider& it = all[collider];
+  near_floor_[collider] = !(it.pose.getOrigin().z() > it.radius + it.reach);
 }
 
 bool Colliders::add_predictions(std::span<const int> trees, const dynamics::System& system,
@@ -373,6 +391,7 @@ bool Colliders::add_predictions(std::span<const int> trees, const dynamics::Syst
         const double speed = speed_of(moved);
         all[i].reach = moved.reach = std::max(
             all[i].reach, btScalar(speculative_margin(*this, time_step) + 1.3 * time_step * speed));
+        note_floor(i);
         predicted.push_back({i, std::move(moved)});
         fastest = std::max(fastest, speed);
       }

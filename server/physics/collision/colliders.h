@@ -128,6 +128,8 @@ class Colliders {
   /// @return  whether there are such: then there may be other pairs
   bool add_predictions(std::span<const int> trees, const dynamics::System& system,
                        double time_step);
+  /// Whether a collider of an updated group may come near the floor within the substep.
+  bool is_near_floor(std::size_t collider) const { return near_floor_[collider] != 0; }
   /// Moving groups that the last update_poses() updated, ascending.
   std::span<const std::size_t> updated_groups() const { return updated_groups_; }
   /// X_WS of a collider now.
@@ -150,6 +152,8 @@ class Colliders {
   double update_poses(ColliderGroup& group, const dynamics::System& system, double time_step);
   void prefetch_after(const ColliderGroup& group, const dynamics::System& system) const;
   void enclose(ColliderGroup& group);
+  void note_floor(std::size_t collider);
+  bool fits_box(const ColliderGroup& group, double step, bool shrinks) const;
   void update_box(ColliderGroup& group, double step, bool shrinks);
   void insert(ColliderGroup& group, std::size_t index);
   void insert_new_groups();
@@ -161,7 +165,12 @@ class Colliders {
   std::vector<Bounds> bounds_;  // of a group's colliders
   std::vector<std::size_t> updated_groups_, hits_;
   std::vector<std::size_t> changed_;  // groups whose poses or boxes are updated
-  std::vector<double> steps_;         // how far each of them moves in the substep [m]
+  struct Step {
+    double length = 0;  // how far the group moves in the substep [m]
+    bool fits_box = true;
+  };
+  std::vector<Step> steps_;               // of each of them
+  std::vector<std::uint8_t> near_floor_;  // of each collider
   // Groups that move and do not rest: update_poses() looks at others only after a change.
   std::vector<std::size_t> followed_;
   int passes_left_ = 2;              // over all groups: was_static follows one after is_static

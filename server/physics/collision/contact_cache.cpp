@@ -127,11 +127,10 @@ std::span<dynamics::ContactPoint> ContactCache::find_contacts(double time_step,
   force_share_ = force_share;
   together_gap_ = HUGE_VAL;  // parts are short, and magnetic bonds need exact angular momentum
   colliders_.find_pairs(near_pairs_, active);
-  std::swap(pairs_of_part_, pairs_of_previous_part_);
+  std::swap(listed_, listed_before_);
   collide_pairs(time_step);
-  for (const int number :
-       pairs_of_previous_part_) {  // pairs that came apart in this part of the substep
-    if (pairs_[number].last_part != part_) pairs_[number].count = 0;
+  for (const ListedPair& before : listed_before_) {  // pairs that came apart in this part
+    if (pairs_[before.pair].last_part != part_) pairs_[before.pair].count = 0;
   }
   drop_internal_edges();
   return contacts_;
@@ -142,128 +141,134 @@ void ContactCache::set_team(dynamics::Team* team) {
   team_ = team;
 }
 
-/// Notes a pair that is to be collided.
-void ContactCache::begin_pair(CachedPair& pair) {
-  pair.last_part = part_;
-  pair.covers_internal_edge = false;
-  pairs_of_part_.push_back(static_cast<int>(&pair - pairs_.data()));
-  resting_ -= pair.is_static;
-  pair.is_static =
-      colliders_.is_static(colliders_.all[pair.a]) && colliders_.is_static(colliders_.all[pair.b]);
-  resting_ += pair.is_static;
-  awake_ += !pair.is_static;
-}
-
 /// Lists all near pairs, and those with the floor.
 void ContactCache::list_pairs() {
-  pairs_of_part_.clear();
-  awake_ = 0;
+  listed_.clear();
   floor_pairs_.resize(colliders_.all.size(), 0);
   pairs_of_collider_.resize(colliders_.all.size());
-  for (const ColliderPair& near : near_pairs_)
-    begin_pair(pair_of(near.a, near.b, places_[key_of(near.a, near.b)]));
+  for (const ColliderPair& near : near_pairs_) {
+    listed_.emplace_back().pair = place_of(near.a, near.b, places_[key_of(near.a, near.b)]);
+  }
   if (!colliders_.floor) return;
-  const std::span<const std::size_t> followed = colliders_.updated_groups();
-  for (std::size_t k = 0; k < followed.size(); ++k) {
-    const ColliderGroup& group = colliders_.groups[followed[k]];
-    const ColliderGroup& next = colliders_.groups[followed[std::min(k + 1, followed.size() - 1)]];
-    for (std::size_t i = next.first; i < next.first + next.count; ++i) {
-      if (floor_pairs_[i] != 0) dynamics::prefetch(&pairs_[floor_pairs_[i]], 64);
-    }
+  for (const std::size_t index : colliders_.updated_groups()) {
+    const ColliderGroup& group = colliders_.groups[index];
     for (std::size_t i = group.first; i < group.first + group.count; ++i) {
-      const Collider& collider = colliders_.all[i];
-      if (collider.pose.getOrigin().z() > collider.radius + collider.reach) continue;
-      begin_pair(pair_of(i, *colliders_.floor, floor_pairs_[i]));
+      if (!colliders_.is_near_floor(i)) continue;
+      listed_.emplace_back().pair = place_of(i, *colliders_.floor, floor_pairs_[i]);
     }
   }
 }
 
-/// Collides all near pairs, and those with the floor.
+/// Notes a pair that is to be collided.
+void ContactCache::begin_pair(ListedPair& listed) {
+  CachedPair& pair = pairs_[listed.pair];
+  const Collider& a = colliders_.all[pair.a];
+  const Collider& b = colliders_.all[pair.b];
+  if (pair.last_substep != substep_) pair.earlier_impulse.setZero();
+  pair.last_substep = substep_;
+  pair.last_part = part_;
+  pair.covers_internal_edge = false;
+  listed.rested = pair.is_static;
+  listed.rests = pair.is_static = colliders_.is_static(a) && colliders_.is_static(b);
+  listed.has_static_side = !(a.moves && b.moves);
+}
+
+/// Collides all near pairs, and those with the floor. Threads share them, and then write their
+/// contacts, whose places follow from the counts of the pairs before.
 void ContactCache::collide_pairs(double time_step) {
   constexpr std::size_t block = 32;  // pairs that a thread takes at once
   ++part_;
   time_step_ = time_step;
   rotations_until_impact.clear();
-  contacts_.clear();
-  cache_indices_.clear();
-  overlap_candidates_.clear();
-  supports_.clear();
   list_pairs();
-  const std::size_t count = pairs_of_part_.size();
-  outcomes_.resize(count);
-  const bool is_shared = team_ && count >= 2 * block;
-  if (is_shared) {
-    team_->share((count + block - 1) / block, [&](std::size_t number, unsigned member) {
-      for (std::size_t i = number * block; i < std::min(count, (number + 1) * block); ++i)
-        collide_pair(i, previous_points_[member]);
+  awake_ = 0;
+  contact_count_ = 0;
+  const std::size_t count = listed_.size();
+  if (!team_) {
+    for (std::size_t i = 0; i < count; ++i) {
+      collide_pair(i, previous_points_.front());
+      place_contacts(listed_[i]);
+      write_contacts(listed_[i]);
+    }
+  } else {
+    dynamics::share_in_blocks(team_, count, block, [&](std::size_t i, unsigned member) {
+      collide_pair(i, previous_points_[member]);
     });
+    for (ListedPair& listed : listed_) place_contacts(listed);
+    dynamics::share_in_blocks(team_, count, block,
+                              [&](std::size_t i, unsigned) { write_contacts(listed_[i]); });
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!is_shared) collide_pair(i, previous_points_.front());
-    list_contacts_of(i);
-  }
+  contacts_.resize(contact_count_);
+  list_supports();
 }
 
 std::span<dynamics::ContactPoint> ContactCache::add_resting_contacts() {
   for (std::size_t i = 1; i < pairs_.size(); ++i) {
     CachedPair& pair = pairs_[i];
-    if (!pair.live || pair.last_substep == substep_) continue;
-    append_contacts(pair);
+    if (!pair.live || pair.last_substep == substep_ || pair.count == 0) continue;
+    ListedPair& listed = listed_.emplace_back();
+    listed.pair = static_cast<int>(i);
+    listed.count = pair.count;
+    listed.rested = listed.rests = true;
+    place_contacts(listed);
+    write_contacts(listed);
   }
   return contacts_;
 }
 
 void ContactCache::begin_parts(const TreeSet& active) {
-  pairs_of_part_.clear();
+  listed_.clear();
   for (std::size_t i = 1; i < pairs_.size(); ++i) {
     if (pairs_[i].count > 0 && both_active(pairs_[i].a, pairs_[i].b, colliders_, active))
-      pairs_of_part_.push_back(static_cast<int>(i));
+      listed_.emplace_back().pair = static_cast<int>(i);
   }
 }
 
 std::span<dynamics::ContactPoint> ContactCache::keep_contacts(const TreeSet& active) {
   keep_if([&](const CachedPair& pair) { return both_active(pair.a, pair.b, colliders_, active); });
-  std::erase_if(overlap_candidates_, [&](const OverlapCandidate& turned) {
-    return !both_active(pairs_[turned.pair].a, pairs_[turned.pair].b, colliders_, active);
-  });
+  for (ListedPair& listed : listed_) {
+    if (!both_active(pairs_[listed.pair].a, pairs_[listed.pair].b, colliders_, active))
+      listed.has_static_side = false;
+  }
   return contacts_;
 }
 
-/// Collides one of pairs_of_part_. It changes nothing of other pairs.
+/// Collides a listed pair. It changes nothing of other pairs.
 /// @param memory  of the thread
 void ContactCache::collide_pair(std::size_t index, Points& memory) {
   constexpr std::size_t later = 4;
-  if (index + later < pairs_of_part_.size())
-    dynamics::prefetch(&pairs_[pairs_of_part_[index + later]], CachedPair::prefetched_bytes);
-  CachedPair& pair = pairs_[pairs_of_part_[index]];
+  if (index + later < listed_.size())
+    dynamics::prefetch(&pairs_[listed_[index + later].pair], CachedPair::prefetched_bytes);
+  ListedPair& listed = listed_[index];
+  begin_pair(listed);
+  CachedPair& pair = pairs_[listed.pair];
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
-  RotationOutcome& turning = outcomes_[index] = {};
   const double slack = speculative_margin(colliders_, time_step_);
-  contact::Manifold found = collide(a, b, time_step_, slack, most_points, turning);
+  contact::Manifold found = collide(a, b, time_step_, slack, most_points, listed.rotation);
   if (found.count == 0 && !colliders_.predicted.empty()) {
-    found = collide_predicted(colliders_, pair.a, pair.b, time_step_, slack, most_points, turning);
+    found = collide_predicted(colliders_, pair.a, pair.b, time_step_, slack, most_points,
+                              listed.rotation);
   }
   match_points(found, pair, memory);
+  listed.count = pair.count;
+  listed.has_no_contact = pair.count == 0;
 }
 
-/// Lists the contacts of one of pairs_of_part_, and what else follows from them.
-void ContactCache::list_contacts_of(std::size_t index) {
-  constexpr std::size_t later = 4;
-  if (index + later < pairs_of_part_.size())  // another thread may have collided it
-    dynamics::prefetch(&pairs_[pairs_of_part_[index + later]], CachedPair::prefetched_bytes);
-  CachedPair& pair = pairs_[pairs_of_part_[index]];
-  const Collider& a = colliders_.all[pair.a];
-  const Collider& b = colliders_.all[pair.b];
-  const RotationOutcome& outcome = outcomes_[index];
-  if (outcome.rotation_until_impact > 0)
-    rotations_until_impact.push_back(
-        {static_cast<int>((a.is_on_fixed_base ? a : b).entity), outcome.rotation_until_impact});
-  append_contacts(pair);
-  if (pair.count > 0) list_supports(pair);
-  if (a.moves && b.moves) return;
-  overlap_candidates_.push_back({static_cast<std::size_t>(pairs_of_part_[index]), pair.count == 0,
-                                 outcome.may_overlap || outcome.tumbles});
+/// Gives a pair's contacts their places, behind those of the pairs before it.
+void ContactCache::place_contacts(ListedPair& listed) {
+  resting_ += listed.rests;
+  resting_ -= listed.rested;
+  awake_ += !listed.rests;
+  listed.first = static_cast<int>(contact_count_);
+  contact_count_ += static_cast<std::size_t>(listed.count);
+  check_contact_points(contact_count_);
+  if (contacts_.size() < contact_count_) contacts_.resize(contact_count_);
+  if (listed.rotation.rotation_until_impact == 0) return;
+  const Collider& a = colliders_.all[pairs_[listed.pair].a];
+  const Collider& b = colliders_.all[pairs_[listed.pair].b];
+  rotations_until_impact.push_back({static_cast<int>((a.is_on_fixed_base ? a : b).entity),
+                                    listed.rotation.rotation_until_impact});
 }
 
 /// Matches new points with those of the last substep, whose impulses they keep. The nearest point
@@ -311,18 +316,16 @@ void ContactCache::match_points(const contact::Manifold& found, CachedPair& pair
   }
 }
 
-/// Appends the contacts of a pair's points to the list.
-void ContactCache::append_contacts(const CachedPair& pair) {
-  check_contact_points(contacts_.size());
-  if (pair.count == 0) return;
+/// Writes the contacts of a pair's points to their places. It changes nothing of other pairs.
+void ContactCache::write_contacts(const ListedPair& listed) {
+  if (listed.count == 0) return;
+  const CachedPair& pair = pairs_[listed.pair];
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
   const dynamics::ContactPoint law = contact_of(a, b, pair.normal, pair.count);
-  const std::size_t count = static_cast<std::size_t>(pair.count), next = contacts_.size() + ahead;
-  if (next + count <= contacts_.capacity())
-    dynamics::prefetch(contacts_.data() + next, count * sizeof(dynamics::ContactPoint));
-  for (int i = 0; i < pair.count; ++i) {
-    dynamics::ContactPoint& contact = contacts_.emplace_back(law);
+  for (int i = 0; i < listed.count; ++i) {
+    dynamics::ContactPoint& contact = contacts_[listed.first + i];
+    contact = law;
     contact.point = pair.points[i].point;
     contact.gap = pair.points[i].gap;
     if (a.moves && b.moves) {
@@ -332,7 +335,6 @@ void ContactCache::append_contacts(const CachedPair& pair) {
     contact.carried = force_share_ > 0 && pair.points[i].carried;
     contact.impulse = force_share_ * pair.points[i].impulse;
     contact.angular_impulse = force_share_ * pair.points[i].angular_impulse;
-    cache_indices_.push_back({static_cast<int>(&pair - pairs_.data()), i});
   }
 }
 

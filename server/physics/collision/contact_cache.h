@@ -2,10 +2,12 @@
 #pragma once
 // Contact cache: contact points of a substep, with the impulses of the last substep.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "physics/bodies/link_contact.h"
@@ -98,19 +100,33 @@ class ContactCache {
     void archive(math::Archive& archive);
   };
 
-  CachedPair& pair_of(std::size_t a, std::size_t b, int& place);
+  /// A near pair, and its contacts.
+  struct ListedPair {
+    int pair = 0;                  // its number
+    int first = 0, count = 0;      // of its contacts
+    bool rested = false;           // both sides rested when it was seen before
+    bool rests = false;            // they do
+    bool has_static_side = false;  // then its overlap may be recovered
+    bool has_no_contact = false;   // none was found
+    bool is_off = false;           // a side is off its predicted pose
+    RotationOutcome rotation;
+  };
+
+  int place_of(std::size_t a, std::size_t b, int& place);
   using Points = std::array<CachedPoint, most_points>;
-  void begin_pair(CachedPair& pair);
   void list_pairs();
+  void begin_pair(ListedPair& listed);
   void collide_pairs(double time_step);
   void collide_pair(std::size_t index, Points& memory);
   void match_points(const contact::Manifold& found, CachedPair& pair, Points& memory);
-  void list_contacts_of(std::size_t index);
-  void append_contacts(const CachedPair& pair);
+  void place_contacts(ListedPair& listed);
+  void write_contacts(const ListedPair& listed);
+  bool is_off_prediction(const ListedPair& listed, const dynamics::System& system) const;
   bool is_inside_neighbour(const Collider& cover, const CachedPair& hidden, std::size_t mover,
                            const btVector3& up, btScalar height, const btVector3& point);
   bool drops_internal_edge(CachedPair& seen, CachedPair& hidden, std::size_t mover);
   void list_supports(const CachedPair& pair);
+  void list_supports();
   void drop_internal_edges();
   template <class IsKept>
   void keep_if(IsKept is_kept);
@@ -128,9 +144,8 @@ class ContactCache {
   double together_gap_ = 0;  // gap above which touching surfaces meet later in the substep [m]
   double time_step_ = 0;     // of the coming substep or part [s]
   double force_share_ = 1;   // of a substep's forces, that acts in the coming one
-  unsigned substep_ = 0, part_ = 0;  // how many there were; part_: of both
-  std::vector<int> pairs_of_part_,
-      pairs_of_previous_part_;  // pairs, by the last find_contacts() and the one before
+  unsigned substep_ = 0, part_ = 0;                 // how many there were; part_: of both
+  std::vector<ListedPair> listed_, listed_before_;  // by the last find_contacts(), the one before
   std::vector<ColliderPair> near_pairs_;
   std::vector<int> floor_pairs_;       // of each collider
   PairLists pairs_of_collider_;        // of all colliders but the floor
@@ -138,23 +153,10 @@ class ContactCache {
   std::vector<int> neighbours_;        // of a collider, in is_inside_neighbour()
   std::vector<CachedPair*> carriers_;  // of the contacts that drops_internal_edge() looks at
   std::vector<dynamics::ContactPoint> contacts_;
-  /// Index of a contact's point in the cache.
-  struct CacheIndex {
-    int pair = 0, point = 0;
-  };
-  std::vector<CacheIndex> cache_indices_;  // of each contact
+  std::size_t contact_count_ = 0;  // of them that have been placed
   dynamics::Team* team_ = nullptr;
-  std::vector<RotationOutcome> outcomes_;   // of each of pairs_of_part_
-  std::vector<Points> previous_points_{1};  // of each thread: of its pair, a substep ago
-  /// A pair with a static side whose other side rotates far in the substep, or may do so after an
-  /// impact.
-  struct OverlapCandidate {
-    std::size_t pair = 0;
-    bool has_no_contact = false;  // no contact was found
-    bool rotates_far = false;     // without being struck
-  };
-  std::vector<OverlapCandidate> overlap_candidates_;
-  std::vector<dynamics::ContactPoint> overlaps_;  // of these
+  std::vector<Points> previous_points_{1};        // of each thread: of its pair, a substep ago
+  std::vector<dynamics::ContactPoint> overlaps_;  // that were found last
   /// A moving collider on a base, a body that may have several colliders beside each other.
   struct Support {
     std::size_t mover = 0;   // a collider
@@ -170,14 +172,15 @@ class ContactCache {
 /// Keeps the contacts of some pairs.
 template <class IsKept>
 void ContactCache::keep_if(IsKept is_kept) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < cache_indices_.size(); ++i) {
-    if (!is_kept(pairs_[cache_indices_[i].pair])) continue;
-    contacts_[kept] = contacts_[i];
-    cache_indices_[kept++] = cache_indices_[i];
+  int kept = 0;
+  for (ListedPair& listed : listed_) {
+    const int from = std::exchange(listed.first, kept);
+    if (listed.count > 0 && !is_kept(pairs_[listed.pair])) listed.count = 0;
+    if (from != kept) std::copy_n(contacts_.begin() + from, listed.count, contacts_.begin() + kept);
+    kept += listed.count;
   }
-  contacts_.resize(kept);
-  cache_indices_.resize(kept);
+  contact_count_ = static_cast<std::size_t>(kept);
+  contacts_.resize(contact_count_);
 }
 
 }  // namespace ziggurat::physics

@@ -88,6 +88,27 @@ void ContactCache::list_supports(const CachedPair& pair) {
   if (colliders_.all[pair.b].moves) note(pair.b, pair.a);
 }
 
+/// Notes the supports of all touching pairs. The floor counts only below what also touches
+/// something else that stands.
+void ContactCache::list_supports() {
+  supports_.clear();
+  const auto is_on_floor = [&](const ListedPair& listed) {
+    return pairs_[listed.pair].b == colliders_.floor;
+  };
+  for (const ListedPair& listed : listed_) {
+    if (listed.count > 0 && !is_on_floor(listed)) list_supports(pairs_[listed.pair]);
+  }
+  if (supports_.empty()) return;
+  std::ranges::sort(supports_);
+  const std::size_t movers = supports_.size();
+  for (const ListedPair& listed : listed_) {
+    if (listed.count == 0 || !is_on_floor(listed)) continue;
+    const auto sorted = std::span(supports_).first(movers);
+    if (std::ranges::binary_search(sorted, std::size_t{pairs_[listed.pair].a}, {}, &Support::mover))
+      list_supports(pairs_[listed.pair]);
+  }
+}
+
 /// Drops contacts with internal edges, between colliders that stand flush beside each other, in the
 /// world or in one body.
 void ContactCache::drop_internal_edges() {

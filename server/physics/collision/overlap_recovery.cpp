@@ -8,6 +8,7 @@
 
 #include "physics/bodies/convert.h"
 #include "physics/collision/contact_cache.h"
+#include "physics/stepping/team.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -48,27 +49,41 @@ double predicted_pose_error(const Collider& moving, const btTransform& now, doub
 
 }  // namespace
 
-std::span<dynamics::ContactPoint> ContactCache::find_new_overlaps(const dynamics::System& system) {
+/// Whether a pair is to be checked for overlap: its moving side rotated far, or is off its
+/// predicted pose.
+bool ContactCache::is_off_prediction(const ListedPair& listed,
+                                     const dynamics::System& system) const {
+  if (!listed.has_static_side) return false;
+  const CachedPair& pair = pairs_[listed.pair];
+  if (pair.count == 0 && !listed.has_no_contact) return false;  // hidden
+  if (listed.rotation.may_overlap || listed.rotation.tumbles) return true;
+  const Collider& a = colliders_.all[pair.a];
+  const Collider& moving = a.moves ? a : colliders_.all[pair.b];
   const double known =
-      speculative_margin(colliders_, time_step_);  // the margin with which contacts were found
+      speculative_margin(colliders_, time_step_);  // with which contacts were found
+  const btTransform now = colliders_.pose(moving, system);
+  return coarse_pose_error(moving, now, time_step_) > known &&
+         predicted_pose_error(moving, now, time_step_) > known;
+}
+
+std::span<dynamics::ContactPoint> ContactCache::find_new_overlaps(const dynamics::System& system) {
+  constexpr std::size_t block = 32;  // pairs that a thread takes at once
   overlaps_.clear();
-  for (const OverlapCandidate& turned : overlap_candidates_) {
-    const CachedPair& pair = pairs_[turned.pair];
-    if (pair.count == 0 && !turned.has_no_contact) continue;  // hidden
+  dynamics::share_in_blocks(team_, listed_.size(), block, [&](std::size_t i, unsigned) {
+    listed_[i].is_off = is_off_prediction(listed_[i], system);
+  });
+  for (const ListedPair& listed : listed_) {
+    if (!listed.is_off) continue;
+    const CachedPair& pair = pairs_[listed.pair];
     const Collider& a = colliders_.all[pair.a];
     const Collider& b = colliders_.all[pair.b];
     const btTransform of_a = a.moves ? colliders_.pose(a, system) : a.pose;
     const btTransform of_b = b.moves ? colliders_.pose(b, system) : b.pose;
-    const Collider& moving = a.moves ? a : b;
-    const btTransform& now = a.moves ? of_a : of_b;
-    if (!turned.rotates_far && (coarse_pose_error(moving, now, time_step_) <= known ||
-                                predicted_pose_error(moving, now, time_step_) <= known))
-      continue;
     const contact::Manifold found =
         contact::find(a.shape, of_a, b.shape, of_b, most_gap, contact::Support::all);
     if (!overlaps_deeply(found)) continue;
     const dynamics::ContactPoint law =
-        contact_of(a, b, turned.has_no_contact ? from_bullet(found.normal) : pair.normal,
+        contact_of(a, b, listed.has_no_contact ? from_bullet(found.normal) : pair.normal,
                    std::max(pair.count, 1));
     for (int i = 0; i < found.count; ++i) {
       dynamics::ContactPoint& contact = overlaps_.emplace_back(law);

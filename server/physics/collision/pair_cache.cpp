@@ -5,6 +5,7 @@
 
 #include "physics/collision/contact_cache.h"
 #include "physics/multibody/prefetch.h"
+#include "physics/stepping/team.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -16,29 +17,27 @@ ContactSide side(const Collider& collider) {
 
 }  // namespace
 
-/// Returns the pair with a number, or makes a new one.
-ContactCache::CachedPair& ContactCache::pair_of(std::size_t a, std::size_t b, int& place) {
-  if (place == 0) {
-    if (unused_.empty()) {
-      if (pairs_.empty()) pairs_.emplace_back();
-      unused_.push_back(static_cast<int>(pairs_.size()));
-      pairs_.emplace_back();
-      unused_.reserve(pairs_.capacity());  // drop_pair() and forget() take no memory
-      forgotten_.reserve(pairs_.capacity());
-      pairs_of_collider_.make_room(pairs_.size());
-    }
-    place = unused_.back();
-    unused_.pop_back();
-    pairs_[place] = {};
-    pairs_[place].a = static_cast<std::uint32_t>(a);
-    pairs_[place].b = static_cast<std::uint32_t>(b);
-    pairs_[place].live = true;
-    pairs_of_collider_.add(place, a, b == colliders_.floor ? std::nullopt : std::optional(b));
-    ++live_;
+/// Returns the number of a pair; makes a new one where there is none.
+/// @param place  its number, or 0
+int ContactCache::place_of(std::size_t a, std::size_t b, int& place) {
+  if (place != 0) return place;
+  if (unused_.empty()) {
+    if (pairs_.empty()) pairs_.emplace_back();
+    unused_.push_back(static_cast<int>(pairs_.size()));
+    pairs_.emplace_back();
+    unused_.reserve(pairs_.capacity());  // drop_pair() and forget() take no memory
+    forgotten_.reserve(pairs_.capacity());
+    pairs_of_collider_.make_room(pairs_.size());
   }
-  if (pairs_[place].last_substep != substep_) pairs_[place].earlier_impulse.setZero();
-  pairs_[place].last_substep = substep_;
-  return pairs_[place];
+  place = unused_.back();
+  unused_.pop_back();
+  pairs_[place] = {};
+  pairs_[place].a = static_cast<std::uint32_t>(a);
+  pairs_[place].b = static_cast<std::uint32_t>(b);
+  pairs_[place].live = true;
+  pairs_of_collider_.add(place, a, b == colliders_.floor ? std::nullopt : std::optional(b));
+  ++live_;
+  return place;
 }
 
 void ContactCache::drop_pair(std::size_t number) {
@@ -84,37 +83,43 @@ void ContactCache::forget(std::size_t entity, dynamics::System& system) {
 }
 
 void ContactCache::store_impulses(bool more) {
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (i + ahead < contacts_.size()) {
-      const CacheIndex& owner = cache_indices_[i + ahead];
-      const CachedPair& pair = pairs_[owner.pair];
-      dynamics::prefetch(&contacts_[i + ahead].impulse, 2 * sizeof(math::Vector3));
-      dynamics::prefetch(&pair.force_share, sizeof(pair.force_share));
-      dynamics::prefetch(&pair.points[owner.point].impulse, 2 * sizeof(math::Vector3));
+  constexpr std::size_t block = 32, later = 4;
+  dynamics::share_in_blocks(team_, listed_.size(), block, [&](std::size_t number, unsigned) {
+    if (number + later < listed_.size()) {
+      const ListedPair& next = listed_[number + later];
+      dynamics::prefetch(&pairs_[next.pair], CachedPair::prefetched_bytes);
     }
-    CachedPair& pair = pairs_[cache_indices_[i].pair];
-    CachedPoint& point = pair.points[cache_indices_[i].point];
-    if (more) pair.earlier_impulse += contacts_[i].impulse;
-    if (force_share_ == 0) continue;
-    point.impulse = contacts_[i].impulse / force_share_;
-    point.angular_impulse = contacts_[i].angular_impulse / force_share_;
-    point.carried = !contacts_[i].impulse.isZero(0);
-    pair.force_share = force_share_;
-  }
+    const ListedPair& listed = listed_[number];
+    CachedPair& pair = pairs_[listed.pair];
+    for (int i = 0; i < listed.count; ++i) {
+      const dynamics::ContactPoint& contact = contacts_[listed.first + i];
+      if (more) pair.earlier_impulse += contact.impulse;
+      if (force_share_ == 0) continue;
+      pair.points[i].impulse = contact.impulse / force_share_;
+      pair.points[i].angular_impulse = contact.angular_impulse / force_share_;
+      pair.points[i].carried = !contact.impulse.isZero(0);
+      pair.force_share = force_share_;
+    }
+  });
 }
 
 void ContactCache::store_estimates() {
   if (force_share_ == 0) return;
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    CachedPoint& point = pairs_[cache_indices_[i].pair].points[cache_indices_[i].point];
-    point.impulse = contacts_[i].impulse / force_share_;
-    point.angular_impulse = contacts_[i].angular_impulse / force_share_;
+  for (const ListedPair& listed : listed_) {
+    for (int i = 0; i < listed.count; ++i) {
+      const dynamics::ContactPoint& contact = contacts_[listed.first + i];
+      CachedPoint& point = pairs_[listed.pair].points[i];
+      point.impulse = contact.impulse / force_share_;
+      point.angular_impulse = contact.angular_impulse / force_share_;
+    }
   }
 }
 
 void ContactCache::add_impact_impulses() {
-  for (std::size_t i = 0; i < contacts_.size(); ++i)
-    pairs_[cache_indices_[i].pair].earlier_impulse += contacts_[i].impulse;
+  for (const ListedPair& listed : listed_) {
+    for (int i = 0; i < listed.count; ++i)
+      pairs_[listed.pair].earlier_impulse += contacts_[listed.first + i].impulse;
+  }
 }
 
 void ContactCache::list_contacts(std::vector<LinkContact>& out) const {

@@ -11,6 +11,7 @@
 
 #include "physics/bodies/convert.h"
 #include "physics/collision/sphere_grid.h"
+#include "physics/stepping/team.h"
 
 namespace ziggurat::physics {
 namespace {
@@ -18,10 +19,15 @@ namespace {
 using math::Vector3;
 
 constexpr double skin = 1e-4;  // [m]
-// Margins of bounding volumes [m]: with the first they are made, and made anew once less than the
-// second is left. So vibration at rest leaves the tree alone.
+// Margins of bounding volumes: with at least the first they are made, and made anew once less than
+// the second is left [m]. So vibration at rest leaves the tree alone. What moves gets a margin for
+// some ticks, up to a share of its size.
 constexpr double volume_margin = 1e-3;
 constexpr double rounding_margin = 1e-4;
+constexpr double ticks_ahead = 8;
+constexpr double margin_share = 0.25;
+/// Largest number of solids that share a volume.
+constexpr std::size_t most_in_group = 8;
 
 /// Shares of the segment between which it is inside of something.
 struct Stay {
@@ -136,43 +142,55 @@ std::optional<double> enter(const scene::Geometry& geometry, const Vector3& star
 }
 
 struct Rays::Parts {
-  /// A collider, as the tree refers to it.
+  /// A collider.
   struct Solid {
     scene::Geometry geometry;
+    std::size_t link = 0;    // into State::links
+    bool is_placed = false;  // it has a pose
+    math::Pose pose;         // X_WL of the last update
+    btVector3 low, high;     // corners of the box about it [m]
     std::size_t entity = 0;
-    std::size_t link = 0;  // into State::links
-    math::Pose pose;       // X_WL of the last update
+  };
+  /// Solids that follow each other and share a leaf of the tree: of an entity that moves some, of
+  /// one that stands each alone.
+  struct Group {
+    std::size_t entity = 0;
+    std::size_t first = 0, count = 0;  // of its solids
     btDbvtNode* leaf = nullptr;
     bool removed = false;
+    bool leaves = false;  // its volume is too small
+    double moved = 0;     // by so much since the last update [m]
+    btVector3 low, high;  // corners of the box about its solids [m]
   };
 
   bool has_floor = false;
   std::size_t entities = 0;
   std::size_t links = 0, last_links = 0;  // of all, of the last entity
   std::vector<Solid> solids;
-  std::vector<std::size_t> fresh;  // solids of an update that are not yet in the tree
+  std::vector<Group> groups;
+  std::vector<std::size_t> fresh;  // groups of an update that are not yet in the tree
   btDbvt tree;
-  mutable btAlignedObjectArray<const btDbvtNode*> stack;
+
+  bool place(Solid& solid, const math::Pose& pose);
+  void place(Group& group, const world::State& state);
 };
 
 namespace {
 
-btDbvtVolume volume(const scene::Geometry& geometry, const math::Pose& pose, double margin) {
-  const scene::Bounds own = scene::bounds(geometry);
-  const Vector3 half =
-      pose.orientation.toRotationMatrix().cwiseAbs() * (own.size() / 2) + Vector3::Constant(margin);
-  const Vector3 center = pose * own.center();
-  return btDbvtVolume::FromCE(to_bullet(center), to_bullet(half));
-}
-
-/// Whether the tree can have it. Bullet builds a tree by comparing sizes, and writes outside of its
-/// list if all are infinite.
-bool is_bounded(const btDbvtVolume& volume) {
+/// Whether the tree can have a box. Bullet builds a tree by comparing sizes, and writes outside of
+/// its list if all are infinite.
+bool is_bounded(const btVector3& low, const btVector3& high) {
   constexpr double farthest = 1e30;  // [m], whose third power is finite; no ray is as long
   const auto is_near = [](const btVector3& v) {
     return std::abs(v.x()) < farthest && std::abs(v.y()) < farthest && std::abs(v.z()) < farthest;
   };
-  return is_near(volume.Mins()) && is_near(volume.Maxs());
+  return is_near(low) && is_near(high);
+}
+
+/// Nodes of a search of the thread.
+btAlignedObjectArray<const btDbvtNode*>& search_stack() {
+  static thread_local btAlignedObjectArray<const btDbvtNode*> stack;
+  return stack;
 }
 
 bool same(const math::Pose& a, const math::Pose& b) {
@@ -191,8 +209,20 @@ void Rays::add(const scene::Entity& entity) {
   Parts& p = *parts_;
   for (std::size_t i = 0; i < entity.links.size(); ++i) {
     const scene::Link& link = entity.links[i];
-    if (link.collides)
-      p.solids.push_back({link.geometry, p.entities, p.links + i, {}, nullptr, false});
+    if (!link.collides) continue;
+    const bool joins = entity.movable && !p.groups.empty() &&
+                       p.groups.back().entity == p.entities &&
+                       p.groups.back().count < most_in_group;
+    if (!joins) {
+      Parts::Group& group = p.groups.emplace_back();
+      group.entity = p.entities;
+      group.first = p.solids.size();
+    }
+    ++p.groups.back().count;
+    Parts::Solid& solid = p.solids.emplace_back();
+    solid.geometry = link.geometry;
+    solid.link = p.links + i;
+    solid.entity = p.entities;
   }
   p.last_links = entity.links.size();
   p.links += p.last_links;
@@ -201,52 +231,98 @@ void Rays::add(const scene::Entity& entity) {
 
 void Rays::remove(std::size_t entity) {
   Parts& p = *parts_;
-  for (Parts::Solid& solid : p.solids) {
-    if (solid.entity != entity) continue;
-    if (solid.leaf) p.tree.remove(solid.leaf);
-    solid.leaf = nullptr;
-    solid.removed = true;
+  for (Parts::Group& group : p.groups) {
+    if (group.entity != entity) continue;
+    if (group.leaf) p.tree.remove(group.leaf);
+    group.leaf = nullptr;
+    group.removed = true;
   }
 }
 
 void Rays::take_back() {
   Parts& p = *parts_;
   p.entities -= 1;
-  while (!p.solids.empty() && p.solids.back().entity == p.entities) {
-    if (p.solids.back().leaf) p.tree.remove(p.solids.back().leaf);
-    p.solids.pop_back();
+  while (!p.groups.empty() && p.groups.back().entity == p.entities) {
+    if (p.groups.back().leaf) p.tree.remove(p.groups.back().leaf);
+    p.solids.resize(p.groups.back().first);
+    p.groups.pop_back();
   }
   p.links -= p.last_links;
 }
 
-void Rays::update(const world::State& state) {
+/// Puts a solid to a pose.
+/// @return  false: the pose is not finite, and it stays where it was
+bool Rays::Parts::place(Solid& solid, const math::Pose& pose) {
+  if (!pose.position.allFinite() || !pose.orientation.coeffs().allFinite()) return false;
+  const scene::Bounds own = scene::bounds(solid.geometry);
+  const Vector3 half = pose.orientation.toRotationMatrix().cwiseAbs() * (own.size() / 2) +
+                       Vector3::Constant(rounding_margin);
+  const Vector3 center = pose * own.center();
+  solid.pose = pose;
+  solid.low = to_bullet(Vector3(center - half));
+  solid.high = to_bullet(Vector3(center + half));
+  solid.is_placed = is_bounded(solid.low, solid.high);
+  return true;
+}
+
+/// Puts the solids of a group to their poses. It changes nothing of other groups.
+void Rays::Parts::place(Group& group, const world::State& state) {
+  group.leaves = false;
+  group.moved = 0;
+  if (group.removed) return;
+  bool any = false;
+  for (std::size_t i = group.first; i < group.first + group.count; ++i) {
+    const math::Pose& pose = state.links[solids[i].link].pose;
+    if (solids[i].is_placed && same(pose, solids[i].pose)) continue;
+    const double moved = (pose.position - solids[i].pose.position).norm();
+    if (!place(solids[i], pose)) continue;
+    any = true;
+    group.moved = std::max(group.moved, moved);
+  }
+  if (!any) return;
+  group.low.setValue(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT);
+  group.high = -group.low;
+  for (std::size_t i = group.first; i < group.first + group.count; ++i) {
+    if (!solids[i].is_placed) continue;
+    group.low.setMin(solids[i].low);
+    group.high.setMax(solids[i].high);
+  }
+  if (!is_bounded(group.low, group.high)) return;
+  group.leaves =
+      !group.leaf || !group.leaf->volume.Contain(btDbvtVolume::FromMM(group.low, group.high));
+}
+
+void Rays::update(const world::State& state, dynamics::Team* team) {
+  constexpr std::size_t block = 16;  // groups that a thread takes at once
   Parts& p = *parts_;
+  dynamics::share_in_blocks(team, p.groups.size(), block,
+                            [&](std::size_t i, unsigned) { p.place(p.groups[i], state); });
+  const auto volume = [](const Parts::Group& group) {
+    const btVector3 size = group.high - group.low;
+    const double most = margin_share * size[size.minAxis()];
+    const double margin =
+        std::max(volume_margin, group.leaf ? std::min(ticks_ahead * group.moved, most) : 0.0);
+    const btVector3 around(margin, margin, margin);
+    return btDbvtVolume::FromMM(group.low - around, group.high + around);
+  };
   p.fresh.clear();
-  for (std::size_t i = 0; i < p.solids.size(); ++i) {
-    Parts::Solid& solid = p.solids[i];
-    if (solid.removed) continue;
-    const math::Pose& pose = state.links[solid.link].pose;
-    if (solid.leaf && same(pose, solid.pose)) continue;
-    if (!pose.position.allFinite() || !pose.orientation.coeffs().allFinite()) continue;
-    solid.pose = pose;
-    if (solid.leaf && solid.leaf->volume.Contain(volume(solid.geometry, pose, rounding_margin))) {
-      continue;
-    }
-    btDbvtVolume bounds = volume(solid.geometry, pose, volume_margin);
-    if (!is_bounded(bounds)) continue;
-    if (!solid.leaf) {
+  for (std::size_t i = 0; i < p.groups.size(); ++i) {
+    Parts::Group& group = p.groups[i];
+    if (!group.leaves) continue;
+    if (!group.leaf) {
       p.fresh.push_back(i);
       continue;
     }
-    p.tree.update(solid.leaf, bounds);
+    btDbvtVolume bounds = volume(group);
+    p.tree.update(group.leaf, bounds);
   }
   in_bit_reversed_order(p.fresh.size(), [&](std::size_t i) {
-    Parts::Solid& solid = p.solids[p.fresh[i]];
-    solid.leaf = p.tree.insert(volume(solid.geometry, solid.pose, volume_margin), nullptr);
-    solid.leaf->dataAsInt = static_cast<int>(p.fresh[i]);
+    Parts::Group& group = p.groups[p.fresh[i]];
+    group.leaf = p.tree.insert(volume(group), nullptr);
+    group.leaf->dataAsInt = static_cast<int>(p.fresh[i]);
   });
   if (!p.fresh.empty()) return p.tree.optimizeTopDown();
-  p.tree.optimizeIncremental(1 + static_cast<int>(p.solids.size() / 64));
+  p.tree.optimizeIncremental(1 + static_cast<int>(p.groups.size() / 64));
 }
 
 /// One ray on its way: the closest of what it meets; of equally close ones the first in scene
@@ -265,8 +341,13 @@ struct Rays::Flight : btDbvt::ICollide {
   }
 
   void Process(const btDbvtNode* leaf) override {
-    const Parts::Solid& solid = parts.solids[static_cast<std::size_t>(leaf->dataAsInt)];
-    if (std::ranges::find(query.ignored, solid.entity) != query.ignored.end()) return;
+    const Parts::Group& group = parts.groups[static_cast<std::size_t>(leaf->dataAsInt)];
+    if (std::ranges::find(query.ignored, group.entity) != query.ignored.end()) return;
+    for (std::size_t i = group.first; i < group.first + group.count; ++i) meet(parts.solids[i]);
+  }
+
+  void meet(const Parts::Solid& solid) {
+    if (!solid.is_placed || !passes(solid)) return;
     const math::Pose into = math::inverse(solid.pose);
     const auto at = enter(solid.geometry, into * query.start, into * query.end, skin);
     if (!at) return;
@@ -276,8 +357,8 @@ struct Rays::Flight : btDbvt::ICollide {
     }
   }
 
-  bool passes(const btDbvtVolume& volume) const {
-    const btVector3 bounds[2] = {volume.Mins(), volume.Maxs()};
+  bool passes(const Parts::Solid& solid) const {
+    const btVector3 bounds[2] = {solid.low, solid.high};
     btScalar from = 1;
     return btRayAabb2(start, inverse_way, signs, bounds, from, 0, length);
   }
@@ -309,7 +390,7 @@ std::optional<RayHit> Rays::cast(const RayQuery& query) const {
   if (!flight.valid) return std::nullopt;
   const btVector3 zero(0, 0, 0);
   p.tree.rayTestInternal(p.tree.m_root, flight.start, to_bullet(query.end), flight.inverse_way,
-                         flight.signs, flight.length, zero, zero, p.stack, flight);
+                         flight.signs, flight.length, zero, zero, search_stack(), flight);
   return flight.end();
 }
 
@@ -320,20 +401,25 @@ void Rays::find(const Vector3& low, const Vector3& high, std::span<const std::si
   const Parts& p = *parts_;
   const btDbvtVolume box = btDbvtVolume::FromMM(to_bullet(low), to_bullet(high));
   out.colliders.clear();
-  p.stack.resize(0);
-  if (p.tree.m_root) p.stack.push_back(p.tree.m_root);
-  while (p.stack.size() > 0 && out.colliders.size() <= few) {
-    const btDbvtNode& node = *p.stack[p.stack.size() - 1];
-    p.stack.pop_back();
+  auto& stack = search_stack();
+  stack.resize(0);
+  if (p.tree.m_root) stack.push_back(p.tree.m_root);
+  while (stack.size() > 0 && out.colliders.size() <= few) {
+    const btDbvtNode& node = *stack[stack.size() - 1];
+    stack.pop_back();
     if (!Intersect(node.volume, box)) continue;
     if (node.isinternal()) {
-      p.stack.push_back(node.childs[0]);
-      p.stack.push_back(node.childs[1]);
+      stack.push_back(node.childs[0]);
+      stack.push_back(node.childs[1]);
       continue;
     }
-    const auto collider = static_cast<std::size_t>(node.dataAsInt);
-    if (std::ranges::find(ignored, p.solids[collider].entity) == ignored.end())
-      out.colliders.push_back(collider);
+    const Parts::Group& group = p.groups[static_cast<std::size_t>(node.dataAsInt)];
+    if (std::ranges::find(ignored, group.entity) != ignored.end()) continue;
+    for (std::size_t i = group.first; i < group.first + group.count; ++i) {
+      const Parts::Solid& solid = p.solids[i];
+      if (solid.is_placed && Intersect(btDbvtVolume::FromMM(solid.low, solid.high), box))
+        out.colliders.push_back(i);
+    }
   }
   out.are_few = out.colliders.size() <= few;
 }
@@ -343,10 +429,7 @@ std::optional<RayHit> Rays::cast(const RayQuery& query, const Candidates& candid
   const Parts& p = *parts_;
   Flight flight(p, query);
   if (!flight.valid) return std::nullopt;
-  for (const std::size_t collider : candidates.colliders) {
-    const btDbvtNode* leaf = p.solids[collider].leaf;
-    if (flight.passes(leaf->volume)) flight.Process(leaf);
-  }
+  for (const std::size_t collider : candidates.colliders) flight.meet(p.solids[collider]);
   return flight.end();
 }
 

@@ -12,6 +12,10 @@
 #include "scene/scene.h"
 #include "world/state.h"
 
+namespace ziggurat::dynamics {
+class Team;
+}
+
 namespace ziggurat::physics {
 
 struct RayHit {
@@ -48,8 +52,9 @@ class Rays {
   /// Forgets the entity that was added last.
   void take_back();
 
-  /// Takes the poses of a tick. Must be called before casts.
-  void update(const world::State& state);
+  /// Takes the poses of a tick. Must be called before casts, which several threads may do at once.
+  /// @param team  whose threads share the work; null: the caller's
+  void update(const world::State& state, dynamics::Team* team = nullptr);
 
   /// Casts a segment: the closest entity that it meets before its end. A body around its start does
   /// not stop it, unless the start is within 0.1 mm below the surface on the way in: a touching

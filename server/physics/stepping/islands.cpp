@@ -19,6 +19,25 @@ bool is_earlier(const ContactPoint& a, const ContactPoint& b) {
   return key(a) < key(b);
 }
 
+/// Lists all that islands follow from: trees that are awake, and the trees of each constraint.
+/// @param awake  those that move
+void list_key(const std::vector<Tree>& trees, const Sleep& sleep, std::span<const int> awake,
+              const ConstraintLists& constraints, std::vector<int>& out) {
+  constexpr std::size_t counts = 5;
+  out.resize(counts + awake.size() + 2 * constraints.contact_trees.size() +
+             2 * constraints.servos.size() + constraints.limits.size());
+  auto next = out.begin();
+  for (const std::size_t number :
+       {trees.size(), static_cast<std::size_t>(sleep.changes), awake.size(),
+        constraints.contact_trees.size(), constraints.servos.size()})
+    *next++ = static_cast<int>(number);
+  next = std::ranges::copy(awake, next).out;
+  for (const ContactTrees& contact : constraints.contact_trees)
+    *next++ = contact.a, *next++ = contact.b;
+  for (const Servo& servo : constraints.servos) *next++ = servo.tree, *next++ = servo.other.tree;
+  for (const Limit& limit : constraints.limits) *next++ = limit.tree;
+}
+
 /// Root of a tree's set in the union-find forest.
 int island_root(int tree, std::vector<int>& parent) {
   while (parent[tree] != tree) tree = parent[tree] = parent[parent[tree]];
@@ -52,6 +71,9 @@ void list_contact_trees(std::span<const ContactPoint> contacts, std::vector<Cont
 
 void build_islands(const std::vector<Tree>& trees, const Sleep& sleep, std::span<const int> awake,
                    const ConstraintLists& constraints, Islands& out) {
+  std::swap(out.key, out.key_before);
+  list_key(trees, sleep, awake, constraints, out.key);
+  if (out.key == out.key_before) return;
   out.parent.resize(trees.size());
   out.of_tree.resize(trees.size());
   out.index_in_island.resize(trees.size());
@@ -97,16 +119,18 @@ void build_islands(const std::vector<Tree>& trees, const Sleep& sleep, std::span
   sort_by_island(
       std::span<const IslandItem>(out.unsorted), islands,
       [](const IslandItem& item) { return item.island; }, out.first_item, out.items);
+}
+
+void sort_items(Islands& islands, std::size_t island, std::span<const ContactPoint> contacts) {
   const auto earlier = [&](const IslandItem& a, const IslandItem& b) {
     if (a.kind != b.kind || a.kind != IslandItem::Kind::contact)
       return std::tuple(a.kind, a.index) < std::tuple(b.kind, b.index);
-    return is_earlier(constraints.contacts[a.index], constraints.contacts[b.index]);
+    return is_earlier(contacts[a.index], contacts[b.index]) ||
+           (!is_earlier(contacts[b.index], contacts[a.index]) && a.index < b.index);
   };
-  for (int i = 0; i < islands; ++i) {
-    const auto of_island =
-        std::span(out.items).subspan(out.first_item[i], out.first_item[i + 1] - out.first_item[i]);
-    if (!std::ranges::is_sorted(of_island, earlier)) std::ranges::sort(of_island, earlier);
-  }
+  const int first = islands.first_item[island], last = islands.first_item[island + 1];
+  const std::span items = std::span(islands.items).subspan(first, last - first);
+  if (!std::ranges::is_sorted(items, earlier)) std::ranges::sort(items, earlier);
 }
 
 void prefetch_after(const Islands& islands, std::size_t island, const std::vector<Tree>& trees,

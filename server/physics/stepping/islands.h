@@ -18,7 +18,7 @@ struct IslandItem {
   int index = 0;  ///< in the list of its kind
 };
 
-/// An island: its trees, ascending, and its constraints, contacts first.
+/// An island: its trees, ascending, and its constraints, contacts first: see sort_items().
 struct Island {
   std::span<const int> trees;
   std::span<const IslandItem> items;
@@ -43,15 +43,23 @@ struct Islands {
             std::span(items).subspan(first_item[i], first_item[i + 1] - first_item[i])};
   }
 
+  /// All that they follow from, in this step and in the one before.
+  std::vector<int> key, key_before;
+
   // Memory of build_islands().
   std::vector<int> parent;  ///< of each awake tree, in the union-find forest
   std::vector<IslandItem> unsorted;
 };
 
-/// Sorts awake trees and their constraints by island. Contacts of sleepers are left out.
+/// Sorts awake trees and their constraints by island. Contacts of sleepers are left out. Islands of
+/// the same trees and constraints as in the last call stay as they are.
 /// @param awake  ascending
 void build_islands(const std::vector<Tree>& trees, const Sleep& sleep, std::span<const int> awake,
                    const ConstraintLists& constraints, Islands& out);
+
+/// Puts the constraints of an island into an order that depends on it alone: contacts, by trees,
+/// links and places, then servos and limits. It changes nothing of other islands.
+void sort_items(Islands& islands, std::size_t island, std::span<const ContactPoint> contacts);
 
 /// Prefetches the memory of the islands after one: the trees of the second, and all data of the
 /// first.

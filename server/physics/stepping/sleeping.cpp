@@ -211,21 +211,24 @@ bool wake_disturbed(Sleep& sleep, const std::vector<Tree>& trees, std::span<cons
   return woke;
 }
 
+bool is_quiet(const SleepOptions& options, const std::vector<Tree>& trees,
+              std::span<const int> island, double heap_residual) {
+  return options.enabled &&
+         ((heap_residual > 0 && is_below_residual(trees, island, options, heap_residual)) ||
+          is_slow(trees, island, options));
+}
+
 void update_sleep(Sleep& sleep, const SleepOptions& options, std::vector<Tree>& trees,
-                  std::span<const int> island, double time_step, bool is_carried,
+                  std::span<const int> island, double time_step, bool is_quiet,
                   double heap_residual) {
   if (!options.enabled) return;
-  const bool is_heap = heap_residual > 0;
-  const bool quiet =
-      is_carried && ((is_heap && is_below_residual(trees, island, options, heap_residual)) ||
-                     is_slow(trees, island, options));
   double least = HUGE_VAL;
   for (const int index : island) {
     SleepState& sleeper = sleep.states[index];
-    sleeper.time_at_rest = quiet ? sleeper.time_at_rest + time_step : 0;
+    sleeper.time_at_rest = is_quiet ? sleeper.time_at_rest + time_step : 0;
     least = std::min(least, sleeper.time_at_rest);
   }
-  if (!quiet || least < (is_heap ? options.heap_time : options.time)) return;
+  if (!is_quiet || least < (heap_residual > 0 ? options.heap_time : options.time)) return;
   ++sleep.changes;
   for (std::size_t i = 0; i < island.size(); ++i) {
     const int index = island[i];

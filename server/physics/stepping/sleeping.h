@@ -80,11 +80,15 @@ void wake_all(Sleep& sleep, std::size_t trees);
 bool wake_disturbed(Sleep& sleep, const std::vector<Tree>& trees, std::span<const int> active,
                     const ConstraintLists& constraints, double time_step);
 
-/// Lets an island sleep that has been below the bounds for long enough.
-/// @param is_carried     whether the world supports it
+/// Whether an island that the world carries is below the bounds of sleep.
 /// @param heap_residual  residual of its solution if it was solved by passes only [m/s]; else 0
+bool is_quiet(const SleepOptions& options, const std::vector<Tree>& trees,
+              std::span<const int> island, double heap_residual);
+
+/// Lets an island sleep that has been quiet for long enough.
+/// @param heap_residual  see is_quiet()
 void update_sleep(Sleep& sleep, const SleepOptions& options, std::vector<Tree>& trees,
-                  std::span<const int> island, double time_step, bool is_carried,
+                  std::span<const int> island, double time_step, bool is_quiet,
                   double heap_residual);
 
 /// Calls visit(tree) for all active trees with flags, and for some without.

@@ -22,6 +22,7 @@ void System::find_islands() {
 }
 
 IslandStep System::island_step(std::size_t island, IslandMemory& memory, Report& report) {
+  sort_items(islands_, island, constraints_.contacts);
   return {trees,   islands_,   islands_[island], constraints_, rotations_until_impact,
           options, time_step_, memory,           report};
 }
@@ -85,6 +86,8 @@ void System::advance_island(std::size_t island, IslandMemory& memory, bool is_me
   if (is_measured) step.watch = &memory.watch;
   out.outcome = step_island(step);
   out.ran_out_of_steps = std::exchange(memory.work.ran_out_of_steps, false);
+  out.is_quiet = out.outcome.is_carried &&
+                 is_quiet(sleeping, trees, islands_[island].trees, out.outcome.heap_residual);
 }
 
 /// Advances islands that follow each other.
@@ -154,8 +157,8 @@ Report System::advance(std::span<Limit> limits, timing::Stopwatch* watch) {
     if (island.outcome.is_left()) {
       subdivide(islands_[i].trees, island.outcome);
     } else {
-      update_sleep(sleep_, sleeping, trees, islands_[i].trees, time_step_,
-                   island.outcome.is_carried, island.outcome.heap_residual);
+      update_sleep(sleep_, sleeping, trees, islands_[i].trees, time_step_, island.is_quiet,
+                   island.outcome.heap_residual);
     }
     if (!island.ran_out_of_steps) continue;
     ++report.not_converged;

@@ -111,7 +111,7 @@ class System {
   /// @throws std::system_error if the system allows no more threads; then nothing changes
   void set_threads(unsigned threads);
   /// The team of set_threads(); null: one thread.
-  Team* team() { return team_.get(); }
+  Team* team() const { return team_.get(); }
 
   /// State of all trees and their sleep. Between two substeps, without wrenches.
   void archive(math::Archive& archive);
@@ -140,6 +140,7 @@ class System {
     IslandOutcome outcome;
     Report report;
     bool ran_out_of_steps = false;
+    bool is_quiet = false;
   };
   std::vector<AdvancedIsland> advanced_;  // of each island
   /// Islands that follow each other, which one thread takes.

@@ -3,6 +3,7 @@
 // A team of threads that share the items of a loop. Items are independent of each other, so results
 // do not depend on which thread takes which.
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -65,5 +66,21 @@ class Team {
   std::exception_ptr failure_;  // with mutex_
   std::vector<std::thread> workers_;
 };
+
+/// Calls work(item, member) for the items 0 … count - 1, each once. The threads of a team take
+/// blocks of them. Without a team, and for few items, the caller does all.
+/// @param block  items that a thread takes at once
+template <class Work>
+void share_in_blocks(Team* team, std::size_t count, std::size_t block, Work&& work) {
+  constexpr std::size_t few = 64;
+  if (!team || count < few) {
+    for (std::size_t item = 0; item < count; ++item) work(item, 0U);
+    return;
+  }
+  team->share((count + block - 1) / block, [&](std::size_t number, unsigned member) {
+    const std::size_t last = std::min(count, (number + 1) * block);
+    for (std::size_t item = number * block; item < last; ++item) work(item, member);
+  });
+}
 
 }  // namespace ziggurat::dynamics

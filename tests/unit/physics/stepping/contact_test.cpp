@@ -123,8 +123,8 @@ TEST(Contact, HeavyBoxesStandOnLightOnes) {
   tower(3, 0.1, 20, 100, 100);
 }
 
-// What a prediction finds is where the step's solution starts, but does not count as a load that
-// was carried before: the impact still ends at the surface.
+// Impulses of a prediction start the step's solution, but do not count as a load that was carried
+// before: the impact still ends at the surface.
 TEST(Contact, APredictedImpactStartsTheStep) {
   constexpr double time_step = 0.01, gap = 1e-3;
   Touching world;
