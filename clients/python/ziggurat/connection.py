@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import time
-from typing import Callable, Optional
+from typing import Any, Callable, Optional
 
+import zmq
 from google.protobuf.message import DecodeError
 
 from . import protocol_pb2 as v1
@@ -40,12 +41,16 @@ class Wait:
 class Connection:
     """Connects in the background; the server may start later. Without endpoint: see find_server."""
 
-    def __init__(self, endpoint: str, curve: Optional[Curve] = None, has_ended: Callable[[], bool] = lambda: False):
-        """has_ended: whether the server is known to have ended; it is asked while waiting for a welcome"""
+    def __init__(self, endpoint: str, curve: Optional[Curve] = None, has_ended: Callable[[], bool] = lambda: False,
+                 context: Optional[zmq.Context[Any]] = None):
+        """
+        has_ended  whether the server is known to have ended; it is asked while waiting for a welcome
+        context    see Transport
+        """
         self.endpoint = endpoint or find_server()
         self._has_ended = has_ended
         self.longest_silence: Optional[float] = None  # [s] of wall time; longer, and the connection is lost
-        self.transport = Transport(self.endpoint, curve)
+        self.transport = Transport(self.endpoint, curve, context)
 
     @property
     def is_accepted(self) -> bool:
@@ -81,13 +86,17 @@ class Connection:
         """
         if self.closed:
             raise ConnectionLost("the session is closed")
+        data = self.transport.receive_soon() if self.transport.why_closed is None else None
+        return self._decoded(self._receive(wait) if data is None else data)
+
+    def _receive(self, wait: Wait) -> bytes:
         silence = 0.0  # in pieces: a program that was stopped has not waited
         while True:
             rest = wait.left(SLICE)
             began = time.monotonic()
             data = self.transport.receive(rest)
             if data is not None:
-                return self._decoded(data)
+                return data
             silence += min(rest, time.monotonic() - began)
             if self.transport.why_closed is not None:
                 self.close()

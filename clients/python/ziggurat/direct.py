@@ -351,12 +351,11 @@ class World(Session):
         if self._epoch is not None:
             direction.epoch = self._epoch
         direction.metrics.extend(self._figures.take())
-        message = v1.ClientMessage(direction=direction)
-        size = message.ByteSize()
-        if 0 < self.welcome.max_message_bytes < size:
-            raise ValueError(f"what was asked for has {size} bytes; the server accepts at most "
+        message = v1.ClientMessage(direction=direction).SerializeToString()
+        if 0 < self.welcome.max_message_bytes < len(message):
+            raise ValueError(f"what was asked for has {len(message)} bytes; the server accepts at most "
                              f"{self.welcome.max_message_bytes}")
-        self._connection.send(message)
+        self._connection.send_bytes(message)
         self._answered = message
         self._direction = v1.Direction()
         self._owes = None

@@ -10,8 +10,20 @@ from typing import Any, Callable, Dict, Generic, List, Optional, Sequence, Set, 
 
 from . import protocol_pb2 as v1
 from .metrics import Metrics
+from .packed import NUMBERS, packed_command, packed_values
 
 T = TypeVar("T")
+Places = Tuple[str, int, int]  # of readings in a field of Observation: from, to
+
+
+def joined(places: Sequence[Places]) -> List[Places]:
+    """The same with those that follow each other as one."""
+    result: List[Places] = []
+    for field, begin, end in places:
+        if result and result[-1][0] == field and result[-1][2] == begin:
+            begin = result.pop()[1]
+        result.append((field, begin, end))
+    return result
 
 
 class Exchange:
@@ -92,6 +104,13 @@ class Exchange:
         if self._sorted:
             self._sorted = {}
 
+    def read(self, places: Sequence[Places]) -> List[float]:
+        """What stands at these places, one after the other; 0 before the first tick."""
+        values: List[float] = []
+        for field, begin, end in places:
+            values.extend(getattr(self.seen, field)[begin:end] or [0.0] * (end - begin))
+        return values
+
     @property
     def heard(self) -> Dict[int, List[bytes]]:
         """By radio."""
@@ -125,23 +144,26 @@ class Exchange:
             self._sorted["rows"] = [0, *accumulate(map(mul, self.seen.device_rows, self.row_widths))]
         return cast(List[int], self._sorted["rows"])
 
-    def command(self, tick: int) -> v1.ClientMessage:
-        """A command with the values that were set after the last one."""
-        message = v1.ClientMessage()
-        command = message.command
-        command.SetInParent()
-        command.tick = tick
-        for field in self._new & self.values.keys():
-            getattr(command, field).extend(self.values[field])
-        if "data" in self._new:
-            command.range_and_bearing_data = bytes(self.data)
+    def command(self, tick: int, epoch: Optional[int] = None) -> bytes:
+        """A ClientMessage with a Command of the values that were set after the last one."""
+        parts = b"".join([packed_values(field, self.values[field]) for field in self._new if field in NUMBERS])
+        if not self._new <= NUMBERS.keys() or self.messages or self.markers or self.log or self.metrics:
+            parts += self._rest()
+        return packed_command(tick, epoch, parts)
+
+    def _rest(self) -> bytes:
+        """What of the command is not packed numbers."""
+        command = v1.Command(log=self.log, metrics=self.metrics.take())
+        for field in self._new - NUMBERS.keys():
+            if field == "data":
+                command.range_and_bearing_data = bytes(self.data)
+            else:
+                getattr(command, field).extend(self.values[field])
         for radio, payload in self.messages:
             command.radio_messages.add(radio=radio, payload=payload)
         for markers in self.markers.values():
             command.markers.extend(markers)
-        command.log.extend(self.log)
-        command.metrics.extend(self.metrics.take())
-        return message
+        return bytes(command.SerializeToString())
 
     def sent(self) -> None:
         """The command was sent."""

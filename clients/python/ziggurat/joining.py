@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import Callable, MutableMapping, Optional, Sequence, Union
+from typing import Any, Callable, MutableMapping, Optional, Sequence, Union
+
+import zmq
 
 from . import protocol_pb2 as v1
 from .curve import Curve
@@ -35,7 +37,8 @@ def connect(endpoint: str = "", robots: Union[str, Sequence[str]] = (), *, contr
             connect_timeout: float = 10.0, wait_timeout: Optional[float] = None,
             resume_timeout: Optional[float] = None,
             environment: MutableMapping[str, str] = os.environ,
-            has_ended: Callable[[], bool] = lambda: False) -> Session:
+            has_ended: Callable[[], bool] = lambda: False,
+            context: Optional[zmq.Context[Any]] = None) -> Session:
     """A session with all robots that match both `robots` (ids, or globs with * ? [a-z]) and
     `controller` (its id in the scene); with neither, all robots.
 
@@ -52,6 +55,8 @@ def connect(endpoint: str = "", robots: Union[str, Sequence[str]] = (), *, contr
                      long as the server reserves the robots, at least 10 s; 0: never
     environment      {}: nothing is taken from there; without endpoint it is then that of the only server
     has_ended        whether the server is known to have ended: then it is not waited for
+    context          of libzmq, which several sessions share: one thread then sends and receives for all of them. End it
+                     after them; None: one of its own
 
     Raises ConnectionLost if no server answers, and Refused if the server refuses the session.
     """
@@ -67,7 +72,7 @@ def connect(endpoint: str = "", robots: Union[str, Sequence[str]] = (), *, contr
                      session_token=token, can_restore=can_restore)
     if deadline is not None:
         hello.deadline_policy.CopyFrom(deadline._message())
-    return Session(endpoint, hello, curve, connect_timeout, wait_timeout, resume_timeout, has_ended)
+    return Session(endpoint, hello, curve, connect_timeout, wait_timeout, resume_timeout, has_ended, context)
 
 
 def take_token(endpoint: str, environment: MutableMapping[str, str] = os.environ) -> bytes:

@@ -10,6 +10,9 @@ import warnings
 from fnmatch import fnmatchcase
 from typing import Any, Callable, List, Optional, Sequence, Tuple, Union
 
+import zmq
+
+from .devices.device import finite
 from .errors import ProtocolError, Refused
 from .joining import connect
 from .robot import Robot
@@ -27,36 +30,21 @@ def all_readings(robot: Robot) -> List[float]:
     """Of the robot's sensors that have a fixed number of values: joint sensors, Robot.sensed, wheels (4), turret, devices that
     describe themselves.
     Messages, packets and what cameras see are not in it."""
-    values = [reading for joint in robot.joints for reading in joint.readings]
-    values.extend(robot.sensed)
-    if robot.wheels is not None and robot.wheels.measures:
-        values.extend((*robot.wheels.velocity, *robot.wheels.distance))
-    if robot.turret is not None and robot.turret.measures:
-        values.append(robot.turret.rotation)
-    for devices in robot.devices.values():
-        for device in devices:
-            values.extend(device.readings)
-    return values
+    return robot._exchange.read(robot._reading_places)
 
 
 def motor_count(robot: Robot) -> int:
     """Values of an action of motors()."""
-    drives = robot.wheels is not None and robot.wheels.drives
-    return sum(joint.actuator_mode is not None for joint in robot.joints) + 2 * drives
+    return len(robot._motors)
 
 
 def motors(robot: Robot, action: Sequence[float]) -> None:
     """A target for each motor of the robot, in order, then the speeds of its wheels: left, right [m/s]."""
-    driven = [joint for joint in robot.joints if joint.actuator_mode is not None]
-    wheels = robot.wheels if robot.wheels is not None and robot.wheels.drives else None
-    motor_values, wheel_values = action[:len(driven)], action[len(driven):]
-    if len(motor_values) < len(driven) or len(wheel_values) != (2 if wheels else 0):
+    if len(action) != len(robot._motors):
         raise ValueError(f"{robot.id}: an action has {motor_count(robot)} values, not {len(action)}: a target for each "
                          "motor, then the speeds of the wheels")
-    for joint, value in zip(driven, motor_values):
-        joint.target = float(value)
-    if wheels:
-        wheels.set_velocity(*wheel_values)
+    for (field, place, what), value in zip(robot._motors, action):
+        robot._exchange.set(field, place, finite(value, what))
 
 
 def tell_of_nothing(observation: Any, robot: Robot) -> None:
@@ -78,16 +66,18 @@ class World:
     number       of several worlds: added to the seed of the first episode
     randomize    changes the world at the beginning of an episode, see ParallelEnv
     keeps_begin  a seed that is given again begins by a snapshot, which is faster
+    context      of libzmq, of the sessions of several worlds
     """
 
     def __init__(self, scene: Optional[str], endpoint: Optional[str] = None, *, number: int = 0, robots: Union[str, Sequence[str]] = "*",
                  randomize: Optional[Randomize] = None, keeps_begin: bool = False, command: str = "ziggurat",
-                 arguments: Sequence[str] = (), name: str = "environment"):
+                 arguments: Sequence[str] = (), name: str = "environment", context: Optional[zmq.Context[Any]] = None):
         self._scene, self._endpoint, self._name = scene, endpoint, name
         self._number = number
         self._robots = [robots] if isinstance(robots, str) else list(robots)
         self._randomize, self._keeps_begin = randomize, keeps_begin
         self._command, self._arguments = command, list(arguments)
+        self._context = context
         self.server: Optional[Server] = None
         self._supervisor: Optional[Supervisor] = None
         self._stream: Optional[random.Random] = None  # of seeds, after the one that was given
@@ -111,13 +101,13 @@ class World:
         """A new server, or a session at the endpoint, up to its first observation."""
         if self._scene is None:
             assert self._endpoint is not None  # one of both is given
-            self.session = connect(self._endpoint, self._robots, can_restore=True, name=self._name)
+            self.session = connect(self._endpoint, self._robots, can_restore=True, name=self._name, context=self._context)
         else:
             seeds = [] if seed is None else ["--seed", str(world_seed(seed))]
             self.server = Server(self._scene, command=self._command,
                                  arguments=["--start-directors", *self._arguments, *seeds])
             # All robots: no other program would connect for the rest, for which the world waits.
-            self.session = self.server.session(can_restore=True, name=self._name)
+            self.session = self.server.session(can_restore=True, name=self._name, context=self._context)
         try:
             self.agents = [robot for robot in self.session.robots
                            if any(fnmatchcase(robot.id, each) or robot.id == each for each in self._robots)]

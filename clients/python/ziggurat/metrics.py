@@ -31,6 +31,10 @@ class Metrics:
         names.add(name)
         self._values[robot, name] = number
 
+    def __bool__(self) -> bool:
+        """Whether there are any since the last call of take()."""
+        return bool(self._values)
+
     def take(self) -> List[v1.Metric]:
         """Those since the last call."""
         metrics = [v1.Metric(robot=robot, name=name, value=value)

@@ -3,14 +3,15 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, Optional, Sequence, Tuple
+from functools import cached_property
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 from . import protocol_pb2 as v1
 from .devices import Camera, DevicesByKind, Joint, Led, Magnet, Radio, RangeAndBearing, Sensors, Tag, Turret, \
     Wheels
 from .devices.joint import joints_of
 from .devices.led import OFF, number_of
-from .exchange import Exchange
+from .exchange import Exchange, Places, joined
 from .named import Listed
 
 MOST_MARKERS = 1000  # of a robot at a tick
@@ -57,6 +58,23 @@ class Robot(Sensors):
             Wheels(exchange, given.wheels) if given.HasField("wheels") else None
         self.turret: Optional[Turret] = \
             Turret(exchange, given.turret) if given.HasField("turret") else None
+
+    @cached_property
+    def _reading_places(self) -> List[Places]:
+        """Of all sensors with a fixed number of values; neighbours are one."""
+        places = [place for joint in self.joints for place in joint._places] + self._sensed_places
+        places += [place for each in (self.wheels, self.turret) if each is not None for place in each._places]
+        return joined(places + [place for devices in self.devices.values() for device in devices for place in device._places])
+
+    @cached_property
+    def _motors(self) -> List[Tuple[str, int, str]]:
+        """Of each driven joint, then of the left and the right wheel: the field of Command, the place there and what it
+        takes, for messages."""
+        motors = [("joint_targets", joint._actuator, "a target") for joint in self.joints
+                  if joint.actuator_mode is not None]
+        if self.wheels is not None and self.wheels.drives:
+            motors += [("wheel_velocities", self.wheels._place + side, "a velocity") for side in (0, 1)]
+        return motors
 
     def draw_arrow(self, start: Sequence[float], end: Sequence[float], color: Tuple[int, int, int] = OFF) -> None:
         """Draws for people, for one tick: x, y, z in the frame of the robot's origin [m]; a color is (red,

@@ -30,7 +30,7 @@ def _readable(messages: str) -> str:
 
 
 class Server:
-    """Runs `ziggurat serve SCENE` on a free port of this machine until it is closed, or this program ends, however
+    """Runs `ziggurat serve SCENE` at a local socket of its own until it is closed, or this program ends, however
     that happens.
 
     command    path of the program, if it is not on the PATH
@@ -43,7 +43,7 @@ class Server:
         end_for_server, self._end_for_program = os.pipe()
         try:
             self.process = subprocess.Popen(
-                [command, "serve", str(scene), "--endpoint", "tcp://127.0.0.1:*", "--json", "--end-with-input",
+                [command, "serve", str(scene), "--endpoint", "ipc://*", "--json", "--end-with-input",
                  *arguments],
                 stdin=end_for_server, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         except FileNotFoundError:

@@ -8,6 +8,8 @@ import time
 import weakref
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Union, cast
 
+import zmq
+
 from . import driven
 from . import protocol_pb2 as v1
 from .connection import Connection, Wait
@@ -39,9 +41,10 @@ class Session:
 
     def __init__(self, endpoint: str, hello: v1.Hello, curve: Optional[Curve],
                  connect_timeout: float, wait_timeout: Optional[float],
-                 resume_timeout: Optional[float], has_ended: Callable[[], bool] = lambda: False):
-        self._connection = Connection(endpoint, curve, has_ended)
-        self._has_ended = has_ended
+                 resume_timeout: Optional[float], has_ended: Callable[[], bool] = lambda: False,
+                 context: Optional[zmq.Context[Any]] = None):
+        self._connection = Connection(endpoint, curve, has_ended, context)
+        self._has_ended, self._context = has_ended, context
         self._curve = curve
         self._hello = hello
         self._resume_timeout = resume_timeout
@@ -55,7 +58,7 @@ class Session:
             self._connection.close(linger=0)
             raise
         self._leaves: Dict[int, v1.ClientMessage] = {}  # of robots that left, by position
-        self._answered: Optional[v1.ClientMessage] = None  # with this; the last one
+        self._answered: Optional[bytes] = None  # with this; the last one
         self._is_resumed = False  # the next observation may be the last one again
         self._resumed_in_vain = 0  # times without a new observation
         self._is_over = False  # it is not resumed
@@ -150,9 +153,9 @@ class Session:
                 self.close(str(error))
                 raise
             kind = message.WhichOneof("message")
-            if kind in ("observation", "world_state"):  # a director is told the latter
+            if kind == "observation" or kind == "world_state":  # a director is told the latter
                 seen = getattr(message, kind)
-                if self._repeats_answer(seen):
+                if self._is_resumed and self._repeats_answer(seen):
                     continue
                 return self._observe(seen)
             if kind == "end":
@@ -247,7 +250,7 @@ class Session:
         pause = _BETWEEN_HELLOS if self._resumed_in_vain > 1 else 0.0
         while True:
             time.sleep(pause)
-            connection = Connection(self.endpoint, self._curve, self._has_ended)
+            connection = Connection(self.endpoint, self._curve, self._has_ended, self._context)
             try:
                 welcome = connection.begin(hello, max(0.1, end - time.monotonic()), is_patient=True)
                 return self._go_on(connection, welcome)
@@ -289,7 +292,7 @@ class Session:
     def _repeats_answer(self, observation: v1.Observation) -> bool:
         """The first observation of a resumed session may be the one that was answered before: it is not a tick
         again, and the answer may have been lost. The server takes it or ignores it."""
-        if not self._is_resumed or self.tick is None:
+        if self.tick is None:
             return False
         self._is_resumed = False
         is_other = (self._epoch is not None and observation.HasField("epoch")
@@ -301,7 +304,7 @@ class Session:
                 self._event = Event.RESTORED
         if is_other or observation.tick != self.tick.number or self._answered is None:
             return False
-        self._connection.send(self._answered)
+        self._connection.send_bytes(self._answered)
         return True
 
     def _end(self) -> None:
@@ -350,15 +353,12 @@ class Session:
 
     def _answer(self) -> None:
         assert self._owes is not None  # __next__() asks
-        message = self._exchange.command(self._owes)
-        if self._epoch is not None:
-            message.command.epoch = self._epoch
-        data = message.SerializeToString()
+        data = self._exchange.command(self._owes, self._epoch)
         if 0 < self.welcome.max_message_bytes < len(data):
             raise ValueError(f"the command has {len(data)} bytes; the server accepts at most "
                              f"{self.welcome.max_message_bytes}")
         self._connection.send_bytes(data)
-        self._answered = message
+        self._answered = data
         self._exchange.sent()
         self._owes = None
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 import socket
-from typing import Any, Mapping, Optional
+from typing import Any, Mapping, Optional, cast
 
 import zmq
 import zmq.utils.monitor
@@ -14,6 +14,7 @@ from .curve import Curve
 
 # Wall times [s].
 SLICE = 0.5  # of a wait
+SOON = 0.02  # for most ticks
 LINGER = 1.0  # time to send the last messages when a session is closed
 
 LONGEST_MESSAGE = (1 << 30) + (1 << 20)  # of a server: an Observation of 1 GiB and what is around it [bytes]
@@ -48,21 +49,27 @@ def has_unknown_host(endpoint: str) -> bool:
 
 
 class Transport:
-    """Connects in the background; the server may start later. Raises ValueError for an unusable endpoint or keys."""
+    """Connects in the background; the server may start later. Raises ValueError for an unusable endpoint or keys.
 
-    def __init__(self, endpoint: str, curve: Optional[Curve]):
+    context  of several sockets, which one thread serves; its owner ends it
+    """
+
+    def __init__(self, endpoint: str, curve: Optional[Curve], context: Optional[zmq.Context[Any]] = None):
         check_endpoint(endpoint)
         self._has_keys = curve is not None
         self.is_accepted = False  # by the server: if nothing arrives then, it is slow
         self._is_open = False  # the handshake has succeeded
         self.why_closed: Optional[str] = None  # messages that came before may still be in the queue
         self._failed_handshakes = 0
-        self._context = zmq.Context()
+        self.closed = False
+        self._owns_context = context is None
+        self._context = context or zmq.Context()
         self._socket = self._context.socket(zmq.DEALER)
         self._socket.setsockopt(zmq.IPV6, endpoint.startswith("tcp://["))
         self._socket.setsockopt(zmq.TCP_KEEPALIVE, 1)
         self._socket.setsockopt(zmq.LINGER, 0)  # without close()
         self._socket.setsockopt(zmq.SNDTIMEO, int(1000 * SLICE))
+        self._socket.setsockopt(zmq.RCVTIMEO, int(1000 * SOON))
         self._socket.setsockopt(zmq.MAXMSGSIZE, LONGEST_MESSAGE)  # a longer one closes the connection
         # ZeroMQ reconnects by itself, but the server does not know the new connection:
         # detect the end of the first one.
@@ -82,16 +89,14 @@ class Transport:
 
     def close(self, linger: float) -> None:
         """linger  time to send the last messages [s]"""
-        if self._socket.closed:
+        if self.closed:
             return
+        self.closed = True
         self._socket.disable_monitor()
         self._monitor.close(linger=0)
         self._socket.close(linger=int(1000 * linger))
-        self._context.term()  # waits for that
-
-    @property
-    def closed(self) -> bool:
-        return bool(self._socket.closed)
+        if self._owns_context:
+            self._context.term()  # waits for that
 
     @property
     def has_more(self) -> bool:
@@ -106,6 +111,14 @@ class Transport:
         except zmq.Again:  # ZeroMQ gives the queue of a connection that is refused up
             self.why_closed = self.why_closed or self._next_reason()
             return False
+
+    def receive_soon(self) -> Optional[bytes]:
+        """Waits for a message that comes soon; None if it does not. It costs a part of receive(), which looks for changes
+        of the connection, too."""
+        try:
+            return cast(bytes, self._socket.recv())
+        except zmq.Again:
+            return None
 
     def receive(self, seconds: float) -> Optional[bytes]:
         """Waits for a message; None after this time, and when the connection has changed."""

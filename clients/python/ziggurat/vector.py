@@ -14,6 +14,8 @@ except ImportError as error:
     raise ImportError(f"{error}. vector_env needs numpy: apt-get install python3-numpy, or pip install "
                       "numpy") from None
 
+import zmq
+
 from .learning import Act, Observe, Randomize, World, all_readings, motor_count, motors, tell_of_nothing
 from .robot import Robot
 from .session import Session
@@ -66,12 +68,14 @@ class VectorEnv:
         self._reward, self._terminated = reward, terminated
         self._max_ticks, self._autoreset = max_ticks, autoreset
         self._worlds: List[World] = []
+        self._context = zmq.Context()  # one thread sends and receives for all worlds
         is_told = any(word.startswith("--threads") for word in arguments)
         threads = ["--threads", "1"] if n > 1 and not is_told else []  # worlds are stepped side by side
         try:
             for number in range(n):
                 self._worlds.append(World(str(scene), number=number, robots=robots, randomize=randomize, keeps_begin=True, command=command,
-                                          arguments=["--duration", "0", *threads, *arguments], name="vector_env"))
+                                          arguments=["--duration", "0", *threads, *arguments], name="vector_env",
+                                          context=self._context))
             self._shape_spaces(action_space, dtype)
         except BaseException:
             self.close()
@@ -174,28 +178,26 @@ class VectorEnv:
             world.session.answer()
 
     def step_wait(self) -> Tuple[Array, Array, Array, Array, Dict[str, Any]]:
-        shape = (self.num_envs, len(self.agents))
-        rewards, terminations = numpy.zeros(shape), numpy.zeros(shape, bool)
-        truncations = numpy.zeros(shape, bool)
+        all_rewards, all_terminations, all_truncations, over = [], [], [], []
         for number, world in enumerate(self._worlds):
             goes_on = world.goes_on()
             self._read(number)
-            robots = world.agents
-            rewards[number] = [self._reward(robot) for robot in robots]
-            terminations[number] = [self._terminated(robot) for robot in robots]
-            tick = world.tick.number - world.first_tick
-            truncations[number] = not goes_on or (self._max_ticks is not None and tick >= self._max_ticks)
-        over = terminations.all(axis=1) | truncations.all(axis=1)
-        infos = {}
-        if self._autoreset and over.any():
+            terminated = [bool(self._terminated(robot)) for robot in world.agents]
+            ends = not goes_on or (self._max_ticks is not None and world.tick.number - world.first_tick >= self._max_ticks)
+            all_rewards.append([self._reward(robot) for robot in world.agents])
+            all_terminations.append(terminated)
+            all_truncations.append([ends] * len(terminated))
+            over.append(ends or all(terminated))
+        infos: Dict[str, Any] = {}
+        if self._autoreset and any(over):
             infos["final_observation"] = self._shaped(self._observations.copy())
-            infos["_final_observation"] = over
+            infos["_final_observation"] = numpy.array(over)
             for number in numpy.flatnonzero(over):
                 self._worlds[number].begin()
                 self._read(number)
         infos.update(self._infos())
-        return (self._shaped(self._observations.copy()), self._shaped(rewards),
-                self._shaped(terminations), self._shaped(truncations), infos)
+        return (self._shaped(self._observations.copy()), self._shaped(numpy.array(all_rewards, float)),
+                self._shaped(numpy.array(all_terminations)), self._shaped(numpy.array(all_truncations)), infos)
 
     def _read(self, number: int) -> None:
         for place, robot in enumerate(self._worlds[number].agents):
@@ -212,6 +214,7 @@ class VectorEnv:
         for world in self._worlds:
             world.close()
         self._worlds = []
+        self._context.term()
 
     def __enter__(self) -> "VectorEnv":
         return self

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Dict, Iterator, List, Mapping, NamedTuple, Sequence, Tuple
 
 from .. import protocol_pb2 as v1
-from ..exchange import Exchange
+from ..exchange import Exchange, Places
 from ..named import Named
 from .device import Device, Quaternion, Vector, finite, quaternion, vector
 
@@ -79,11 +79,12 @@ class DescribedDevice(Device):
     @property
     def readings(self) -> Sequence[float]:
         """All readings, in the order of `fields`; none if it reads rows."""
-        if self._kind.has_rows:
-            return []
-        seen = self._exchange.seen.device_readings
-        count = len(self._kind.fields)
-        return seen[self._place:self._place + count] or [0.0] * count
+        return self._exchange.read(self._places)
+
+    @property
+    def _places(self) -> List[Places]:
+        """Of its readings."""
+        return [] if self._kind.has_rows else [("device_readings", self._place, self._place + len(self._kind.fields))]
 
     @property
     def rows(self) -> List[Mapping[str, float]]:

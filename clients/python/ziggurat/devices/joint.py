@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Dict, List, Optional, Tuple
 
 from .. import protocol_pb2 as v1
-from ..exchange import Exchange
+from ..exchange import Exchange, Places
 from .device import Device, finite
 
 _MODES = {v1.JointDescription.POSITION: "position", v1.JointDescription.VELOCITY: "velocity",
@@ -44,7 +44,11 @@ class Joint(Device):
     @property
     def readings(self) -> List[float]:
         """Those of all its sensors, in the order of the scene."""
-        return [self._read(place) for _, place in self._sensors]
+        return self._exchange.read(self._places)
+
+    @property
+    def _places(self) -> List[Places]:
+        return [("joint_readings", place, place + 1) for _, place in self._sensors]
 
     def _measured(self, mode: str) -> float:
         for each, place in self._sensors:

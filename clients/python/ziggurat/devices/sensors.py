@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 
 from .. import protocol_pb2 as v1
-from ..exchange import Exchange, Readings
+from ..exchange import Exchange, Places, Readings
 from ..named import Listed
 from .device import Device, Quaternion, Vector, quaternion, vector
 
@@ -140,13 +141,13 @@ class Sensors:
     def sensed(self) -> List[float]:
         """All readings here, one after the other: proximity, pose (7), available charge, IMUs (6 each), contact
         sensors (5 each)."""
-        values = list(self.proximity)
-        if self.pose is not None:
-            values.extend((*self.pose.position, *self.pose.orientation))
-        if self.battery is not None:
-            values.append(self.battery.available_charge)
-        for imu in self.imus:
-            values.extend((*imu.acceleration, *imu.angular_velocity))
-        for sensor in self.contact_sensors:
-            values.extend((float(sensor.touches), *sensor.force, sensor.strength))
-        return values
+        return self._exchange.read(self._sensed_places)
+
+    @cached_property
+    def _sensed_places(self) -> List[Places]:
+        places = [("proximity", self._proximity.start, self._proximity.stop)] if self.proximity_sensors else []
+        pose, battery = 7 * self._places["positioning"], 2 * self._places["batteries"]
+        places += [("positioning", pose, pose + 7)] if pose >= 0 else []
+        places += [("batteries", battery, battery + 1)] if battery >= 0 else []
+        places += [("imus", imu._place, imu._place + 6) for imu in self.imus]
+        return places + [("contact_sensors", sensor._place, sensor._place + 5) for sensor in self.contact_sensors]

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 from __future__ import annotations
 
+from typing import List
+
 from .. import protocol_pb2 as v1
-from ..exchange import Exchange
+from ..exchange import Exchange, Places
 from .device import finite
 
 
@@ -26,6 +28,10 @@ class Turret:
             raise AttributeError("this robot does not measure its turret")
         rotations = self._exchange.seen.turret_rotations
         return float(rotations[self._reading]) if rotations else 0.0
+
+    @property
+    def _places(self) -> List[Places]:
+        return [("turret_rotations", self._reading, self._reading + 1)] if self.measures else []
 
     def _set(self, mode: int, field: str = "", value: float = 0.0) -> None:
         if not self.drives:

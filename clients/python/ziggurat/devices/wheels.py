@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 from __future__ import annotations
 
-from typing import Tuple
+from typing import List, Tuple
 
 from .. import protocol_pb2 as v1
-from ..exchange import Exchange
+from ..exchange import Exchange, Places
 from .device import finite
 
 
@@ -30,6 +30,11 @@ class Wheels:
         left, right = finite(left, "a velocity"), finite(right, "a velocity")
         self._exchange.set("wheel_velocities", self._place, left)
         self._exchange.set("wheel_velocities", self._place + 1, right)
+
+    @property
+    def _places(self) -> List[Places]:
+        """Of velocity and distance."""
+        return [("wheels", self._reading, self._reading + 4)] if self.measures else []
 
     def _read(self, index: int) -> Tuple[float, float]:
         if not self.measures:

@@ -62,7 +62,7 @@ class Described(unittest.TestCase):
         lamp = self.two.devices["lamp"]["left"]
         self.assertEqual(lamp.commanded("power"), 0.5)
         lamp.set("power", -1)
-        self.assertEqual(list(self.exchange.command(1).command.device_commands), [0.5, 0.5, -1, 0.5])
+        self.assertEqual(list(v1.ClientMessage.FromString(self.exchange.command(1)).command.device_commands), [0.5, 0.5, -1, 0.5])
         for bad in (1.5, -2, float("nan")):
             with self.assertRaises(ValueError):
                 lamp.set("power", bad)

@@ -22,7 +22,7 @@ class Devices(unittest.TestCase):
         self.exchange.observe(v1.Observation(tick=1, **fields))
 
     def command(self):
-        command = self.exchange.command(1).command
+        command = v1.ClientMessage.FromString(self.exchange.command(1)).command
         self.exchange.sent()
         return command
 

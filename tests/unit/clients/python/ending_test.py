@@ -3,6 +3,8 @@
 
 import unittest
 
+import zmq
+
 import ziggurat
 from ziggurat import protocol_pb2 as v1
 
@@ -11,6 +13,20 @@ from session_case import SessionCase, open_with
 
 
 class Leaving(SessionCase):
+    def test_a_context_of_several_sessions_stays_and_the_leave_is_sent(self):
+        def part(server):
+            open_with(server)
+            server.observe(0)
+            self.assertEqual(server.receive().reason, v1.Leave.DONE)
+
+        def client():
+            with zmq.Context() as context:
+                with self.connect(context=context) as session:
+                    next(session)
+                self.assertFalse(context.closed)
+
+        self.play(part, client)
+
     def test_use_of_a_device_that_is_not_there_tells_what_the_robot_has(self):
         def part(server):
             open_with(server, v1.RobotDescription(id="bare", joint_sensors=[v1.JointDescription(id="arm")]))

@@ -16,7 +16,7 @@ class Markers(unittest.TestCase):
         self.exchange.begin()
 
     def sent(self):
-        markers = list(self.exchange.command(1).command.markers)
+        markers = list(v1.ClientMessage.FromString(self.exchange.command(1)).command.markers)
         self.exchange.sent()
         return markers
 
