@@ -89,10 +89,8 @@ def per_tick(make, ticks, skip=0, options=(), of=wall, scale=1.0):
     def measure(place, quick):
         first, more = (min(skip, 2), 5) if quick else (skip, ticks)
         tree = make()
-        taken = of(place.run(tree, first + more, options))
-        if first:
-            taken -= of(place.run(tree, first, options))
-        return scale * taken / more
+        before = of(place.run(tree, first, options)) if first else 0
+        return scale * (of(place.run(tree, first + more, options)) - before) / more
     return measure
 
 

@@ -60,7 +60,7 @@ def fall(count):
 
 def rest(count):
     return Row(f"rest-{count}", f"{count} boxes at rest", "ns per box and substep",
-               per_tick(lambda: scenes.boxes(count), 200 if count < 10_000 else 50, skip=20, scale=1e9 / count / substeps),
+               per_tick(lambda: scenes.boxes(count), 4000 if count < 10_000 else 200, skip=20, scale=1e9 / count / substeps),
                plot="rest", curve="at rest", x=count)
 
 

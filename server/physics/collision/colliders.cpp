@@ -404,10 +404,10 @@ bool Colliders::add_predictions(std::span<const int> trees, const dynamics::Syst
   return any;
 }
 
+/// Lists the pairs of two groups whose boxes meet.
 void Colliders::find_pairs(const ColliderGroup& a, const ColliderGroup& b,
                            std::vector<ColliderPair>& out) {
   const Bounds all_of_b{b.low, b.high};
-  if (!boxes_meet({a.low, a.high}, all_of_b)) return;
   bounds_.clear();
   for (std::size_t i = a.first; i < a.first + a.count; ++i) {
     const Bounds one = all[i].bounds();
@@ -423,17 +423,26 @@ void Colliders::find_pairs(const ColliderGroup& a, const ColliderGroup& b,
   }
 }
 
+/// Boxes find their pairs when they are changed; here those that came apart are dropped. Bullet's
+/// own way to do that moves each box that rests for a while to a second tree, one after another.
 void Colliders::find_pairs(std::vector<ColliderPair>& out) {
   out.clear();
   insert_new_groups();
   if (passes_left_ == 0 && updated_groups_.empty()) return;  // nothing moves
-  broadphase_.calculateOverlappingPairs(nullptr);
-  const btBroadphasePairArray& pairs =
-      broadphase_.getOverlappingPairCache()->getOverlappingPairArray();
+  broadphase_.m_sets[0].optimizeIncremental(1);
+  btOverlappingPairCache& cache = *broadphase_.getOverlappingPairCache();
+  const btBroadphasePairArray& pairs = cache.getOverlappingPairArray();
   for (int i = 0; i < pairs.size(); ++i) {
-    const ColliderGroup& a = groups[index_of(*pairs[i].m_pProxy0)];
-    const ColliderGroup& b = groups[index_of(*pairs[i].m_pProxy1)];
-    if (!(a.is_unchanged() && b.is_unchanged())) find_pairs(a, b, out);
+    btBroadphaseProxy &one = *pairs[i].m_pProxy0, &other = *pairs[i].m_pProxy1;
+    const ColliderGroup& a = groups[index_of(one)];
+    const ColliderGroup& b = groups[index_of(other)];
+    if (a.is_unchanged() && b.is_unchanged()) continue;
+    if (boxes_meet({a.low, a.high}, {b.low, b.high})) {
+      find_pairs(a, b, out);
+    } else if (!boxes_meet({one.m_aabbMin, one.m_aabbMax}, {other.m_aabbMin, other.m_aabbMax})) {
+      cache.removeOverlappingPair(&one, &other, nullptr);  // the last one takes its place
+      --i;
+    }
   }
   // Bullet's order depends on the history of the broad phase, which no snapshot has.
   std::ranges::sort(out, {}, [](const ColliderPair& near) { return std::tie(near.a, near.b); });
@@ -451,7 +460,9 @@ void Colliders::find_pairs(std::vector<ColliderPair>& out, const TreeSet& active
     for (const std::size_t hit : hits_) {
       const ColliderGroup& other = groups[hit];
       const bool counts = !other.moves || (active.contains[other.entity] && hit > index);
-      if (counts && other.entity != group.entity) find_pairs(group, other, out);
+      if (counts && other.entity != group.entity &&
+          boxes_meet({group.low, group.high}, {other.low, other.high}))
+        find_pairs(group, other, out);
     }
   }
 }

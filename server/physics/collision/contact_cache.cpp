@@ -146,6 +146,8 @@ void ContactCache::list_pairs() {
   listed_.clear();
   floor_pairs_.resize(colliders_.all.size(), 0);
   pairs_of_collider_.resize(colliders_.all.size());
+  const std::size_t most_on_floor = colliders_.floor ? colliders_.all.size() : 0;
+  if (pairs_.empty()) pairs_.reserve(1 + near_pairs_.size() + most_on_floor);
   for (const ColliderPair& near : near_pairs_) {
     listed_.emplace_back().pair = place_of(near.a, near.b, places_[key_of(near.a, near.b)]);
   }
@@ -188,17 +190,19 @@ void ContactCache::collide_pairs(double time_step) {
     for (std::size_t i = 0; i < count; ++i) {
       collide_pair(i, previous_points_.front());
       place_contacts(listed_[i]);
+      if (contacts_.size() < contact_count_) contacts_.resize(contact_count_);
       write_contacts(listed_[i]);
     }
+    contacts_.resize(contact_count_);
   } else {
     dynamics::share_in_blocks(team_, count, block, [&](std::size_t i, unsigned member) {
       collide_pair(i, previous_points_[member]);
     });
     for (ListedPair& listed : listed_) place_contacts(listed);
+    contacts_.resize(contact_count_);
     dynamics::share_in_blocks(team_, count, block,
                               [&](std::size_t i, unsigned) { write_contacts(listed_[i]); });
   }
-  contacts_.resize(contact_count_);
   list_supports();
 }
 
@@ -211,6 +215,7 @@ std::span<dynamics::ContactPoint> ContactCache::add_resting_contacts() {
     listed.count = pair.count;
     listed.rested = listed.rests = true;
     place_contacts(listed);
+    contacts_.resize(contact_count_);
     write_contacts(listed);
   }
   return contacts_;
@@ -263,7 +268,6 @@ void ContactCache::place_contacts(ListedPair& listed) {
   listed.first = static_cast<int>(contact_count_);
   contact_count_ += static_cast<std::size_t>(listed.count);
   check_contact_points(contact_count_);
-  if (contacts_.size() < contact_count_) contacts_.resize(contact_count_);
   if (listed.rotation.rotation_until_impact == 0) return;
   const Collider& a = colliders_.all[pairs_[listed.pair].a];
   const Collider& b = colliders_.all[pairs_[listed.pair].b];

@@ -11,12 +11,19 @@ namespace ziggurat::dynamics {
 namespace {
 
 /// Order of contacts in an island: it depends on the island alone.
-bool is_earlier(const ContactPoint& a, const ContactPoint& b) {
-  const auto key = [](const ContactPoint& c) {
-    return std::tuple(c.a.tree, c.b.tree, c.a.link, c.b.link, c.point.x(), c.point.y(), c.point.z(),
-                      c.gap);
+/// @return  < 0: a is earlier; 0: they are alike
+int compare(const ContactPoint& a, const ContactPoint& b) {
+  const auto order = [](const auto& one, const auto& other) {
+    return one < other ? -1 : other < one ? 1 : 0;
   };
-  return key(a) < key(b);
+  for (const int by : {order(a.a.tree, b.a.tree), order(a.b.tree, b.b.tree),
+                       order(a.a.link, b.a.link), order(a.b.link, b.b.link)}) {
+    if (by != 0) return by;
+  }
+  for (int i = 0; i < 3; ++i) {
+    if (const int by = order(a.point[i], b.point[i]); by != 0) return by;
+  }
+  return order(a.gap, b.gap);
 }
 
 /// Lists all that islands follow from: trees that are awake, and the trees of each constraint.
@@ -125,8 +132,8 @@ void sort_items(Islands& islands, std::size_t island, std::span<const ContactPoi
   const auto earlier = [&](const IslandItem& a, const IslandItem& b) {
     if (a.kind != b.kind || a.kind != IslandItem::Kind::contact)
       return std::tuple(a.kind, a.index) < std::tuple(b.kind, b.index);
-    return is_earlier(contacts[a.index], contacts[b.index]) ||
-           (!is_earlier(contacts[b.index], contacts[a.index]) && a.index < b.index);
+    const int by = compare(contacts[a.index], contacts[b.index]);
+    return by < 0 || (by == 0 && a.index < b.index);
   };
   const int first = islands.first_item[island], last = islands.first_item[island + 1];
   const std::span items = std::span(islands.items).subspan(first, last - first);
