@@ -3,6 +3,8 @@
 
 #include <string_view>
 
+#include "script/own_code.h"
+
 namespace ziggurat::lua {
 namespace {
 
@@ -64,9 +66,8 @@ end
 }  // namespace
 
 void set_ordered_pairs(lua_State* state) {
-  if (luaL_loadbufferx(state, source.data(), source.size(), "=pairs", "t") != LUA_OK) {
-    lua_error(state);
-  }
+  static const OwnCode code(source, "=pairs");
+  code.push(state);
   lua_call(state, 0, 0);
 }
 

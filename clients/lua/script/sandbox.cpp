@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "script/sandbox.h"
 
-#include <initializer_list>
+#include <array>
+#include <cstddef>
+#include <utility>
 
 #include "script/confined_code.h"
 #include "script/confined_files.h"
@@ -10,22 +12,43 @@
 namespace ziggurat::lua {
 namespace {
 
-// Upvalue: the function's name.
+struct Forbidden {
+  const char* library;
+  const char* name;
+};
+// Functions of debug reach into other functions and into the registry, and can remove the hook that
+// counts.
+constexpr std::array forbidden{
+    Forbidden{LUA_OSLIBNAME, "execute"},      Forbidden{LUA_OSLIBNAME, "tmpname"},
+    Forbidden{LUA_IOLIBNAME, "popen"},        Forbidden{LUA_IOLIBNAME, "tmpfile"},
+    Forbidden{LUA_LOADLIBNAME, "loadlib"},    Forbidden{LUA_DBLIBNAME, "debug"},
+    Forbidden{LUA_DBLIBNAME, "gethook"},      Forbidden{LUA_DBLIBNAME, "getlocal"},
+    Forbidden{LUA_DBLIBNAME, "getmetatable"}, Forbidden{LUA_DBLIBNAME, "getregistry"},
+    Forbidden{LUA_DBLIBNAME, "getupvalue"},   Forbidden{LUA_DBLIBNAME, "getuservalue"},
+    Forbidden{LUA_DBLIBNAME, "sethook"},      Forbidden{LUA_DBLIBNAME, "setlocal"},
+    Forbidden{LUA_DBLIBNAME, "setmetatable"}, Forbidden{LUA_DBLIBNAME, "setupvalue"},
+    Forbidden{LUA_DBLIBNAME, "setuservalue"}, Forbidden{LUA_DBLIBNAME, "upvalueid"},
+    Forbidden{LUA_DBLIBNAME, "upvaluejoin"},
+};
+
+// A function for each name: closures would take two kilobytes of each robot's state.
+template <std::size_t i>
 int refuse(lua_State* state) {
-  return luaL_error(state,
-                    "%s is not allowed for scripts that are not trusted; --trust-scripts allows it",
-                    lua_tostring(state, lua_upvalueindex(1)));
+  return luaL_error(
+      state, "%s.%s is not allowed for scripts that are not trusted; --trust-scripts allows it",
+      forbidden[i].library, forbidden[i].name);
 }
 
-/// Lets functions of a library raise errors.
-void forbid(lua_State* state, const char* library, std::initializer_list<const char*> names) {
-  lua_getglobal(state, library);
-  for (const char* name : names) {
-    lua_pushfstring(state, "%s.%s", library, name);
-    lua_pushcclosure(state, refuse, 1);
-    lua_setfield(state, -2, name);
+/// Lets forbidden functions raise errors.
+template <std::size_t... i>
+void forbid(lua_State* state, std::index_sequence<i...>) {
+  constexpr lua_CFunction functions[] = {refuse<i>...};
+  for (std::size_t k = 0; k < forbidden.size(); ++k) {
+    lua_getglobal(state, forbidden[k].library);
+    lua_pushcfunction(state, functions[k]);
+    lua_setfield(state, -2, forbidden[k].name);
+    lua_pop(state, 1);
   }
-  lua_pop(state, 1);
 }
 
 // The environment may hold keys and passwords.
@@ -75,14 +98,7 @@ int set_metatable(lua_State* state) {
 }  // namespace
 
 void confine(lua_State* state, const Folders& folders, std::size_t most_files) {
-  forbid(state, LUA_OSLIBNAME, {"execute", "tmpname"});
-  forbid(state, LUA_IOLIBNAME, {"popen", "tmpfile"});
-  forbid(state, LUA_LOADLIBNAME, {"loadlib"});
-  // These reach into other functions and into the registry, and can remove the hook that counts.
-  forbid(state, LUA_DBLIBNAME,
-         {"debug", "gethook", "getlocal", "getmetatable", "getregistry", "getupvalue",
-          "getuservalue", "sethook", "setlocal", "setmetatable", "setupvalue", "setuservalue",
-          "upvalueid", "upvaluejoin"});
+  forbid(state, std::make_index_sequence<forbidden.size()>());
   lua_getglobal(state, LUA_DBLIBNAME);
   lua_getfield(state, -1, "getinfo");
   lua_pushcclosure(state, get_info, 1);

@@ -4,6 +4,8 @@
 #include <array>
 #include <string_view>
 
+#include "script/own_code.h"
+
 namespace ziggurat::lua {
 namespace {
 
@@ -216,17 +218,32 @@ function shared.quaternion(...)
 end
 )lua";
 
-/// Most scripts use no vectors: their functions take 29 kB of a state and are loaded when the first
+/// Pushes a function for that field of the table at `table`.
+void push_loader(lua_State* state, int table, const char* name);
+
+/// Pushes the metatable of that name, which is made when a script has the first vector.
+void push_metatable(lua_State* state, const char* name) {
+  if (lua_getfield(state, LUA_REGISTRYINDEX, name) == LUA_TTABLE) return;
+  lua_pop(state, 1);
+  lua_createtable(state, 0, static_cast<int>(events.size()));
+  lua_pushvalue(state, -1);
+  lua_setfield(state, LUA_REGISTRYINDEX, name);
+  for (const char* event : events) {
+    push_loader(state, -1, event);
+    lua_setfield(state, -2, event);
+  }
+}
+
+/// Most scripts use no vectors: their functions take 20 kB of a state and are loaded when the first
 /// is called.
 void load(lua_State* state) {
   lua_getfield(state, LUA_REGISTRYINDEX, shared_key);
   if (lua_getfield(state, -1, names[0]) != LUA_TNIL) return lua_pop(state, 2);
   lua_pop(state, 1);
-  if (luaL_loadbufferx(state, source.data(), source.size(), "=vectors", "t") != LUA_OK) {
-    lua_error(state);
-  }
+  static const OwnCode code(source, "=vectors");
+  code.push(state);
   lua_insert(state, -2);
-  for (const char* metatable : metatables) luaL_getmetatable(state, metatable);
+  for (const char* metatable : metatables) push_metatable(state, metatable);
   lua_call(state, 1 + static_cast<int>(metatables.size()), 0);
 }
 
@@ -245,7 +262,6 @@ int call_loaded(lua_State* state) {
   return lua_gettop(state);
 }
 
-/// Pushes a function for that field of the table at `table`.
 void push_loader(lua_State* state, int table, const char* name) {
   lua_pushvalue(state, table);
   lua_pushstring(state, name);
@@ -265,18 +281,11 @@ void set_vectors(lua_State* state) {
     lua_setglobal(state, name);
   }
   lua_setfield(state, LUA_REGISTRYINDEX, shared_key);
-  for (const char* metatable : metatables) {
-    lua_createtable(state, 0, static_cast<int>(events.size()));
-    for (const char* event : events) {
-      push_loader(state, -1, event);
-      lua_setfield(state, -2, event);
-    }
-    lua_setfield(state, LUA_REGISTRYINDEX, metatable);
-  }
 }
 
 void set_kind(lua_State* state, VectorKind kind) {
-  luaL_setmetatable(state, metatables[static_cast<std::size_t>(kind)]);
+  push_metatable(state, metatables[static_cast<std::size_t>(kind)]);
+  lua_setmetatable(state, -2);
 }
 
 }  // namespace ziggurat::lua

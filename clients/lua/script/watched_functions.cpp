@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "script/interrupt.h"
+#include "script/own_code.h"
 
 namespace ziggurat::lua {
 namespace {
@@ -74,10 +75,8 @@ return function(f, handler, ...) return xpcall(f, guard_handler(handler), ...) e
 )lua";
 
 void set_xpcall(lua_State* state) {
-  const auto source = guarded_xpcall;
-  if (luaL_loadbufferx(state, source.data(), source.size(), "=xpcall", "t") != LUA_OK) {
-    lua_error(state);
-  }
+  static const OwnCode code(guarded_xpcall, "=xpcall");
+  code.push(state);
   lua_getglobal(state, "xpcall");
   lua_pushcfunction(state, guard_handler);
   lua_call(state, 2, 1);
