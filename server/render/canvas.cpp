@@ -9,7 +9,8 @@ namespace {
 
 constexpr double line_width = 1.5;    // [px] of the picture
 constexpr unsigned rows_of_band = 8;  // of the picture
-constexpr unsigned room = 8;          // behind a row, for a vector that begins in it
+constexpr unsigned lane_count = 8;
+constexpr unsigned room = lane_count;  // behind a row, for a vector that begins in it
 
 const Kernel& widest_kernel() {
   const Kernel* avx2 = avx2_kernel();
@@ -46,6 +47,60 @@ Blot blot_at(const Surface& disc, float x, float y, const std::array<float, 4>& 
   const auto count = static_cast<float>(inner + outer);
   const float shade = (static_cast<float>(inner) + 0.55f * static_cast<float>(outer)) / count;
   return {{disc.color[0] * shade, disc.color[1] * shade, disc.color[2] * shade}, count / 16};
+}
+
+/// The runs that the pixels of a row are in, from left to right.
+class OpenRuns {
+ public:
+  static constexpr std::uint32_t none = ~0u;
+
+  explicit OpenRuns(std::vector<Run>& runs) : runs_(runs) {}
+
+  /// The surface of all samples of the last pixel, if there is only one.
+  std::uint32_t whole() const { return whole_; }
+
+  /// @param here  surfaces of the samples of pixel x
+  void go_on(unsigned x, const std::array<std::uint32_t, 4>& here) {
+    const bool is_whole = here[0] == here[1] && here[0] == here[2] && here[0] == here[3];
+    if (is_whole && here[0] == whole_) return;
+    whole_ = is_whole ? here[0] : none;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      Run& run = runs_[open_[i]];
+      if (std::ranges::find(here, run.number) != here.end()) {
+        open_[kept++] = open_[i];
+      } else {
+        run.end = x;
+      }
+    }
+    count_ = kept;
+    for (const std::uint32_t number : here) {
+      const auto is_open = [&](std::size_t run) { return runs_[run].number == number; };
+      if (std::any_of(open_.begin(), open_.begin() + static_cast<std::ptrdiff_t>(count_), is_open))
+        continue;
+      open_[count_++] = runs_.size();
+      runs_.push_back({number, x, x});
+    }
+  }
+
+  void end(unsigned x) {
+    for (std::size_t i = 0; i < count_; ++i) runs_[open_[i]].end = x;
+  }
+
+ private:
+  std::vector<Run>& runs_;
+  std::array<std::size_t, 4> open_{};  // into runs_
+  std::size_t count_ = 0;
+  std::uint32_t whole_ = none;
+};
+
+/// A row of colours as bytes.
+void pack(const RowColors& colors, unsigned width, std::uint8_t* rgb) {
+  for (unsigned x = 0; x < width; ++x, rgb += 3) {
+    rgb[0] = static_cast<std::uint8_t>(colors.red[x] + 0.5f);
+    rgb[1] = static_cast<std::uint8_t>(colors.green[x] + 0.5f);
+    rgb[2] = static_cast<std::uint8_t>(colors.blue[x] + 0.5f);
+  }
 }
 
 }  // namespace
@@ -103,43 +158,27 @@ void Canvas::take_floor(const Drawing& drawing, const Model& model) {
 /// Runs of pixels that show one surface, at least in a sample.
 void Canvas::find_runs(unsigned row) {
   runs_.clear();
-  const std::uint32_t* line[4];
+  std::array<const std::uint32_t*, 4> line{};
   for (unsigned i = 0; i < 4; ++i) line[i] = &samples_.numbers[samples_.line(row, i)];
-  constexpr std::uint32_t none = ~0u;
-  std::array<std::size_t, 4> open{};  // into runs_
-  std::size_t count = 0;
-  std::uint32_t whole = none;  // the only one that is open
-  for (unsigned x = 0; x < samples_.width; ++x) {
-    const std::array<std::uint32_t, 4> here{line[0][x], line[1][x], line[2][x], line[3][x]};
-    const bool is_whole = here[0] == here[1] && here[0] == here[2] && here[0] == here[3];
-    if (is_whole && here[0] == whole) continue;
-    std::array<std::size_t, 4> next{};
-    std::size_t next_count = 0;
-    for (unsigned i = 0; i < 4; ++i) {
-      const std::uint32_t number = here[i];
-      if (std::find(here.begin(), here.begin() + i, number) != here.begin() + i) continue;
-      const auto known =
-          std::find_if(open.begin(), open.begin() + static_cast<std::ptrdiff_t>(count),
-                       [&](std::size_t run) { return runs_[run].number == number; });
-      if (known != open.begin() + static_cast<std::ptrdiff_t>(count)) {
-        next[next_count++] = *known;
-        runs_[*known].end = none;
-      } else {
-        next[next_count++] = runs_.size();
-        runs_.push_back({number, x, none});
+  OpenRuns open(runs_);
+  for (unsigned x = 0; x < samples_.width;) {
+    const std::uint32_t whole = open.whole();
+    if (whole != OpenRuns::none && x + lane_count <= samples_.width) {
+      std::uint32_t differs = 0;
+      for (unsigned j = x; j < x + lane_count; ++j) {
+        differs |= (line[0][j] ^ whole) | (line[1][j] ^ whole) | (line[2][j] ^ whole) |
+                   (line[3][j] ^ whole);
+      }
+      if (differs == 0) {
+        x += lane_count;
+        continue;
       }
     }
-    for (std::size_t i = 0; i < count; ++i) {
-      if (std::find(next.begin(), next.begin() + static_cast<std::ptrdiff_t>(next_count),
-                    open[i]) == next.begin() + static_cast<std::ptrdiff_t>(next_count)) {
-        runs_[open[i]].end = x;
-      }
+    for (const unsigned end = std::min(x + lane_count, samples_.width); x < end; ++x) {
+      open.go_on(x, {line[0][x], line[1][x], line[2][x], line[3][x]});
     }
-    open = next;
-    count = next_count;
-    whole = is_whole ? here[0] : none;
   }
-  for (std::size_t i = 0; i < count; ++i) runs_[open[i]].end = samples_.width;
+  open.end(samples_.width);
 }
 
 /// Covers the samples of a row in which a disc is nearest.
@@ -191,14 +230,12 @@ void Canvas::draw_disc(const Disc& disc, unsigned row) {
 
 void Canvas::draw_row(unsigned row) {
   std::fill(colors_.begin(), colors_.end(), 0.0f);
-  const std::size_t stride = samples_.stride;
-  const RowColors colors{&colors_[0], &colors_[stride], &colors_[2 * stride]};
   find_runs(row);
   for (const Run& run : runs_) {
     const Surface* surface = run.number < first_surface_number
                                  ? nullptr
                                  : &scenery_.surfaces[run.number - first_surface_number];
-    kernel_.shade(frame_, surface, row, run, samples_, colors);
+    kernel_.shade(frame_, surface, row, run, samples_, colors());
   }
   for (const Disc& disc : discs_) draw_disc(disc, row);
 }
@@ -219,6 +256,28 @@ void Canvas::draw_band(unsigned first_row, unsigned rows) {
   }
 }
 
+/// A row of the picture, as the mean of n x n rendered pixels each.
+void Canvas::draw_mean_row(unsigned v, unsigned n, std::uint8_t* rgb) {
+  std::ranges::fill(sums_, 0.0f);
+  const std::size_t width = sums_.size() / 3;
+  const float share = 1 / static_cast<float>(n * n);
+  for (unsigned row = v * n; row < (v + 1) * n; ++row) {
+    draw_row(row);
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const float* from = &colors_[channel * samples_.stride];
+      float* to = &sums_[channel * width];
+      for (std::size_t x = 0; x < width; ++x) {
+        for (unsigned i = 0; i < n; ++i) to[x] += share * *from++;
+      }
+    }
+  }
+  pack({&sums_[0], &sums_[width], &sums_[2 * width]}, static_cast<unsigned>(width), rgb);
+}
+
+RowColors Canvas::colors() {
+  return {&colors_[0], &colors_[samples_.stride], &colors_[2 * samples_.stride]};
+}
+
 void Canvas::draw(const Drawing& drawing, const Meshes& meshes, const Model& model,
                   const View& view, Picture& picture) {
   picture.width = view.width;
@@ -237,21 +296,15 @@ void Canvas::draw(const Drawing& drawing, const Meshes& meshes, const Model& mod
   samples_.stride = lens_.width + room;
   colors_.resize(3 * samples_.stride);
   sums_.resize(std::size_t{3} * view.width);
-  const float share = 1 / static_cast<float>(n * n);
   for (unsigned v = 0; v < view.height; ++v) {
     if (v % rows_of_band == 0) draw_band(v * n, std::min(rows_of_band, view.height - v) * n);
-    std::fill(sums_.begin(), sums_.end(), 0.5f);
-    for (unsigned row = v * n; row < (v + 1) * n; ++row) {
-      draw_row(row);
-      for (std::size_t channel = 0; channel < 3; ++channel) {
-        const float* from = &colors_[channel * samples_.stride];
-        for (std::size_t x = 0; x < view.width; ++x) {
-          for (unsigned i = 0; i < n; ++i) sums_[3 * x + channel] += share * *from++;
-        }
-      }
+    std::uint8_t* rgb = &picture.rgb[std::size_t{3} * v * view.width];
+    if (n == 1) {
+      draw_row(v);
+      pack(colors(), view.width, rgb);
+    } else {
+      draw_mean_row(v, n, rgb);
     }
-    std::uint8_t* to = &picture.rgb[std::size_t{3} * v * view.width];
-    for (std::size_t i = 0; i < sums_.size(); ++i) to[i] = static_cast<std::uint8_t>(sums_[i]);
   }
 }
 

@@ -27,6 +27,8 @@ class Canvas {
   void find_runs(unsigned row);
   void draw_disc(const Disc& disc, unsigned row);
   void draw_row(unsigned row);
+  void draw_mean_row(unsigned v, unsigned n, std::uint8_t* rgb);
+  RowColors colors();
   void draw_band(unsigned first_row, unsigned rows);
 
   const Kernel& kernel_;
