@@ -36,10 +36,12 @@ struct Surface {
   /// Coordinates of a point of the camera's frame, each xyz . point + w: on a face its edges are at
   /// -1 and 1, on a tag x and y are.
   std::array<std::array<float, 4>, 3> coordinates{};
-  Float3 half_size{};                   ///< how long one unit of each coordinate is [m]
-  float smallest = 0;                   ///< full extent of the body [m]
-  Float3 color{};                       ///< linear light; of plain ones sRGB
-  std::array<std::uint32_t, 2> code{};  ///< pattern of a tag
+  Float3 half_size{};  ///< how long one unit of each coordinate is [m]
+  float smallest = 0;  ///< full extent of the body [m]
+  Float3 color{};      ///< linear light; of plain ones sRGB
+  /// Of a tag, a bit each: rows from up (+x) on, columns from left (+y) on, with the white around
+  /// its 10 x 10 modules.
+  std::array<std::uint16_t, 12> white_modules{};
 };
 
 /// Brightness of a tag's modules, sRGB.

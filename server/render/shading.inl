@@ -281,33 +281,31 @@ ZIGGURAT_INLINE Point face_color(const Frame& frame, const Surface& surface, con
   return shown(shaded(frame, albedo, at.position, at.normal, here.wanted));
 }
 
-/// Brightness of a tag's module: 10 x 10 with the margin; up is +x, right is -y.
-static inline float module_shade(const Surface& surface, int column, int row) {
-  if (column < 1 || row < 1 || column > 8 || row > 8) return white_of_tags;
-  if (column < 2 || row < 2 || column > 7 || row > 7) return black_of_tags;
-  const int bit = 35 - ((row - 2) * 6 + column - 2);
-  const std::uint32_t bits = bit < 32 ? surface.code[0] >> bit : surface.code[1] >> (bit - 32);
-  return (bits & 1u) == 0 ? black_of_tags : white_of_tags;
+/// 1 if a tag's module is white, else 0.
+static inline unsigned is_white(const Surface& surface, int column, int row) {
+  const auto within = [](int i) { return i < -1 ? 0 : i > 10 ? 11 : i + 1; };
+  return (surface.white_modules[static_cast<unsigned>(within(row))] >> within(column)) & 1u;
 }
 
-/// The mean over a pixel's footprint, a parallelogram. @param x, y  its centre [modules]
-static inline float tag_shade(const Surface& surface, float x, float y, const float* change) {
+/// White's share of a pixel's footprint, a parallelogram.
+/// @param x, y  its centre [modules];  @param change  of x across and down, and of y
+static inline float white_share(const Surface& surface, float x, float y, const float* change) {
   const auto size = [](float a) { return a < 0 ? -a : a; };
   const float wide = 0.46875f * (size(change[0]) + size(change[1]));
   const float high = 0.46875f * (size(change[2]) + size(change[3]));
   const int column = integer_below(x - wide), row = integer_below(y - high);
   if (integer_below(x + wide) == column && integer_below(y + high) == row) {
-    return module_shade(surface, column, row);
+    return static_cast<float>(is_white(surface, column, row));
   }
   // Sixteen places, no two of them in one column or row of the pixel.
-  float sum = 0;
+  unsigned count = 0;
   for (int i = 0; i < 16; ++i) {
     const float across = (static_cast<float>(i) - 7.5f) / 16;
     const float down = (static_cast<float>(5 * i % 16) - 7.5f) / 16;
-    sum += module_shade(surface, integer_below(x + across * change[0] + down * change[1]),
-                        integer_below(y + across * change[2] + down * change[3]));
+    count += is_white(surface, integer_below(x + across * change[0] + down * change[1]),
+                      integer_below(y + across * change[2] + down * change[3]));
   }
-  return sum * (1.0f / 16);
+  return static_cast<float>(count) / 16;
 }
 
 ZIGGURAT_INLINE Point tag_color(const Frame& frame, const Surface& surface, const Here& here,
@@ -321,13 +319,14 @@ ZIGGURAT_INLINE Point tag_color(const Frame& frame, const Surface& surface, cons
     place[i] = product + xyz[3];
     change[i] = change_of(frame, xyz, product, at.a, at.b, at.position.z);
   }
-  Lanes shade = all(0);
+  Lanes share = all(0);
   for (int i = 0; i < lane_count; ++i) {
     if (!here.wanted[i]) continue;
     const float changes[4] = {-5 * change[1].across[i], -5 * change[1].down[i],
                               -5 * change[0].across[i], -5 * change[0].down[i]};
-    shade[i] = tag_shade(surface, 5 - 5 * place[1][i], 5 - 5 * place[0][i], changes);
+    share[i] = white_share(surface, 5 - 5 * place[1][i], 5 - 5 * place[0][i], changes);
   }
+  const Lanes shade = mixed(black_of_tags, white_of_tags, share);
   return {shade, shade, shade};
 }
 

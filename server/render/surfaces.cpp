@@ -255,13 +255,29 @@ bool set_square(const MarkInstance& mark, const Lens& lens, Polygon& polygon, Su
   return true;
 }
 
+/// A margin of one module, then a black border, then the pattern.
+std::array<std::uint16_t, 12> white_modules(const MarkInstance& mark) {
+  constexpr unsigned all = 0xfff, margin = 0xc03;  // margins of both sides
+  std::array<std::uint16_t, 12> rows{all, all, margin, 0, 0, 0, 0, 0, 0, margin, all, all};
+  for (unsigned row = 0; row < 6; ++row) {
+    unsigned bits = margin;
+    for (unsigned column = 0; column < 6; ++column) {
+      const unsigned bit = 35 - (row * 6 + column);
+      const std::uint32_t word = bit < 32 ? mark.code[1] >> bit : mark.code[2] >> (bit - 32);
+      bits |= (word & 1u) << (column + 3);
+    }
+    rows[row + 3] = static_cast<std::uint16_t>(bits);
+  }
+  return rows;
+}
+
 void add_mark(const MarkInstance& mark, const Lens& lens, Scenery& scenery) {
   Polygon polygon;
   Surface surface;
   if (!set_square(mark, lens, polygon, surface)) return;
   const bool has_pattern = mark.code[0] == MarkInstance::pattern;
   surface.kind = has_pattern ? Surface::Kind::tag : Surface::Kind::plain;
-  surface.code = {mark.code[1], mark.code[2]};
+  if (has_pattern) surface.white_modules = white_modules(mark);
   surface.color.fill(white_of_tags);
   polygon.surface = first_surface_number + static_cast<std::uint32_t>(scenery.surfaces.size());
   scenery.surfaces.push_back(surface);
