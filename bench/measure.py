@@ -31,6 +31,7 @@ class Place:
         shutil.copytree(scenes.SCENES, self.scenes)
         (self.scenes / "wander.lua").write_text(scenes.WANDER)
         (self.scenes / "look.lua").write_text(scenes.LOOK)
+        (self.scenes / "blink.lua").write_text(scenes.BLINK)
         self.environment = dict(os.environ, XDG_RUNTIME_DIR=self.folder.name,
                                 PYTHONPATH=str(self.programs.parent / "python"))
 
@@ -73,6 +74,10 @@ def wall(told):
 
 def exchange(told):
     return told["wall_time_s"]["exchange"]
+
+
+def sensing(told):
+    return told["phases_s"]["sensing"]
 
 
 def processor(told):

@@ -3,7 +3,7 @@
 
 from typing import Callable, NamedTuple, Optional
 
-from measure import cells, environments, exchange, load, memory, once, per_tick, printed, processor, wall
+from measure import cells, environments, exchange, load, memory, once, per_tick, printed, processor, sensing, wall
 import scenes
 
 
@@ -81,6 +81,11 @@ def cameras(count):
                plot="cameras", curve="exchange", x=count)
 
 
+def pictures(count):
+    return Row(f"pictures-{count}", f"a picture of {count} box{'es' * (count > 1)} with a tag each, 640 × 480", "ms per picture",
+               per_tick(lambda: scenes.pictures(count), 100, of=sensing, scale=1e3))
+
+
 def lockstep(processes, robots):
     return Row(f"lockstep-{processes}x{robots}",
                f"lock-step tick, {processes} process{'es' * (processes > 1)} × {robots} robot{'s' * (robots > 1)}", "µs per tick",
@@ -117,6 +122,7 @@ ROWS = [
     Row("foot-bot-cameras", "foot-bot with two cameras, exchange", "µs per tick",
         per_tick(lambda: scenes.report("footbot_camera_prototype_example"), 1000, of=exchange, scale=1e6)),
     *(cameras(count) for count in (1, 16, 64)),
+    *(pictures(count) for count in (1, 50, 500)),
     *(lockstep(*size) for size in ((1, 1), (4, 1), (16, 1), (1, 256))),
     *(worlds(count) for count in (1, 8)),
     Row("memory-server", "memory of a two-wheeled robot in the server", "kB", memory("ziggurat")),

@@ -242,6 +242,26 @@ LOOKING = """
 </lua_controller>
 """
 
+PICTURING = """
+<lua_controller id="look">
+  <actuators/>
+  <sensors>
+    <cameras implementation="default" show_frustum="false">
+      <camera id="camera" range="0.05:8" resolution="640, 480" anchor="base" position="0.06, 0, 0.2"
+              orientation="-90, 90, 15" focal_length="600, 600" principal_point="320, 240" image="true"/>
+    </cameras>
+  </sensors>
+  <params script="blink.lua"/>
+</lua_controller>
+"""
+
+BLINK = """\
+function init() end
+function step() end
+function reset() end
+function destroy() end
+"""
+
 LOOK = """\
 -- Adds up where its camera sees tags.
 local sum = 0
@@ -265,5 +285,18 @@ def cameras(count):
         entities += [TARGET.format(robot=i, number=j, x=x + 0.45, y=y + 0.05 * (j - 2)) for j in range(5)]
     tree = bare(columns + 2, "".join(entities))
     tree.find("controllers").append(ElementTree.fromstring(LOOKING.strip()))
+    ElementTree.SubElement(tree.find("media"), "tag", id="tags")
+    return tree
+
+
+def pictures(targets):
+    """A robot whose camera takes pictures of boxes with a tag each, from 0.4 m on. Its script, BLINK, must stand beside
+    the scene as blink.lua."""
+    columns = math.ceil(math.sqrt(targets))
+    entities = [CAMERA_ROBOT.format(number=0, x=-0.5, y=0)]
+    entities += [TARGET.format(robot=0, number=j, x=0.1 * (j // columns), y=0.1 * (j % columns - (columns - 1) / 2))
+                 for j in range(targets)]
+    tree = bare(0.2 * columns + 4, "".join(entities))
+    tree.find("controllers").append(ElementTree.fromstring(PICTURING.strip()))
     ElementTree.SubElement(tree.find("media"), "tag", id="tags")
     return tree

@@ -3,7 +3,7 @@
 ARG BASE=debian:bookworm-slim
 FROM ${BASE}
 COPY build/package/packages/ziggurat_*.deb /tmp/
-# Without libosmesa6, which pictures need (render, cameras with images): with its LLVM it has 150 MB. Images have no documents.
+# Images have no documents.
 RUN printf 'path-exclude %s\n' '/usr/share/doc/*' '/usr/share/man/*' '/usr/share/locale/*' >/etc/dpkg/dpkg.cfg.d/slim \
  && apt-get update \
  && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends /tmp/*.deb \

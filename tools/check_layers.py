@@ -75,7 +75,6 @@ LIBRARIES = {
     "libsodium": (r"sodium\.h$", ["network"]),
     "SQLite": (r"sqlite3\.h$", ["sweep"]),
     "toml++": (r"toml\+\+/", ["cli", "sweep"]),
-    "OpenGL": (r"(GL|EGL|GLES\d?)/", ["render"]),
     "libpng": (r"png\.h$", ["outputs", "images"]),
     "libzstd": (r"zstd\.h$", ["recording/mcap"]),
     "liblz4": (r"lz4\w*\.h$", ["recording/mcap"]),

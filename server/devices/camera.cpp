@@ -157,7 +157,7 @@ class Pictures final : public Kind {
  public:
   std::unique_ptr<Kind> clone() const override { return std::make_unique<Pictures>(*this); }
 
-  /// Without a camera that takes pictures, nothing is made, and nothing of OpenGL is loaded.
+  /// Without a camera that takes pictures, nothing is made.
   void add(const Setting& setting) override {
     for (const world::RobotLayout& robot : setting.new_robots()) {
       for (std::size_t i = robot.cameras.begin; i < robot.cameras.end(); ++i) {
@@ -175,15 +175,14 @@ class Pictures final : public Kind {
     }
   }
 
-  /// New cameras have empty pictures. @throws render::RenderError if none can be made
+  /// New cameras have empty pictures.
   void start(Tick& tick) override {
     for (std::size_t i = tick.observations.images.size(); i < cameras_.size(); ++i) {
       tick.observations.images.push_back({cameras_[i], {}});
     }
-    if (renderer_) renderer_->prepare();
   }
 
-  /// Replaces all of them. @throws render::RenderError
+  /// Replaces all of them.
   void sense(Tick& tick) override {
     for (std::size_t i = 0; i < cameras_.size(); ++i) {
       const world::CameraLayout& camera = tick.layout.cameras[cameras_[i]];

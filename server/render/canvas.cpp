@@ -1,307 +1,311 @@
 // SPDX-License-Identifier: MIT
 #include "render/canvas.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <span>
-
-#include "render/floor_picture.h"
 
 namespace ziggurat::render {
 namespace {
 
-constexpr unsigned largest_tile = 1024;  // [px] of the picture, so that memory stays bounded
-constexpr float near_plane = 1e-3f;      // [m]
-constexpr float line_width = 1.5f;       // [px] of the picture
+constexpr double line_width = 1.5;    // [px] of the picture
+constexpr unsigned rows_of_band = 8;  // of the picture
+constexpr unsigned lane_count = 8;
+constexpr unsigned room = lane_count;  // behind a row, for a vector that begins in it
 
-/// The uniforms of shaders::common.
-struct Frame {
-  Matrix4 clip_from_camera;
-  Matrix4 light_from_camera;
-  std::array<float, 4> sun, right, ahead, up, ground, arena, painting;
+const Kernel& widest_kernel() {
+  const Kernel* avx2 = avx2_kernel();
+  return avx2 ? *avx2 : baseline_kernel();
+}
+
+/// The colour of a disc in a pixel, sRGB, and how much of the pixel it covers.
+struct Blot {
+  Float3 color{};
+  float cover = 0;
 };
 
-std::array<float, 4> with(const Float3& xyz, double w) {
-  return {xyz[0], xyz[1], xyz[2], static_cast<float>(w)};
-}
-
-const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
-
-template <class T>
-GLsizeiptr bytes(std::span<const T> list) {
-  return static_cast<GLsizeiptr>(list.size_bytes());
-}
-
-/// The mean of each n x n pixels of RGBA, as RGB.
-/// @param stride  of `from`, in pixels
-void shrink(const std::uint8_t* from, std::size_t stride, std::size_t width, unsigned n,
-            std::uint8_t* to) {
-  for (std::size_t x = 0; x < width; ++x) {
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      unsigned sum = n * n / 2;
-      for (std::size_t j = 0; j < n; ++j) {
-        for (std::size_t i = 0; i < n; ++i) sum += from[(j * stride + x * n + i) * 4 + channel];
+/// The mean over the pixel's footprint.
+/// @param x, y  its centre on the disc, whose radius is 1;  @param change  of x across and down,
+/// and of y
+Blot blot_at(const Surface& disc, float x, float y, const std::array<float, 4>& change) {
+  unsigned inner = 0, outer = 0;
+  for (unsigned i = 0; i < 4; ++i) {
+    for (unsigned j = 0; j < 4; ++j) {
+      const float across = 0.25f * static_cast<float>(i) - 0.375f;
+      const float down = 0.25f * static_cast<float>(j) - 0.375f;
+      const float u = x + across * change[0] + down * change[1];
+      const float v = y + across * change[2] + down * change[3];
+      const float square = u * u + v * v;
+      if (square <= 0.72f) {
+        ++inner;
+      } else if (square <= 1) {
+        ++outer;
       }
-      to[x * 3 + channel] = static_cast<std::uint8_t>(sum / (n * n));
     }
   }
+  if (inner + outer == 0) return {};
+  // Its rim is darker.
+  const auto count = static_cast<float>(inner + outer);
+  const float shade = (static_cast<float>(inner) + 0.55f * static_cast<float>(outer)) / count;
+  return {{disc.color[0] * shade, disc.color[1] * shade, disc.color[2] * shade}, count / 16};
 }
 
-/// The same for the usual n, which the compiler can unroll.
-void shrink_row(const std::uint8_t* from, std::size_t stride, std::size_t width, unsigned n,
-                std::uint8_t* to) {
-  if (n == 1) return shrink(from, stride, width, 1, to);
-  if (n != 2) return shrink(from, stride, width, n, to);
-  const std::uint8_t* below = from + 4 * stride;
-  for (std::size_t x = 0; x < width; ++x, from += 8, below += 8, to += 3) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      to[i] = static_cast<std::uint8_t>((from[i] + from[4 + i] + below[i] + below[4 + i] + 2) >> 2);
+/// The runs that the pixels of a row are in, from left to right.
+class OpenRuns {
+ public:
+  static constexpr std::uint32_t none = ~0u;
+
+  explicit OpenRuns(std::vector<Run>& runs) : runs_(runs) {}
+
+  /// The surface of all samples of the last pixel, if there is only one.
+  std::uint32_t whole() const { return whole_; }
+
+  /// @param here  surfaces of the samples of pixel x
+  void go_on(unsigned x, const std::array<std::uint32_t, 4>& here) {
+    const bool is_whole = here[0] == here[1] && here[0] == here[2] && here[0] == here[3];
+    if (is_whole && here[0] == whole_) return;
+    whole_ = is_whole ? here[0] : none;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      Run& run = runs_[open_[i]];
+      if (std::ranges::find(here, run.number) != here.end()) {
+        open_[kept++] = open_[i];
+      } else {
+        run.end = x;
+      }
     }
+    count_ = kept;
+    for (const std::uint32_t number : here) {
+      const auto is_open = [&](std::size_t run) { return runs_[run].number == number; };
+      if (std::any_of(open_.begin(), open_.begin() + static_cast<std::ptrdiff_t>(count_), is_open))
+        continue;
+      open_[count_++] = runs_.size();
+      runs_.push_back({number, x, x});
+    }
+  }
+
+  void end(unsigned x) {
+    for (std::size_t i = 0; i < count_; ++i) runs_[open_[i]].end = x;
+  }
+
+ private:
+  std::vector<Run>& runs_;
+  std::array<std::size_t, 4> open_{};  // into runs_
+  std::size_t count_ = 0;
+  std::uint32_t whole_ = none;
+};
+
+/// A row of colours as bytes.
+void pack(const RowColors& colors, unsigned width, std::uint8_t* rgb) {
+  for (unsigned x = 0; x < width; ++x, rgb += 3) {
+    rgb[0] = static_cast<std::uint8_t>(colors.red[x] + 0.5f);
+    rgb[1] = static_cast<std::uint8_t>(colors.green[x] + 0.5f);
+    rgb[2] = static_cast<std::uint8_t>(colors.blue[x] + 0.5f);
   }
 }
 
 }  // namespace
 
-Canvas::Canvas(const Meshes& meshes) {
-  const OpenGl& gl = context_.gl();
-  make_programs();
-  make_body_arrays();
-  take(meshes);
-  make_mark_arrays();
-  make_line_arrays();
-  make_shadow_map();
-  gl.create_vertex_arrays(1, &no_arrays_);
-  gl.create_buffers(1, &frame_);
-  gl.bind_buffer_base(GL_UNIFORM_BUFFER, 0, frame_);
-  gl.bind_texture_unit(0, shadow_map_);
-  gl.clip_control(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-  check();
-}
+Canvas::Canvas(const Kernel* kernel) : kernel_(kernel ? *kernel : widest_kernel()) {}
 
-void Canvas::make_shadow_map() {
-  const OpenGl& gl = context_.gl();
-  gl.create_textures(GL_TEXTURE_2D, 1, &shadow_map_);
-  gl.texture_storage(shadow_map_, 1, GL_DEPTH_COMPONENT32F, shadow_size, shadow_size);
-  gl.texture_parameter(shadow_map_, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  gl.texture_parameter(shadow_map_, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  gl.texture_parameter(shadow_map_, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
-  gl.texture_parameter(shadow_map_, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
-  const float lit[]{1, 1, 1, 1};
-  gl.texture_parameters(shadow_map_, GL_TEXTURE_BORDER_COLOR, lit);
-  gl.texture_parameter(shadow_map_, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-  gl.texture_parameter(shadow_map_, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-  gl.create_framebuffers(1, &shadow_target_);
-  gl.named_framebuffer_texture(shadow_target_, GL_DEPTH_ATTACHMENT, shadow_map_, 0);
-  gl.named_framebuffer_draw_buffer(shadow_target_, GL_NONE);
-}
-
-/// Draws the colours of the floor into a texture when they change.
-void Canvas::take_floor(const Drawing& drawing, const Model& model) {
-  if (floor_colors_ != 0 ? drawing.floor == floor_ : !model.floor_image && drawing.floor.empty())
-    return;
-  const OpenGl& gl = context_.gl();
-  const FloorPicture picture = floor_picture(model, drawing.floor);
-  const auto width = static_cast<GLsizei>(picture.width),
-             height = static_cast<GLsizei>(picture.height);
-  if (floor_colors_ == 0) {
-    gl.create_textures(GL_TEXTURE_2D, 1, &floor_colors_);
-    gl.texture_storage(floor_colors_, 1, GL_RGBA8, width, height);
-    gl.texture_parameter(floor_colors_, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    gl.texture_parameter(floor_colors_, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    gl.texture_parameter(floor_colors_, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    gl.texture_parameter(floor_colors_, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    gl.bind_texture_unit(1, floor_colors_);
+void Canvas::set_frame(const Drawing& drawing, const Model& model, const View& view) {
+  const double n = view.oversampling;
+  lens_ = {n * view.focal_length.x(),
+           n * view.focal_length.y(),
+           n * view.principal_point.x(),
+           n * view.principal_point.y(),
+           n * line_width,
+           view.width * view.oversampling,
+           view.height * view.oversampling};
+  frame_.center_x = lens_.center_x;
+  frame_.center_y = lens_.center_y;
+  frame_.focal_x = lens_.focal_x;
+  frame_.focal_y = lens_.focal_y;
+  frame_.sun = drawing.sun;
+  frame_.right = drawing.right;
+  frame_.ahead = drawing.ahead;
+  frame_.up = drawing.up;
+  // Floats tell two sides of a tile only near their own zero.
+  const math::Vector3& eye = view.camera.position;
+  const math::Vector3 origin(std::floor(eye.x() / (2 * model.tile)) * 2 * model.tile,
+                             std::floor(eye.y() / (2 * model.tile)) * 2 * model.tile, 0);
+  frame_.eye = to_floats(math::Vector3(eye - origin));
+  frame_.tile = static_cast<float>(model.tile);
+  const math::Vector2 center = model.arena_center - origin.head<2>();
+  frame_.arena_center = {static_cast<float>(center.x()), static_cast<float>(center.y())};
+  frame_.arena_half = {static_cast<float>(model.arena_half_size.x()),
+                       static_cast<float>(model.arena_half_size.y())};
+  frame_.has_floor = model.has_floor && eye.z() != 0;
+  if (frame_.has_floor) {
+    const math::Vector3 up(drawing.up[0], drawing.up[1], drawing.up[2]);
+    frame_.floor_depth = depth_of_plane(lens_, up, -eye.z());
   }
-  gl.texture_sub_image(floor_colors_, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE,
-                       picture.rgba.data());
-  floor_ = drawing.floor;
+  frame_.painting = painting_ ? &*painting_ : nullptr;
+  frame_.light_from_camera = drawing.light_from_camera;
+  frame_.shadow_texel = static_cast<float>(drawing.shadow_texel);
+  frame_.shadows = &shadows_;
 }
 
-void Canvas::make_target(unsigned width, unsigned height) {
-  if (width <= target_width_ && height <= target_height_) return;
-  const OpenGl& gl = context_.gl();
-  target_width_ = std::max(width, target_width_);
-  target_height_ = std::max(height, target_height_);
-  const auto w = static_cast<GLsizei>(target_width_), h = static_cast<GLsizei>(target_height_);
-  const GLuint targets[] = {sampled_, resolved_};
-  gl.delete_framebuffers(2, targets);  // 0 is ignored
-  gl.delete_renderbuffers(3, buffers_);
-  gl.create_framebuffers(1, &sampled_);
-  gl.create_framebuffers(1, &resolved_);
-  gl.create_renderbuffers(3, buffers_);
-  gl.named_renderbuffer_storage(buffers_[0], 4, GL_RGBA8, w, h);
-  gl.named_renderbuffer_storage(buffers_[1], 4, GL_DEPTH_COMPONENT32F, w, h);
-  gl.named_renderbuffer_storage(buffers_[2], 0, GL_RGBA8, w, h);
-  gl.named_framebuffer_renderbuffer(sampled_, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, buffers_[0]);
-  gl.named_framebuffer_renderbuffer(sampled_, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, buffers_[1]);
-  gl.named_framebuffer_renderbuffer(resolved_, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, buffers_[2]);
-  for (const GLuint target : {sampled_, resolved_}) {
-    if (gl.check_named_framebuffer_status(target, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-      throw RenderError(fmt::format("OpenGL has no room for a picture of {} x {}", w, h));
+/// The colours of the floor, when they change.
+void Canvas::take_floor(const Drawing& drawing, const Model& model) {
+  if (!model.floor_image && drawing.floor.empty()) {
+    painting_.reset();
+  } else if (!painting_ || drawing.floor != painted_) {
+    painting_ = floor_picture(model, drawing.floor);
+    painted_ = drawing.floor;
+  }
+}
+
+/// Runs of pixels that show one surface, at least in a sample.
+void Canvas::find_runs(unsigned row) {
+  runs_.clear();
+  std::array<const std::uint32_t*, 4> line{};
+  for (unsigned i = 0; i < 4; ++i) line[i] = &samples_.numbers[samples_.line(row, i)];
+  OpenRuns open(runs_);
+  for (unsigned x = 0; x < samples_.width;) {
+    const std::uint32_t whole = open.whole();
+    if (whole != OpenRuns::none && x + lane_count <= samples_.width) {
+      std::uint32_t differs = 0;
+      for (unsigned j = x; j < x + lane_count; ++j) {
+        differs |= (line[0][j] ^ whole) | (line[1][j] ^ whole) | (line[2][j] ^ whole) |
+                   (line[3][j] ^ whole);
+      }
+      if (differs == 0) {
+        x += lane_count;
+        continue;
+      }
+    }
+    for (const unsigned end = std::min(x + lane_count, samples_.width); x < end; ++x) {
+      open.go_on(x, {line[0][x], line[1][x], line[2][x], line[3][x]});
     }
   }
-  pixels_.resize(std::size_t{4} * target_width_ * target_height_);
+  open.end(samples_.width);
 }
 
-void Canvas::check() const {
-  const GLenum error = context_.gl().get_error();
-  if (error != GL_NO_ERROR) throw RenderError(fmt::format("OpenGL reports error {:#x}", error));
-}
-
-void Canvas::set_frame(const Drawing& drawing, const Model& model, const View& view,
-                       const Tile& tile) {
-  Frame frame{};
-  // u / width goes from 0 to 1 over the tile: -1 to 1 in clip coordinates. Rows are read back from
-  // the lowest on, so v grows with y.
-  const auto set = [&](std::size_t axis, double focal_length, double principal, double begin,
-                       double size) {
-    frame.clip_from_camera[5 * axis] = static_cast<float>(2 * focal_length / size);
-    frame.clip_from_camera[8 + axis] = static_cast<float>(2 * (principal - begin) / size - 1);
-  };
-  set(0, view.focal_length.x(), view.principal_point.x(), tile.x, tile.width);
-  set(1, view.focal_length.y(), view.principal_point.y(), tile.y, tile.height);
-  frame.clip_from_camera[11] = 1;
-  frame.clip_from_camera[14] = near_plane;
-
-  // Floats tell two sides of a tile only near their own zero.
-  const auto& eye = view.camera.position;
-  const math::Vector2 origin(std::floor(eye.x() / (2 * model.tile)) * 2 * model.tile,
-                             std::floor(eye.y() / (2 * model.tile)) * 2 * model.tile);
-  frame.light_from_camera = drawing.light_from_camera;
-  frame.sun = with(drawing.sun, drawing.shadow_texel);
-  frame.right = with(drawing.right, eye.x() - origin.x());
-  frame.ahead = with(drawing.ahead, eye.y() - origin.y());
-  frame.up = with(drawing.up, eye.z());
-  frame.ground = {static_cast<float>(model.tile), 2 * line_width / static_cast<float>(tile.width),
-                  near_plane, 2 * line_width / static_cast<float>(tile.height)};
-  const math::Vector2 center = model.arena_center - origin;
-  frame.arena = {static_cast<float>(center.x()), static_cast<float>(center.y()),
-                 static_cast<float>(model.arena_half_size.x()),
-                 static_cast<float>(model.arena_half_size.y())};
-  frame.painting[0] = model.floor_image || !drawing.floor.empty() ? 1 : 0;
-  context_.gl().named_buffer_data(frame_, sizeof frame, &frame, GL_DYNAMIC_DRAW);
-}
-
-void Canvas::draw_bodies(const Drawing& drawing, Bodies which) {
-  const OpenGl& gl = context_.gl();
-  gl.bind_vertex_array(body_arrays_);
-  for (const Batch& batch : drawing.batches) {
-    const std::size_t count = which == Bodies::all ? batch.all : batch.visible;
-    if (count == 0) continue;
-    gl.draw_elements(GL_TRIANGLES, static_cast<GLsizei>(batch.mesh.indices), GL_UNSIGNED_INT,
-                     offset(batch.mesh.first_index * sizeof(std::uint32_t)),
-                     static_cast<GLsizei>(count), batch.mesh.base_vertex,
-                     static_cast<GLuint>(batch.first));
+/// Covers the samples of a row in which a disc is nearest.
+void Canvas::draw_disc(const Disc& disc, unsigned row) {
+  if (row + 1 <= disc.square.top || row >= disc.square.bottom) return;
+  std::array<Stretch, 4> lines{};
+  unsigned begin = lens_.width, end = 0;
+  for (unsigned i = 0; i < 4; ++i) {
+    lines[i] = covered(disc.square, row + sample_y[i], sample_x[i], lens_.width);
+    if (lines[i].begin == lines[i].end) continue;
+    begin = std::min(begin, lines[i].begin);
+    end = std::max(end, lines[i].end);
+  }
+  const std::size_t stride = samples_.stride;
+  float* depths = &samples_.depths[samples_.line(row, 0)];
+  const auto& rows = disc.surface.coordinates;
+  const auto fx = static_cast<float>(1 / lens_.focal_x), fy = static_cast<float>(1 / lens_.focal_y);
+  for (unsigned x = begin; x < end; ++x) {
+    const DepthPlane& plane = disc.surface.depth;
+    const auto z = static_cast<float>(1 / std::max(plane.at(x + 0.5, row + 0.5), 1e-9));
+    const Float3 at{static_cast<float>((x + 0.5 - lens_.center_x) / lens_.focal_x) * z,
+                    static_cast<float>((row + 0.5 - lens_.center_y) / lens_.focal_y) * z, z};
+    std::array<float, 2> place{};
+    std::array<float, 4> change{};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const float product = rows[i][0] * at[0] + rows[i][1] * at[1] + rows[i][2] * at[2];
+      place[i] = product + rows[i][3];
+      change[2 * i] = z * (rows[i][0] * fx - static_cast<float>(plane.a) * product);
+      change[2 * i + 1] = z * (rows[i][1] * fy - static_cast<float>(plane.b) * product);
+    }
+    const Blot blot = blot_at(disc.surface, place[0], place[1], change);
+    if (blot.cover == 0) continue;
+    float samples = 0;
+    for (unsigned i = 0; i < 4; ++i) {
+      if (x < lines[i].begin || x >= lines[i].end) continue;
+      const auto depth =
+          static_cast<float>(disc.square.depth.at(x + sample_x[i], row + sample_y[i]));
+      if (!(depth > depths[i * stride + x])) continue;
+      depths[i * stride + x] = depth;
+      samples += 1;
+    }
+    const float part = blot.cover * samples / 4;
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      float& color = colors_[channel * stride + x];
+      color += (255 * blot.color[channel] - color) * part;
+    }
   }
 }
 
-void Canvas::draw_shadows(const Drawing& drawing) {
-  const OpenGl& gl = context_.gl();
-  gl.bind_framebuffer(GL_FRAMEBUFFER, shadow_target_);
-  gl.viewport(0, 0, shadow_size, shadow_size);
-  const float farthest = 1;
-  gl.clear_named_framebuffer(shadow_target_, GL_DEPTH, 0, &farthest);
-  gl.enable(GL_DEPTH_TEST);
-  gl.depth_func(GL_LESS);
-  gl.disable(GL_CULL_FACE);
-  gl.enable(GL_POLYGON_OFFSET_FILL);
-  gl.polygon_offset(1.5f, 0);
-  gl.use_program(shadow_program_);
-  draw_bodies(drawing, Bodies::all);
-  gl.disable(GL_POLYGON_OFFSET_FILL);
-}
-
-/// Floor and sky, where nothing is in front of them.
-void Canvas::draw_background(bool with_floor) {
-  const OpenGl& gl = context_.gl();
-  gl.disable(GL_CULL_FACE);
-  gl.bind_vertex_array(no_arrays_);
-  if (with_floor) {
-    gl.use_program(floor_program_);
-    gl.draw_arrays(GL_TRIANGLES, 0, 3);
+void Canvas::draw_row(unsigned row) {
+  std::fill(colors_.begin(), colors_.end(), 0.0f);
+  find_runs(row);
+  for (const Run& run : runs_) {
+    const Surface* surface = run.number < first_surface_number
+                                 ? nullptr
+                                 : &scenery_.surfaces[run.number - first_surface_number];
+    kernel_.shade(frame_, surface, row, run, samples_, colors());
   }
-  gl.depth_func(GL_GEQUAL);
-  gl.use_program(sky_program_);
-  gl.draw_arrays(GL_TRIANGLES, 0, 3);
-  gl.depth_func(GL_GREATER);
+  for (const Disc& disc : discs_) draw_disc(disc, row);
 }
 
-void Canvas::draw_marks_and_lines(const Drawing& drawing) {
-  const OpenGl& gl = context_.gl();
-  gl.enable(GL_CULL_FACE);
-  gl.use_program(mark_program_);
-  gl.bind_vertex_array(mark_arrays_);
-  gl.enable(GL_BLEND);
-  gl.draw_arrays_instanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(drawing.marks.size()));
-  gl.disable(GL_BLEND);
-  if (drawing.lines.empty()) return;
-  gl.disable(GL_CULL_FACE);
-  gl.use_program(line_program_);
-  gl.bind_vertex_array(line_arrays_);
-  gl.draw_arrays_instanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(drawing.lines.size()));
-}
-
-/// @param with_floor  and not seen edge on
-void Canvas::draw_tile(const Drawing& drawing, const Tile& tile, unsigned oversampling,
-                       bool with_floor, Picture& picture) {
-  const OpenGl& gl = context_.gl();
-  const auto w = static_cast<GLsizei>(tile.width * oversampling);
-  const auto h = static_cast<GLsizei>(tile.height * oversampling);
-  gl.bind_framebuffer(GL_FRAMEBUFFER, sampled_);
-  gl.viewport(0, 0, w, h);
-  const float infinity = 0;
-  gl.clear_named_framebuffer(sampled_, GL_DEPTH, 0, &infinity);
-  gl.enable(GL_DEPTH_TEST);
-  // The nearest first: what is behind them is not coloured at all.
-  gl.depth_func(GL_GREATER);
-  gl.enable(GL_CULL_FACE);
-  gl.front_face(GL_CW);  // with v downwards, the picture is a mirror image to OpenGL
-  gl.use_program(body_program_);
-  draw_bodies(drawing, Bodies::visible);
-  draw_background(with_floor);
-  draw_marks_and_lines(drawing);
-
-  gl.blit_named_framebuffer(sampled_, resolved_, 0, 0, w, h, 0, 0, w, h, GL_COLOR_BUFFER_BIT,
-                            GL_NEAREST);
-  gl.bind_framebuffer(GL_FRAMEBUFFER, resolved_);
-  gl.read_pixels(0, 0, w, h, GL_RGBA, GL_UNSIGNED_BYTE, pixels_.data());
-  const std::size_t stride = std::size_t{tile.width} * oversampling;
-  for (std::size_t row = 0; row < tile.height; ++row) {
-    shrink_row(pixels_.data() + 4 * row * oversampling * stride, stride, tile.width, oversampling,
-               picture.rgb.data() + 3 * ((tile.y + row) * picture.width + tile.x));
+void Canvas::draw_band(unsigned first_row, unsigned rows) {
+  samples_.first_row = first_row;
+  samples_.rows = rows;
+  const std::size_t size = std::size_t{rows} * 4 * samples_.stride;
+  samples_.depths.assign(size, 0);
+  samples_.numbers.assign(size, sky_number);
+  for (const Polygon& polygon : scenery_.polygons) {
+    if (polygon.top < first_row + rows && polygon.bottom > first_row)
+      kernel_.draw(polygon, samples_);
+  }
+  if (!frame_.has_floor) return;
+  for (unsigned row = first_row; row < first_row + rows; ++row) {
+    kernel_.lay_floor(frame_, row, samples_);
   }
 }
 
-void Canvas::draw(const Drawing& drawing, const Model& model, const View& view, Picture& picture) {
+/// A row of the picture, as the mean of n x n rendered pixels each.
+void Canvas::draw_mean_row(unsigned v, unsigned n, std::uint8_t* rgb) {
+  std::ranges::fill(sums_, 0.0f);
+  const std::size_t width = sums_.size() / 3;
+  const float share = 1 / static_cast<float>(n * n);
+  for (unsigned row = v * n; row < (v + 1) * n; ++row) {
+    draw_row(row);
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const float* from = &colors_[channel * samples_.stride];
+      float* to = &sums_[channel * width];
+      for (std::size_t x = 0; x < width; ++x) {
+        for (unsigned i = 0; i < n; ++i) to[x] += share * *from++;
+      }
+    }
+  }
+  pack({&sums_[0], &sums_[width], &sums_[2 * width]}, static_cast<unsigned>(width), rgb);
+}
+
+RowColors Canvas::colors() {
+  return {&colors_[0], &colors_[samples_.stride], &colors_[2 * samples_.stride]};
+}
+
+void Canvas::draw(const Drawing& drawing, const Meshes& meshes, const Model& model,
+                  const View& view, Picture& picture) {
   picture.width = view.width;
   picture.height = view.height;
   picture.rgb.resize(std::size_t{3} * view.width * view.height);
-  context_.make_current();
-  const OpenGl& gl = context_.gl();
-  make_target(std::min(view.width, largest_tile) * view.oversampling,
-              std::min(view.height, largest_tile) * view.oversampling);
-  gl.named_buffer_data(body_instances_, bytes(std::span(drawing.bodies)), drawing.bodies.data(),
-                       GL_DYNAMIC_DRAW);
-  gl.named_buffer_data(mark_instances_, bytes(std::span(drawing.marks)), drawing.marks.data(),
-                       GL_DYNAMIC_DRAW);
-  gl.named_buffer_data(line_instances_, bytes(std::span(drawing.lines)), drawing.lines.data(),
-                       GL_DYNAMIC_DRAW);
   take_floor(drawing, model);
-  set_frame(drawing, model, view, {0, 0, view.width, view.height});
-  if (drawing.shadow_texel > 0) draw_shadows(drawing);
-  const bool with_floor = model.has_floor && view.camera.position.z() != 0;
-  for (unsigned y = 0; y < view.height; y += largest_tile) {
-    for (unsigned x = 0; x < view.width; x += largest_tile) {
-      const Tile tile{x, y, std::min(largest_tile, view.width - x),
-                      std::min(largest_tile, view.height - y)};
-      set_frame(drawing, model, view, tile);
-      draw_tile(drawing, tile, view.oversampling, with_floor, picture);
+  set_frame(drawing, model, view);
+  add_surfaces(drawing, meshes, lens_, shadows_, scenery_);
+  discs_.clear();
+  for (const MarkInstance& mark : drawing.marks) {
+    Disc disc;
+    if (mark.code[0] == MarkInstance::disc && make_disc(mark, lens_, disc)) discs_.push_back(disc);
+  }
+  const unsigned n = view.oversampling;
+  samples_.width = lens_.width;
+  samples_.stride = lens_.width + room;
+  colors_.resize(3 * samples_.stride);
+  sums_.resize(std::size_t{3} * view.width);
+  for (unsigned v = 0; v < view.height; ++v) {
+    if (v % rows_of_band == 0) draw_band(v * n, std::min(rows_of_band, view.height - v) * n);
+    std::uint8_t* rgb = &picture.rgb[std::size_t{3} * v * view.width];
+    if (n == 1) {
+      draw_row(v);
+      pack(colors(), view.width, rgb);
+    } else {
+      draw_mean_row(v, n, rgb);
     }
   }
-  check();
 }
 
 }  // namespace ziggurat::render

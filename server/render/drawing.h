@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// One view of a state as the arrays that are drawn, in the camera's frame. No OpenGL here.
+// One view of a state as the arrays that are drawn, in the camera's frame. No pixels here.
 
 #include <array>
 #include <cstddef>

@@ -42,7 +42,10 @@ void set(std::uint8_t* pixel, std::uint32_t color) {
 
 FloorPicture floor_picture(const Model& model, const std::vector<world::FloorPaint>& painted) {
   const Axis x = axis_of(model, 0), y = axis_of(model, 1);
-  FloorPicture picture{x.count, y.count, {}};
+  FloorPicture picture{x.count, y.count, {}, {}};
+  for (std::size_t i = 0; i < picture.light.size(); ++i) {
+    picture.light[i] = static_cast<float>(std::pow(static_cast<double>(i) / 255, 2.2));
+  }
   picture.rgba.resize(std::size_t{4} * x.count * y.count);
   const auto pixel = [&](unsigned column, unsigned row) {
     return &picture.rgba[4 * (std::size_t{row} * x.count + column)];

@@ -2,6 +2,7 @@
 #pragma once
 // Colours of the floor as pixels over the arena: the scene's picture, and what was painted over it.
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace ziggurat::render {
 struct FloorPicture {
   unsigned width = 0, height = 0;  ///< [px]
   std::vector<std::uint8_t> rgba;  ///< rows from -y to +y; without a colour transparent
+  std::array<float, 256> light{};  ///< linear light of a channel
 };
 
 /// Its size depends on the model alone.

@@ -7,16 +7,14 @@
 namespace ziggurat::render {
 namespace {
 
-// Far from any edge: the face has none along this axis.
-constexpr float no_edge = 9;
-
-Mesh begin(const Meshes& meshes) {
-  return {static_cast<std::uint32_t>(meshes.indices.size()), 0,
-          static_cast<std::int32_t>(meshes.vertices.size())};
+Mesh begin(Mesh::Kind kind, const Meshes& meshes) {
+  return {kind, static_cast<std::uint32_t>(meshes.indices.size()), 0,
+          static_cast<std::uint32_t>(meshes.vertices.size()), 0};
 }
 
 Mesh finished(Mesh mesh, const Meshes& meshes) {
   mesh.indices = static_cast<std::uint32_t>(meshes.indices.size()) - mesh.first_index;
+  mesh.vertices = static_cast<std::uint32_t>(meshes.vertices.size()) - mesh.first_vertex;
   return mesh;
 }
 
@@ -25,7 +23,7 @@ void add_triangle(Meshes& meshes, std::uint32_t a, std::uint32_t b, std::uint32_
 }
 
 Mesh add_box(Meshes& meshes) {
-  const Mesh mesh = begin(meshes);
+  const Mesh mesh = begin(Mesh::Kind::box, meshes);
   std::uint32_t next = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (const float side : {-1.0f, 1.0f}) {
@@ -54,7 +52,7 @@ Mesh add_box(Meshes& meshes) {
 }
 
 Mesh add_cylinder(Meshes& meshes, unsigned pieces) {
-  const Mesh mesh = begin(meshes);
+  const Mesh mesh = begin(Mesh::Kind::cylinder, meshes);
   for (unsigned i = 0; i < pieces; ++i) {
     const double angle = 2 * std::numbers::pi * i / pieces;
     const auto x = static_cast<float>(std::cos(angle)), y = static_cast<float>(std::sin(angle));
@@ -78,7 +76,7 @@ Mesh add_cylinder(Meshes& meshes, unsigned pieces) {
 }
 
 Mesh add_sphere(Meshes& meshes, unsigned pieces) {
-  const Mesh mesh = begin(meshes);
+  const Mesh mesh = begin(Mesh::Kind::sphere, meshes);
   const unsigned rows = pieces / 2;
   for (unsigned row = 0; row <= rows; ++row) {
     const double latitude = std::numbers::pi * (static_cast<double>(row) / rows - 0.5);
@@ -103,7 +101,7 @@ Mesh add_sphere(Meshes& meshes, unsigned pieces) {
 }  // namespace
 
 Mesh add_hull(const scene::Polyhedron& hull, Meshes& meshes) {
-  const Mesh mesh = begin(meshes);
+  const Mesh mesh = begin(Mesh::Kind::hull, meshes);
   std::uint32_t next = 0;
   for (const scene::Polyhedron::Face& face : hull.faces) {
     const auto count = static_cast<std::uint32_t>(face.corners.size());

@@ -12,6 +12,9 @@
 
 namespace ziggurat::render {
 
+/// Far from any edge: a face has none along this axis.
+constexpr float no_edge = 9;
+
 struct Vertex {
   std::array<float, 3> position;  ///< of a unit box, of a cylinder or sphere of radius 1, or
                                   ///< of a hull [m]
@@ -22,8 +25,10 @@ struct Vertex {
 
 /// A part of the arrays of Meshes. Triangles are counterclockwise seen from outside.
 struct Mesh {
+  enum class Kind { box, cylinder, sphere, hull };
+  Kind kind = Kind::box;
   std::uint32_t first_index = 0, indices = 0;
-  std::int32_t base_vertex = 0;
+  std::uint32_t first_vertex = 0, vertices = 0;
 };
 
 /// Resolution of a round shape: number of straight pieces around it.

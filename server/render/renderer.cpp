@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "render/renderer.h"
 
-#include <optional>
-
 #include "render/canvas.h"
 #include "render/drawing.h"
 #include "render/labels.h"
@@ -15,8 +13,7 @@ struct Renderer::Parts {
 
   Draftsman draftsman;
   Drawing drawing;
-  std::optional<Canvas> canvas;
-  std::size_t indices = 0;  // of the meshes that the canvas has
+  Canvas canvas;
 };
 
 Renderer::Renderer(const scene::Scene& scene, const std::vector<scene::Entity>& entities,
@@ -29,22 +26,10 @@ void Renderer::add(const scene::Entity& entity, std::size_t first_link) {
   parts_->draftsman.add(entity, first_link);
 }
 
-void Renderer::prepare() {
-  Parts& p = *parts_;
-  const Meshes& meshes = p.draftsman.meshes();
-  if (!p.canvas) {
-    p.canvas.emplace(meshes);
-  } else if (p.indices != meshes.indices.size()) {
-    p.canvas->take(meshes);
-  }
-  p.indices = meshes.indices.size();
-}
-
 void Renderer::draw(const world::State& state, const View& view, Picture& picture) {
-  prepare();
   Parts& p = *parts_;
   p.draftsman.draw(state, view, p.drawing);
-  p.canvas->draw(p.drawing, p.draftsman.model(), view, picture);
+  p.canvas.draw(p.drawing, p.draftsman.meshes(), p.draftsman.model(), view, picture);
   draw_labels(p.drawing.labels, picture);
 }
 

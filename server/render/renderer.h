@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "render/opengl.h"
 #include "render/view.h"
 #include "scene/scene.h"
 #include "world/layout.h"
@@ -13,8 +12,8 @@
 
 namespace ziggurat::render {
 
-/// Draws links, the floor, tags and LEDs as an eye would see them. Nothing is loaded or made
-/// before the first picture. The same state and view give the same bytes on one machine.
+/// Draws links, the floor, tags and LEDs as an eye would see them. The same state and view give the
+/// same bytes.
 class Renderer {
  public:
   /// @param entities  all of them, placed, in scene order
@@ -28,12 +27,7 @@ class Renderer {
   /// @param first_link  its place in the layout; what was added from there on is forgotten
   void add(const scene::Entity& entity, std::size_t first_link);
 
-  /// Loads and makes what pictures need, so that an error is known before the first picture.
-  /// @throws RenderError
-  void prepare();
-
   /// Everything in view at any distance, whatever a camera's range is.
-  /// @throws RenderError
   void draw(const world::State& state, const View& view, Picture& picture);
 
  private:

@@ -18,12 +18,6 @@ Several::Several(const scene::Scene& scene, std::vector<scene::Entity> entities,
     end();
     throw;
   }
-  std::unique_lock lock(mutex_);
-  news_.wait(lock, [this] { return ready_ == threads_.size(); });
-  if (!has_failed_) return;
-  lock.unlock();
-  end();
-  rethrow();
 }
 
 Several::~Several() { end(); }
@@ -38,17 +32,8 @@ void Several::end() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-/// A context of OpenGL belongs to one thread.
 void Several::work(Renderer renderer) {
-  std::unique_lock lock(mutex_);  // one makes its context after the other
-  try {
-    renderer.prepare();
-  } catch (...) {
-    failure_ = std::current_exception();
-    has_failed_ = is_over_ = true;
-  }
-  ++ready_;
-  news_.notify_all();
+  std::unique_lock lock(mutex_);
   Picture picture;
   for (;;) {
     news_.wait(lock, [this] { return is_over_ || !waiting_.empty(); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Pictures of several states on several threads, each with a canvas of its own.
+// Pictures of several states on several threads, each with a renderer of its own.
 
 #include <condition_variable>
 #include <cstdint>
@@ -22,9 +22,8 @@ class Several {
  public:
   using Take = std::function<void(const Picture& picture)>;
 
-  /// Loads and makes what pictures need.
   /// @param scene, entities, layout  as of a Renderer; are copied
-  /// @throws RenderError, std::system_error if the system allows no more threads
+  /// @throws std::system_error if the system allows no more threads
   Several(const scene::Scene& scene, std::vector<scene::Entity> entities, world::Layout layout,
           unsigned threads);
   /// Pictures that were not begun are not drawn.
@@ -61,7 +60,6 @@ class Several {
   std::deque<Job> waiting_;
   std::vector<Job> spare_;  // their memory is used again
   std::uint64_t next_ = 0, taken_ = 0;
-  unsigned ready_ = 0;
   bool is_over_ = false;
   std::exception_ptr failure_;  // not thrown yet
   bool has_failed_ = false;

@@ -71,7 +71,7 @@ std::uint64_t tick_of_frame(std::uint64_t frame, const FilmOptions& film,
                  experiment);
 }
 
-/// No more than there are pictures: each thread has Mesa compile its programs.
+/// No more than there are pictures.
 unsigned threads_for(std::uint64_t pictures) {
   constexpr unsigned most = 4;
   const unsigned cores = std::max(1u, std::thread::hardware_concurrency());

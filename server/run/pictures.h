@@ -48,14 +48,14 @@ std::string picture_path(const std::string& out, std::size_t number, std::size_t
 class Pictures {
  public:
   /// @param scene  must outlive this
-  /// @throws render::RenderError, outputs::WriteError; text::UsageError if there is no entity to
+  /// @throws outputs::WriteError; text::UsageError if there is no entity to
   /// follow
   Pictures(const PictureOptions& options, const scene::Scene& scene,
            const simulation::Simulation& simulation);
 
   /// Takes the pictures of the world's tick, with its rays if the view asks for them; waits for
   /// earlier ones if they are many.
-  /// @throws outputs::WriteError, render::RenderError
+  /// @throws outputs::WriteError
   void tick(const simulation::Simulation& simulation);
 
   /// Waits for all pictures, and completes the film with the frames that it has.

@@ -30,7 +30,6 @@ class Recorders {
   /// Creates all files, so that a path that cannot be written is reported before the run.
   /// @throws outputs::WriteError
   /// @param world  must outlive this
-  /// @throws render::RenderError if pictures are asked for and cannot be rendered
   Recorders(const Options& options, const supervision::World& world);
 
   /// Call it after each tick, and once for tick 0. @throws outputs::WriteError
@@ -45,7 +44,7 @@ class Recorders {
   void flush();
 
   /// Completes every file except the summary and the report card, also if one of them fails.
-  /// @throws outputs::WriteError, render::RenderError
+  /// @throws outputs::WriteError
   void close();
 
   /// The paths of the pictures that were taken so far.

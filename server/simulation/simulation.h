@@ -64,8 +64,7 @@ class Simulation {
   /// @param scene  the one that this was made from
   /// @param entity  its id must differ from those of all entities that are present
   /// @param xml    the element, for snapshots that are written to files; may be empty
-  /// @throws scene::SceneError if it overlaps another entity, render::RenderError if its camera
-  /// needs pictures and there can't be any, std::bad_alloc; then nothing changes
+  /// @throws scene::SceneError if it overlaps another entity, std::bad_alloc; then nothing changes
   void spawn(const scene::Scene& scene, const scene::Entity& entity, std::string xml = {});
 
   /// Takes an entity out. Its places stay in all arrays, as they are; so does its name.

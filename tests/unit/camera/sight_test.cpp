@@ -6,9 +6,13 @@
 #include <cmath>
 #include <memory>
 #include <sstream>
+#include <stdexcept>
+#include <string>
 
+#include "../long_runs.h"
 #include "../simulation/small_scene.h"
 #include "devices/camera.h"
+#include "devices/tick.h"
 
 namespace ziggurat::camera {
 namespace {
@@ -216,6 +220,72 @@ TEST(Cameras, ReadingsAreHashedAndFollowTheLeds) {
   with->commands().led_colors.at(0) = 0x00FF00;
   with->step();
   EXPECT_EQ(with->observations().leds.at(0).color, 0x00FF00u);
+}
+
+/// Lines of sight that a camera looked along in a tick.
+std::size_t lines_to(const std::string& arena) {
+  const std::string detectors =
+      R"(<led_detector medium="leds" show_rays="true"/><tag_detector medium="tags" show_rays="true"/>)";
+  return after_one_tick(arena, cameras(camera("", detectors)))->state().rays.size();
+}
+
+TEST(LinesOfSight, AreOneForAnLedInViewAndFourForATag) {
+  EXPECT_EQ(lines_to(carrier(led(-0.021))), 1u);
+  EXPECT_EQ(lines_to(carrier(tag(-0.021))), 4u);
+  EXPECT_EQ(lines_to(carrier(led(-0.021) + tag(-0.021))), 5u);
+}
+
+TEST(LinesOfSight, AreNoneToWhatIsNotInViewAndEndAtTheFirstHiddenCorner) {
+  EXPECT_EQ(lines_to(carrier(tag(0.021, "0,90,0"))), 0u) << "it points away";
+  EXPECT_EQ(lines_to(carrier(led(-0.021) + tag(-0.021), "0.5,2,0.03")), 0u) << "beside the picture";
+  EXPECT_EQ(lines_to(carrier(led(-0.021) + tag(-0.021), "3,0,0.03")), 0u) << "too far";
+  EXPECT_EQ(lines_to(carrier(tag(-0.021)) + box("0.3,0,0", "0.01,1,0.2")), 1u);
+}
+
+/// One robot's cameras, and LEDs on one body that all of them see. @returns the ticks that it took
+/// before an error, at most two
+int ticks_of(int cameras_of_robot, int lit) {
+  std::string list, lights = R"(<leds medium="leds">)";
+  for (int i = 0; i < cameras_of_robot; ++i) {
+    list += camera("", R"(<led_detector medium="leds"/>)", "c" + std::to_string(i));
+  }
+  for (int i = 0; i < lit; ++i) lights += R"(<led anchor="b" color="red" offset="-0.021,0,0.02"/>)";
+  const SmallScene scene{"", cameras(list), robot("r", "0,0,0", "") + carrier(lights + "</leds>"),
+                         ""};
+  Simulation world(scene.read(), simulation::Options{});
+  for (int tick = 0; tick < 2; ++tick) {
+    try {
+      world.step();
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("write a smaller range"), std::string::npos);
+      return tick;
+    }
+    EXPECT_EQ(world.observations().leds.size(), std::size_t(cameras_of_robot) * std::size_t(lit));
+  }
+  return 2;
+}
+
+TEST(LinesOfSight, AreBoundedInEachTickAndNotInARun) {
+  if (!long_runs::takes_all()) GTEST_SKIP() << "seconds: ZIGGURAT_TEST_ALL=1 runs it";
+  // Both ticks together need more than one may.
+  static_assert(2 * 1024 * 12'000 > world::most_lines_of_sight);
+  EXPECT_EQ(ticks_of(1024, 12'000), 2);
+  static_assert(1024 * 16'385 > world::most_lines_of_sight);
+  EXPECT_EQ(ticks_of(1024, 16'385), 0);
+}
+
+TEST(LinesOfSight, OfBlobCamerasAndLightSensorsAreBoundedToo) {
+  const scene::Physics nothing;
+  const world::Layout layout;
+  world::State state;
+  world::Observations observations;
+  world::Commands commands;
+  physics::World bodies(nothing, 0.01);
+  const physics::Rays rays(nothing);
+  const media::DevicesIndex index(layout);
+  devices::Tick tick{layout, state, observations, commands, bodies, rays, index};
+  for (std::size_t i = 0; i < world::most_lines_of_sight; ++i) tick.take_line();
+  EXPECT_THROW(tick.take_line(), std::runtime_error);
 }
 
 TEST(OcclusionTest, TooManyLinesEndWithASentence) {

@@ -24,7 +24,7 @@ Measure measure(const Meshes& meshes, const Mesh& mesh) {
     std::array<Vertex, 3> corner;
     for (std::size_t c = 0; c < 3; ++c) {
       const auto index =
-          static_cast<std::size_t>(mesh.base_vertex) + meshes.indices.at(mesh.first_index + i + c);
+          std::size_t{mesh.first_vertex} + meshes.indices.at(mesh.first_index + i + c);
       corner[c] = meshes.vertices.at(index);
     }
     const Vector a = vector(corner[0].position), b = vector(corner[1].position),

@@ -30,7 +30,7 @@ constexpr const char* sensors =
          angular_velocity_bias_walk="0.1"/></imus>
        <cameras implementation="default" show_frustum="true"><camera id="eye" anchor="base"
          position="0,0,0.06" orientation="-90,90,0" range="0.05:2" resolution="640,480"
-         focal_length="300,300" principal_point="320,240"><led_detector medium="leds"
+         focal_length="300,300" principal_point="320,240" image="true"><led_detector medium="leds"
          show_rays="true"/><directional_led_detector medium="beams"/><tag_detector medium="tags"/>
        </camera></cameras>)";
 constexpr const char* devices =

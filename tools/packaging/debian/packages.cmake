@@ -34,7 +34,6 @@ set(full ${PROJECT_VERSION}-${ZIGGURAT_DEBIAN_REVISION})
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME ziggurat)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS libosmesa6)  # it is loaded with the first picture
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "python3-ziggurat, libziggurat-dev, ffmpeg")
 set(CPACK_DEBIAN_PROGRAMS_DESCRIPTION "simulation of robots in lock-step with their controllers
 Ziggurat runs scenes of robots: bodies in contact, joints, magnets, radios and
