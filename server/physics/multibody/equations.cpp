@@ -8,38 +8,31 @@ namespace {
 
 /// Inertia of one link about the tree's origin.
 Inertia link_inertia(const Tree& tree, int i) {
-  const Link& link = tree.links[i];
-  const Matrix3& r = tree.rotation[i];
-  const Vector3 arm = tree.position[i] - tree.origin;
-  Inertia out;
-  out.mass = link.mass;
-  out.first_moment = link.mass * arm;
-  const double square = link.mass * arm.squaredNorm();
-  for (int a = 0; a < 3; ++a) {
-    for (int b = a; b < 3; ++b) {
-      double sum = 0;
-      for (int k = 0; k < 3; ++k) sum += r(a, k) * link.inertia[k] * r(b, k);
-      sum -= link.mass * arm[a] * arm[b];
-      if (a == b) sum += square;
-      out.second_moment(a, b) = out.second_moment(b, a) = sum;
-    }
+  return inertia_about(tree.links[i], tree.rotation[i], tree.position[i] - tree.origin);
+}
+
+/// Sets the generalised forces of the first dofs of a floating base, which are along the world's
+/// axes.
+void set_root_forces(const Wrench& wrench, std::span<double> out) {
+  for (int k = 0; k < 3; ++k) {
+    out[k] = wrench.moment[k];
+    out[3 + k] = wrench.force[k];
   }
-  return out;
 }
 
 /// Projects the wrenches on all links on each dof. Each link's wrench becomes the sum over its
 /// subtree.
-void project_wrenches(const Tree& tree, Workspace& work, std::span<double> out) {
-  for (int i = static_cast<int>(tree.links.size()) - 1; i >= 0; --i) {
+void project_wrenches(const Tree& tree, std::vector<Wrench>& wrenches, std::span<double> out) {
+  for (int i = static_cast<int>(tree.links.size()) - 1; i > 0; --i) {
     const int first = tree.first_dof[i];
     for (int k = first; k < first + tree.dof_count[i]; ++k) {
-      out[k] = dot(tree.motion_subspace[k], work.wrench[i]);
+      out[k] = dot(tree.motion_subspace[k], wrenches[i]);
     }
-    if (i > 0) {
-      Wrench& parent = work.wrench[tree.links[i].parent];
-      parent = parent + work.wrench[i];
-    }
+    Wrench& parent = wrenches[tree.links[i].parent];
+    parent = parent + wrenches[i];
   }
+  if (tree.has_floating_base) return set_root_forces(wrenches[0], out);
+  for (int k = 0; k < tree.dof_count[0]; ++k) out[k] = dot(tree.motion_subspace[k], wrenches[0]);
 }
 
 /// Sets the mass matrix of a floating base with a composite inertia.
@@ -55,6 +48,49 @@ void set_root_mass(const Inertia& inertia, double* mass, int n) {
   }
 }
 
+/// Mass matrix of a gyrostat, and its inertia in the world.
+void set_gyrostat_mass(const Tree& tree, Workspace& work) {
+  const Matrix3& r = tree.rotation[0];
+  const Inertia& fixed = tree.gyrostat->inertia;
+  Inertia& inertia = work.composite_inertia[0];
+  inertia.mass = fixed.mass;
+  inertia.first_moment = r * fixed.first_moment;
+  inertia.second_moment.noalias() = r * fixed.second_moment * r.transpose();
+  const int n = tree.dofs;
+  double* mass = work.mass.data();
+  std::fill_n(mass, n * n, 0.0);
+  set_root_mass(inertia, mass, n);
+  for (int k = 6; k < n; ++k) {
+    const double axial = tree.gyrostat->axial_inertia[k];
+    const Vector3& axis = tree.motion_subspace[k].angular;
+    for (int j = 0; j < 3; ++j) mass[k * n + j] = mass[j * n + k] = axial * axis[j];
+    mass[k * n + k] = axial;
+  }
+}
+
+/// Bias forces of a gyrostat, and its momenta: rates of change of the momentum of the whole and of
+/// what its rotors have more. Symmetry leaves the rotors' own momenta as they are.
+void gyrostat_bias_forces(const Tree& tree, Workspace& work, std::span<double> out) {
+  const Inertia& inertia = work.composite_inertia[0];
+  const Motion& motion = tree.spatial_velocity[0];
+  work.momentum.resize(tree.dofs);
+  Wrench momentum = inertia * motion;
+  Vector3 spin = inertia.second_moment * motion.angular;
+  for (int k = 6; k < tree.dofs; ++k) {
+    const double axial = tree.gyrostat->axial_inertia[k];
+    const Vector3& axis = tree.motion_subspace[k].angular;
+    work.momentum[k] = axial * (axis.dot(motion.angular) + tree.v[k]);
+    const Vector3 more = axial * tree.v[k] * axis;
+    momentum.moment += more;
+    spin += more;
+    out[k] = 0;
+  }
+  set_root_forces(momentum, work.momentum);
+  set_root_forces({motion.angular.cross(spin),
+                   motion.angular.cross(motion.angular.cross(inertia.first_moment))},
+                  out);
+}
+
 }  // namespace
 
 void compute_mass_matrix(const Tree& tree, Workspace& work) {
@@ -65,6 +101,7 @@ void compute_mass_matrix(const Tree& tree, Workspace& work) {
   work.acceleration.resize(size);
   work.scratch.resize(n);
   work.mass.resize(n * n);
+  if (tree.gyrostat) return set_gyrostat_mass(tree, work);
   for (int i = 0; i < size; ++i) {
     work.link_inertia[i] =
         tree.links[i].joint == JointType::fixed ? Inertia{} : link_inertia(tree, i);
@@ -89,15 +126,25 @@ void compute_mass_matrix(const Tree& tree, Workspace& work) {
   if (tree.has_floating_base) set_root_mass(work.composite_inertia[0], work.mass.data(), n);
 }
 
+namespace {
+
+/// Adds the products of R rows: those of as many columns, because M is symmetric.
+template <int R>
+void add_rows(const double* columns, double factor, const double* v, int n, double* out) {
+  using Rows = Eigen::Array<double, R, 1>;
+  Eigen::Map<Rows> rows(out);
+  Rows sum = rows;
+  for (int k = 0; k < n; ++k) sum += Eigen::Map<const Rows>(columns + k * n) * (factor * v[k]);
+  rows = sum;
+}
+
+}  // namespace
+
 void add_momentum(const double* mass, double factor, const double* v, int n, double* out) {
-  using Pair = Eigen::Array2d;
-  const int even = n / 2 * 2;
-  for (int i = 0; i < even; i += 2) {
-    Pair sum = Eigen::Map<const Pair>(out + i);
-    for (int k = 0; k < n; ++k) sum += Eigen::Map<const Pair>(mass + k * n + i) * (factor * v[k]);
-    out[i] = sum[0], out[i + 1] = sum[1];
-  }
-  for (int k = 0; k < n && even < n; ++k) out[even] += mass[k * n + even] * (factor * v[k]);
+  int i = 0;
+  for (; i + 8 <= n; i += 8) add_rows<8>(mass + i, factor, v, n, out + i);
+  for (; i + 2 <= n; i += 2) add_rows<2>(mass + i, factor, v, n, out + i);
+  if (i < n) add_rows<1>(mass + i, factor, v, n, out + i);
 }
 
 void bias_accelerations(const Tree& tree, Workspace& work) {
@@ -122,17 +169,38 @@ void bias_accelerations(const Tree& tree, Workspace& work) {
 }
 
 void bias_forces(const Tree& tree, Workspace& work, std::span<double> out) {
+  if (tree.gyrostat) return gyrostat_bias_forces(tree, work, out);
   bias_accelerations(tree, work);
+  work.link_momentum.resize(tree.links.size());
   for (std::size_t i = 0; i < tree.links.size(); ++i) {
     if (tree.links[i].joint == JointType::fixed) {
-      work.wrench[i] = Wrench{};
+      work.link_momentum[i] = work.wrench[i] = Wrench{};
       continue;
     }
     const Inertia& inertia = work.link_inertia[i];
     const Motion& motion = tree.spatial_velocity[i];
-    work.wrench[i] = inertia * work.acceleration[i] + cross(motion, inertia * motion);
+    work.link_momentum[i] = inertia * motion;
+    work.wrench[i] = inertia * work.acceleration[i] + cross(motion, work.link_momentum[i]);
   }
-  project_wrenches(tree, work, out);
+  project_wrenches(tree, work.wrench, out);
+  work.momentum.resize(tree.dofs);
+  project_wrenches(tree, work.link_momentum, work.momentum);
+}
+
+void gravity_forces(const Tree& tree, const Workspace& work, std::span<double> out) {
+  for (std::size_t i = 0; i < tree.links.size(); ++i) {
+    const Inertia& inertia = work.composite_inertia[i];
+    const Wrench weight{inertia.first_moment.cross(tree.gravity), inertia.mass * tree.gravity};
+    if (i == 0 && tree.has_floating_base) {
+      set_root_forces(weight, out);
+      if (!tree.gyrostat) continue;
+      std::fill(out.begin() + 6, out.end(), 0.0);  // rotors are balanced
+      return;
+    }
+    const int first = tree.first_dof[i];
+    for (int k = first; k < first + tree.dof_count[i]; ++k)
+      out[k] = dot(tree.motion_subspace[k], weight);
+  }
 }
 
 void external_forces(const Tree& tree, Workspace& work, std::span<double> out, bool fields,
@@ -146,7 +214,7 @@ void external_forces(const Tree& tree, Workspace& work, std::span<double> out, b
     work.wrench[i] = {arm.cross(force), force};
     if (fields) work.wrench[i].moment += tree.external[i].moment;
   }
-  project_wrenches(tree, work, out);
+  project_wrenches(tree, work.wrench, out);
 }
 
 void factor_mass_matrix(const Tree& tree, Workspace& work, double time_step) {

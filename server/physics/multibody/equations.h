@@ -40,13 +40,14 @@ struct Workspace {
   std::vector<Inertia> link_inertia;          ///< of each link alone, about O
   std::vector<Inertia> composite_inertia;     ///< of each link with its subtree, about O
   std::vector<Wrench> wrench;                 ///< on each link
+  std::vector<Wrench> link_momentum;          ///< of each link with its subtree, about O
   std::vector<Motion> acceleration;           ///< of each link
   std::vector<ArticulatedBody> bodies;        ///< of each link, by forward_dynamics()
   std::vector<ArticulatedDof> dofs;           ///< likewise
   std::vector<double> mass;                   ///< mass matrix, dofs x dofs, row by row
   std::vector<double> factor;                 ///< its factors
   std::vector<double> scratch;                ///< of each dof
-  std::vector<double> momentum;               ///< M v, by predict_momentum()
+  std::vector<double> momentum;               ///< M v, by bias_forces()
   std::array<double, 6> root_bias_impulse{};  ///< by predict_momentum()
   double bias_velocity_change =
       0;  ///< relative change of a tree's velocities by bias forces, by predict_momentum()
@@ -55,8 +56,8 @@ struct Workspace {
   std::vector<double> saved_state;  ///< q and v, saved during a trial integration
 };
 
-/// Fills work.mass, with both triangles, and work.link_inertia; needs forward_kinematics(). All
-/// other functions need it, for the same tree.
+/// Fills work.mass, with both triangles, and inertias; needs forward_kinematics(). All other
+/// functions need it, for the same tree.
 void compute_mass_matrix(const Tree& tree, Workspace& work);
 
 /// out += factor M v, two entries at a time: M is symmetric.
@@ -67,10 +68,14 @@ void add_momentum(const double* mass, double factor, const double* v, int n, dou
 /// forward_kinematics() and velocity_kinematics().
 void bias_accelerations(const Tree& tree, Workspace& work);
 
-/// Coriolis, centrifugal and gyroscopic forces c(q, v); needs forward_kinematics() and
-/// velocity_kinematics().
+/// Coriolis, centrifugal and gyroscopic forces c(q, v), and work.momentum; needs
+/// forward_kinematics() and velocity_kinematics().
 /// @param out  of each dof [N m] or [N]
 void bias_forces(const Tree& tree, Workspace& work, std::span<double> out);
+
+/// Generalised forces of gravity, with the composite inertias of compute_mass_matrix().
+/// @param out  of each dof [N m] or [N]
+void gravity_forces(const Tree& tree, const Workspace& work, std::span<double> out);
 
 /// Generalised forces of external wrenches and gravity; needs forward_kinematics().
 /// @param out      of each dof [N m] or [N]

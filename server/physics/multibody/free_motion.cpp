@@ -335,6 +335,13 @@ void momentum_of_body(const Tree& tree, Workspace& work, double time_step, std::
   }
 }
 
+/// Whether external wrenches act on a tree.
+bool has_fields(const Tree& tree) {
+  return std::ranges::any_of(tree.external, [](const Wrench& wrench) {
+    return !(wrench.moment.cwiseAbs().sum() + wrench.force.cwiseAbs().sum() == 0);
+  });
+}
+
 }  // namespace
 
 void predict_momentum(Tree& tree, Workspace& work, double time_step, bool driven,
@@ -344,10 +351,12 @@ void predict_momentum(Tree& tree, Workspace& work, double time_step, bool driven
   // Bias forces do no work, but an explicit step of them adds energy of second order in the
   // relative change of velocity. Where that matters the substep is a free motion.
   bias_forces(tree, work, work.scratch);
-  external_forces(tree, work, out, true, true);
+  if (has_fields(tree)) {
+    external_forces(tree, work, out, true, true);
+  } else {
+    gravity_forces(tree, work, out);
+  }
   double energy = 0, change = 0;
-  work.momentum.assign(n, 0.0);
-  add_momentum(work.mass.data(), 1, tree.v.data(), n, work.momentum.data());
   for (int i = 0; i < n; ++i) {
     const double momentum = work.momentum[i];
     out[i] = momentum + time_step * out[i];

@@ -30,16 +30,4 @@ inline Matrix3 rotation_matrix(const double* q) {
   return m;
 }
 
-/// The rotation by an angle about a unit axis (Rodrigues).
-/// @param angle  [rad]
-inline Matrix3 rotation_about(const Vector3& axis, double angle) {
-  const double s = std::sin(angle), c = std::cos(angle), t = 1 - c;
-  const double x = axis.x(), y = axis.y(), z = axis.z();
-  Matrix3 m;
-  m << c + t * x * x, t * x * y - s * z, t * x * z + s * y,  //
-      t * x * y + s * z, c + t * y * y, t * y * z - s * x,   //
-      t * x * z - s * y, t * y * z + s * x, c + t * z * z;
-  return m;
-}
-
 }  // namespace ziggurat::dynamics

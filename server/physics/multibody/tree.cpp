@@ -46,6 +46,28 @@ void root_kinematics(Tree& tree, const math::Pose& fixed) {
   tree.position[0] = tree.origin = Vector3(q[0], q[1], q[2]);
 }
 
+}  // namespace
+
+Inertia inertia_about(const Link& link, const Matrix3& r, const Vector3& arm) {
+  Inertia out;
+  out.mass = link.mass;
+  out.first_moment = link.mass * arm;
+  const double square = out.first_moment.dot(arm);
+  for (int a = 0; a < 3; ++a) {
+    double scaled[3];
+    for (int k = 0; k < 3; ++k) scaled[k] = r(a, k) * link.inertia[k];
+    for (int b = a; b < 3; ++b) {
+      double sum = -out.first_moment[a] * arm[b];
+      for (int k = 0; k < 3; ++k) sum += scaled[k] * r(b, k);
+      if (a == b) sum += square;
+      out.second_moment(a, b) = out.second_moment(b, a) = sum;
+    }
+  }
+  return out;
+}
+
+namespace {
+
 /// Model of cleared trees.
 const std::shared_ptr<const TreeModel>& empty_model() {
   static const auto mechanism = [] {
@@ -54,6 +76,16 @@ const std::shared_ptr<const TreeModel>& empty_model() {
     return std::make_shared<const TreeModel>(std::move(links), all_freedoms);
   }();
   return mechanism;
+}
+
+/// @param before, after  rotations of the joint in the parent, and of the link in the joint
+RevoluteRotation revolute_rotation(const Matrix3& before, const Vector3& axis,
+                                   const Matrix3& after) {
+  Matrix3 across;  // the cross product with the axis
+  across << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
+  const Matrix3 along = axis * axis.transpose();
+  return {before * along * after, before * (Matrix3::Identity() - along) * after,
+          before * across * after, before * axis};
 }
 
 }  // namespace
@@ -94,11 +126,34 @@ TreeModel::TreeModel(std::vector<Link> with, unsigned with_freedoms)
     position_count += position_count_of(link.joint);
     joint_in_parent_rotation.push_back(link.joint_in_parent.orientation.toRotationMatrix());
     link_in_joint_rotation.push_back(link.joint_in_link.orientation.conjugate().toRotationMatrix());
+    revolute.push_back(
+        revolute_rotation(joint_in_parent_rotation[i], link.axis, link_in_joint_rotation[i]));
   }
   list_ancestor_dofs();
   find_symmetric_rotors();
   has_floating_base = links[0].joint == JointType::floating && dof_count[0] == 6;
   is_single_body = size == 1 && has_floating_base;
+  find_gyrostat();
+}
+
+void TreeModel::find_gyrostat() {
+  if (!has_floating_base || is_single_body) return;
+  Gyrostat whole;
+  whole.axial_inertia.assign(dofs, 0);
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const Link& link = links[i];
+    if (i > 0 && (link.parent != 0 || !is_symmetric_rotor[first_dof[i]])) return;
+    Vector3 place{0, 0, 0};
+    Matrix3 rotation = Matrix3::Identity();
+    if (i > 0) {
+      rotation = joint_in_parent_rotation[i] * link_in_joint_rotation[i];
+      place = link.joint_in_parent.position - rotation * link.joint_in_link.position;
+      const Vector3 axis = link.joint_in_link.orientation * link.axis;
+      whole.axial_inertia[first_dof[i]] = axis.dot(link.inertia.cwiseProduct(axis));
+    }
+    whole.inertia += inertia_about(link, rotation, place);
+  }
+  gyrostat = std::move(whole);
 }
 
 /// Lists the dofs between the root and each link.
@@ -173,8 +228,10 @@ void Tree::use_model(std::shared_ptr<const TreeModel> mechanism) noexcept {
   is_symmetric_rotor = m.is_symmetric_rotor;
   joint_in_parent_rotation = m.joint_in_parent_rotation;
   link_in_joint_rotation = m.link_in_joint_rotation;
+  revolute = m.revolute;
   has_floating_base = m.has_floating_base;
   is_single_body = m.is_single_body;
+  gyrostat = m.gyrostat ? &*m.gyrostat : nullptr;
 }
 
 bool Tree::share_model(const Tree& other) {
@@ -248,14 +305,20 @@ void forward_kinematics(Tree& tree) {
     const Link& link = tree.links[i];
     const Matrix3& parent = tree.rotation[link.parent];
     const double* q = tree.q.data() + tree.first_position[i];
-    Matrix3 joint = parent * tree.joint_in_parent_rotation[i];
     Vector3 pivot = tree.position[link.parent] + parent * link.joint_in_parent.position;
     Motion* axes = tree.motion_subspace.data() + tree.first_dof[i];
     if (link.joint == JointType::revolute) {
-      const Vector3 axis = joint * link.axis;
-      joint = joint * rotation_about(link.axis, q[0]);
+      const RevoluteRotation& turn = tree.revolute[i];
+      const Vector3 axis = parent * turn.axis;
+      const Matrix3 in_parent =
+          turn.constant + std::cos(q[0]) * turn.cosine + std::sin(q[0]) * turn.sine;
       axes[0] = {axis, (pivot - tree.origin).cross(axis)};
-    } else if (link.joint == JointType::prismatic) {
+      tree.rotation[i].noalias() = parent * in_parent;
+      tree.position[i] = pivot - tree.rotation[i] * link.joint_in_link.position;
+      continue;
+    }
+    Matrix3 joint = parent * tree.joint_in_parent_rotation[i];
+    if (link.joint == JointType::prismatic) {
       const Vector3 axis = joint * link.axis;
       pivot += axis * q[0];
       axes[0] = {Vector3::Zero(), axis};

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,11 +36,29 @@ struct Link {
   bool operator==(const Link& other) const;
 };
 
+/// Inertia of a link about a point.
+/// @param rotation  of the link;  @param arm  of its centre of mass from the point [m]
+Inertia inertia_about(const Link& link, const Matrix3& rotation, const Vector3& arm);
+
 /// Freedoms of a floating root: bits of rotation about x, y, z and translation along x, y, z of the
 /// world.
 constexpr unsigned all_freedoms = 0b111111;
 constexpr unsigned upright_freedoms = 0b111100;  ///< turns about z only
 constexpr unsigned planar_freedoms = 0b011100;   ///< as well, and keeps its height
+
+/// Rotation of a revolute joint's link in its parent's frame: R(q) = constant + cos q cosine + sin
+/// q sine, by Rodrigues' formula between the constant rotations of the joint's frames.
+struct RevoluteRotation {
+  Matrix3 constant = Matrix3::Zero(), cosine = Matrix3::Zero(), sine = Matrix3::Zero();
+  Vector3 axis{0, 0, 0};  ///< in the parent's frame
+};
+
+/// A floating base with all freedoms that carries nothing but symmetric rotors: a gyrostat. In the
+/// base's frame neither its inertia nor the rotors' axes depend on the joints' angles.
+struct Gyrostat {
+  Inertia inertia;  ///< of all links, about the base's centre of mass, along the base's axes
+  std::vector<double> axial_inertia;  ///< of the rotor of each dof; 0: of the base [kg m^2]
+};
 
 /// Constant data of a tree.
 struct TreeModel {
@@ -62,12 +81,15 @@ struct TreeModel {
   /// link's axial angular momentum unchanged.
   std::vector<unsigned char> is_symmetric_rotor;
   std::vector<Matrix3> joint_in_parent_rotation,
-      link_in_joint_rotation;  ///< rotations X_PJ and X_JL of each link
+      link_in_joint_rotation;              ///< rotations X_PJ and X_JL of each link
+  std::vector<RevoluteRotation> revolute;  ///< of each link; other joints' is not used
   bool has_floating_base =
       false;  ///< floating with all six freedoms: dofs 0 to 5 are the world's axes
-  bool is_single_body = false;  ///< one link, with a free root
+  bool is_single_body = false;       ///< one link, with a free root
+  std::optional<Gyrostat> gyrostat;  ///< of a tree that is one
 
  private:
+  void find_gyrostat();
   void list_ancestor_dofs();
   void find_symmetric_rotors();
 };
@@ -88,7 +110,9 @@ class Tree {
   std::span<const double> damping;
   std::span<const unsigned char> is_symmetric_rotor;
   std::span<const Matrix3> joint_in_parent_rotation, link_in_joint_rotation;
+  std::span<const RevoluteRotation> revolute;
   bool has_floating_base = false, is_single_body = false;
+  const Gyrostat* gyrostat = nullptr;  ///< null: it is none
 
   // The state.
   /// A floating root: position [m] and orientation w x y z; a revolute joint: angle [rad]; a

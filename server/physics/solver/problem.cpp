@@ -75,7 +75,7 @@ void Problem::clear() {
   root_bias_impulse.clear();
   bias_velocity_change.clear();
   constraints.clear();
-  jacobian.clear();
+  jacobian_end = 0;
   momentum.clear();
   inverse_mass.clear();
   total_mass.clear();
@@ -94,7 +94,8 @@ void Problem::add(Tree& tree, Workspace& work, bool is_driven) {
   compute_mass_matrix(tree, work);
   predict_momentum(tree, work, time_step, is_driven,
                    {momentum.data() + first, static_cast<std::size_t>(tree.dofs)});
-  for (int k = 0; k < tree.dofs; ++k) inverse_mass.push_back(1 / work.mass[k * tree.dofs + k]);
+  inverse_mass.resize(momentum.size());
+  for (int k = 0; k < tree.dofs; ++k) inverse_mass[first + k] = 1 / work.mass[k * tree.dofs + k];
   first_bias_acceleration.push_back(-1);
   if (has_several_trees && rotates(tree, time_step)) {
     first_bias_acceleration.back() = static_cast<int>(bias_acceleration.size());
@@ -113,91 +114,38 @@ void Problem::add(Tree& tree, Workspace& work, bool is_driven) {
   velocity.insert(velocity.end(), tree.v.begin(), tree.v.end());
 }
 
-/// Adds rows of zeros for some dofs.
+/// Adds rows for some dofs, to be set.
 /// @param first  out: where they begin in the Jacobian
 double* Problem::add_rows(int rows, std::size_t dofs, int& first) {
-  first = static_cast<int>(jacobian.size());
-  jacobian.resize(jacobian.size() + dofs * rows, 0.0);
+  first = static_cast<int>(jacobian_end);
+  jacobian_end += dofs * rows;
+  if (jacobian.size() < jacobian_end) jacobian.resize(2 * jacobian_end);
   return jacobian.data() + first;
 }
 
 namespace {
 
-/// Sets the R Jacobian rows of a contact on one side.
-/// @param frame  its directions, away from the side;  @param arm  of its point from the origin [m]
-template <int R>
-void set_contact_rows(const Tree& tree, std::span<const int> dofs, const Matrix3& frame,
-                      const Vector3& arm, double* out) {
-  const std::size_t size = dofs.size();
-  const std::size_t root = tree.has_floating_base ? 6 : 0;  // dofs along the world's axes
-  for (int r = 0; r < R && root > 0; ++r) {
-    const Vector3 direction = frame.col(r % 3);
-    const Vector3 moment = r < 3 ? Vector3(arm.cross(direction)) : direction;
-    double* row = out + r * size;
-    for (int k = 0; k < 3; ++k) {
-      row[k] = moment[k];
-      row[3 + k] = r < 3 ? direction[k] : 0;
-    }
+/// Makes mobilities equal for the rows of a friction disc, and more than 0.
+void finish_mobility(Constraint& constraint) {
+  constexpr double least = 1e-12;
+  std::array<double, Constraint::most_rows>& mobility = constraint.mobility;
+  for (const FrictionDisc& disc : discs_of(constraint.rows)) {
+    double &first = mobility[disc.first], &last = mobility[disc.first + disc.size - 1];
+    first = last = (first + last) / 2;
   }
-  for (std::size_t e = root; e < size; ++e) {
-    const Motion& axis = tree.motion_subspace[dofs[e]];
-    const Vector3 speed = axis.linear + axis.angular.cross(arm);
-    for (int r = 0; r < R; ++r)
-      out[r * size + e] = r < 3 ? frame.col(r % 3).dot(speed) : frame.col(r % 3).dot(axis.angular);
-  }
-}
-
-/// Adds J_k^2 / M_kk of each dof to the mobility of R rows of one side.
-template <int R>
-void add_mobility(const double* jacobian, std::span<const int> dofs, const double* inverse_mass,
-                  double* mobility) {
-  const std::size_t size = dofs.size(), root = begins_with_floating_base(dofs) ? 6 : 0;
-  for (int r = 0; r < R; ++r) {
-    const double* row = jacobian + r * size;
-    Pair both(0, 0);
-    for (std::size_t k = 0; k < root; k += 2)
-      both += pair_at(row + k) * pair_at(row + k) * pair_at(inverse_mass + k);
-    double sum = both[0] + both[1];
-    for (std::size_t e = root; e < size; ++e) sum += row[e] * row[e] * inverse_mass[dofs[e]];
-    mobility[r] += sum;
-  }
+  for (int r = 0; r < constraint.rows; ++r) mobility[r] = std::max(mobility[r], least);
 }
 
 }  // namespace
 
-/// Adds the Jacobian rows of a contact on one side.
-/// @param sign  1: side a, -1: side b
-void Problem::add_contact_rows(const Tree& tree, int link, const Vector3& point,
-                               Constraint& constraint, double sign) {
-  const std::span<const int> dofs = tree.dofs_of(link);
-  (sign > 0 ? constraint.dofs_a : constraint.dofs_b) = dofs;
-  double* const out = add_rows(constraint.rows, dofs.size(),
-                               sign > 0 ? constraint.jacobian_a : constraint.jacobian_b);
-  dispatch_rows(constraint.rows, [&](auto rows) {
-    set_contact_rows<rows()>(tree, dofs, sign * constraint.frame, point - tree.origin, out);
-  });
-}
-
-/// Computes the velocity change by a unit impulse, without coupling of dofs; equal for the rows of
-/// a friction disc.
-void Problem::compute_mobility(Constraint& constraint) const {
-  constexpr double least = 1e-12;
-  const double *columns = jacobian.data(), *inverse = inverse_mass.data();
-  dispatch_rows(constraint.rows, [&](auto rows) {
-    constexpr int R = rows();
-    double sum[R] = {};
-    if (constraint.a >= 0)
-      add_mobility<R>(columns + constraint.jacobian_a, constraint.dofs_a,
-                      inverse + offset[constraint.a], sum);
-    if (constraint.b >= 0)
-      add_mobility<R>(columns + constraint.jacobian_b, constraint.dofs_b,
-                      inverse + offset[constraint.b], sum);
-    for (const FrictionDisc& disc : discs_of(R)) {
-      double &first = sum[disc.first], &last = sum[disc.first + disc.size - 1];
-      first = last = (first + last) / 2;
-    }
-    for (int r = 0; r < R; ++r) constraint.mobility[r] = std::max(sum[r], least);
-  });
+/// Sets the mobility of a constraint of one row on one tree.
+void Problem::set_row_mobility(Constraint& constraint) const {
+  const double *row = jacobian.data() + constraint.jacobian_a,
+               *inverse = inverse_mass.data() + offset[constraint.a];
+  for (const int k : constraint.dofs_a) {
+    constraint.mobility[0] += *row * *row * inverse[k];
+    ++row;
+  }
 }
 
 /// Bias acceleration of a link at a point of contact, at dv/dt = 0 [m/s^2].
@@ -285,7 +233,7 @@ void Problem::add(const ContactPoint& contact, int a, int b, int source) {
     add_contact_rows(*trees[b], contact.b.link, contact.point + contact.offset_to_b, constraint,
                      -1);
   }
-  compute_mobility(constraint);
+  finish_mobility(constraint);
   constraint.source = source;
   constraint.gap = contact.gap;
   if (!has_normal_mobility(
@@ -340,8 +288,9 @@ void Problem::add(const Servo& servo, int index, int other, int source) {
                  servo.direction.linear.dot(axis.linear + axis.angular.cross(arm));
       }
     }
+    set_row_mobility(constraint);
   }
-  compute_mobility(constraint);
+  finish_mobility(constraint);
   if (constraint.law == Constraint::Law::off) return;
   constraint.target_velocity[0] = servo.target_velocity;
   constraint.impulse[0] = std::clamp(servo.impulse, servo.lower, servo.upper);
@@ -357,7 +306,8 @@ void Problem::add(const Limit& limit, int index, int source) {
   constraint.a = index;
   *add_rows(1, 1, constraint.jacobian_a) = at_lower ? 1 : -1;
   constraint.dofs_a = tree.dof_span(dof);
-  compute_mobility(constraint);
+  set_row_mobility(constraint);
+  finish_mobility(constraint);
   constraint.gap = at_lower ? q - limit.lower : limit.upper - q;
   constraint.range = limit.upper - limit.lower;
   constraint.target_velocity[0] = constraint.gap > 0 ? -constraint.gap / time_step : 0;
@@ -389,6 +339,17 @@ void Problem::bound_penetration() {
     depth = std::max(depth, constraint.compliance * constraint.impulse[0] * time_step);
   if (depth <= most_penetration) return;
   for (Constraint& constraint : constraints) constraint.compliance *= most_penetration / depth;
+}
+
+void Problem::settle_loads() {
+  constexpr double least = 1e-4;  // of the depth that the island's weight presses in
+  for (Constraint& constraint : constraints) {
+    if (constraint.compliance == 0 || constraint.gap_acceleration != 0) continue;
+    const double pressed_in = constraint.compliance * constraint.impulse[0];
+    const double deepest = constraint.compliance * time_step * weight;
+    if (std::abs(constraint.gap / time_step + pressed_in) < least * deepest)
+      constraint.target_velocity[0] = pressed_in;
+  }
 }
 
 void Problem::make_rigid() {

@@ -29,7 +29,8 @@ struct Problem {
   std::vector<std::array<double, 6>> root_bias_impulse;  ///< of each tree, see predict_momentum()
   std::vector<double> bias_velocity_change;              ///< of each tree, see Workspace
   std::vector<Constraint> constraints;
-  std::vector<double> jacobian;  ///< see Constraint::jacobian_a
+  std::vector<double> jacobian;  ///< see Constraint::jacobian_a; as far as jacobian_end
+  std::size_t jacobian_end = 0;  ///< end of the rows in `jacobian`
   std::vector<double> momentum;  ///< p
   std::vector<double>
       inverse_mass;  ///< of each dof as if it were alone: 1 / M_kk [1/kg] or [1/(kg m^2)]
@@ -67,6 +68,10 @@ struct Problem {
   /// Reduces the compliance of all contacts so that the last substep's impulses penetrate no deeper
   /// than allowed.
   void bound_penetration();
+  /// Lets contacts rest that are pressed in as their loads say, but for 1e-4 of the weight: a
+  /// correction would be in the next start, which is this solution, and bodies would go back and
+  /// forth. To be called after bound_penetration().
+  void settle_loads();
   /// Makes all surfaces rigid.
   void make_rigid();
   /// Whether a contact or limit is violated by more than allowed_overlap.
@@ -90,12 +95,17 @@ struct Problem {
                         double sign);
   void add_grip_rows(const Servo& servo, int other, Constraint& constraint);
   void add_coupling(int a, int b);
-  void compute_mobility(Constraint& constraint) const;
+  void set_row_mobility(Constraint& constraint) const;
   Vector3 point_bias_acceleration(int tree, int link, const Vector3& point,
                                   const ContactPoint& contact) const;
   void set_normal_target(Constraint& constraint, const ContactPoint& contact) const;
   void add_rotation_correction(Constraint& constraint, const ContactPoint& contact) const;
 };
+
+/// Turns the start of a single tree, the last substep's solution, about the vertical with it:
+/// velocities, and impulses where contacts are level. Gravity and a level floor are the same from
+/// all sides, so that solves a steady turn.
+void turn_start(Problem& problem);
 
 inline void Problem::constraint_velocity(const Constraint& constraint, double* u,
                                          const double* v) const {

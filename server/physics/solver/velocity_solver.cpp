@@ -162,6 +162,7 @@ void VelocitySolver::solve_displacement(Problem& problem) {
 SolverResult solve_velocities(Problem& problem, VelocitySolver& solver) {
   constexpr int most_switches = 3;
   problem.bound_penetration();
+  problem.settle_loads();
   SolverResult outcome = solver.solve(problem);
   for (int i = 0; i < most_switches && problem.switch_limits(); ++i) {
     const int iterations = outcome.iterations;

@@ -171,6 +171,7 @@ double error_of_free_joints(Tree& tree, Workspace& work, const double* mass,
                             std::span<const double> momentum, std::span<const double> after,
                             double time_step, std::span<const unsigned char> held,
                             IslandEnergyErrors& memory) {
+  compute_mass_matrix(tree, work);
   bias_of_joints(tree, work, held, false, memory.velocities, memory.bias_of_held);
   bias_of_joints(tree, work, held, true, memory.velocities, memory.bias_of_free);
   work.scratch.resize(tree.dofs);

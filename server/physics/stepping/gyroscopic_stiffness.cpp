@@ -82,11 +82,13 @@ double nutation_of_rotors(const Problem& problem, std::size_t index, double slow
     const Link& carrier = tree.links[link.parent];
     if (link.joint != JointType::revolute || carrier.joint == JointType::fixed) continue;
     const int dof = tree.first_dof[i];
-    const Vector3 axis = tree.rotation[i].transpose() * tree.motion_subspace[dof].angular;
     const double speed =
         std::max(std::abs(tree.v[dof]), std::abs(problem.velocity[problem.offset[index] + dof]));
+    const double little = slow * (link.inertia.minCoeff() + carrier.inertia.minCoeff());
+    if (link.inertia.maxCoeff() * speed <= little) continue;  // about any axis
+    const Vector3 axis = tree.rotation[i].transpose() * tree.motion_subspace[dof].angular;
     const double momentum = link.inertia.dot(axis.cwiseAbs2()) * speed;
-    if (momentum <= slow * (link.inertia.minCoeff() + carrier.inertia.minCoeff())) continue;
+    if (momentum <= little) continue;
     if (!std::exchange(factored, true)) {
       work.mass.assign(problem.mass_of(index), problem.mass_of(index) + tree.dofs * tree.dofs);
       factor_mass_matrix(tree, work, problem.time_step);

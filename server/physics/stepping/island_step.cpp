@@ -286,6 +286,7 @@ IslandOutcome step_island(const IslandStep& step) {
     if (step.options.impact_mode == ImpactMode::end_step && time < step.time_step)
       return {.parts = 0, .impact_time = time};
   }
+  turn_start(problem);
   const SolverResult solution = solve_velocities(problem, memory.solver);
   const std::size_t free = find_unconstrained(problem, step.constraints.servos, memory.work,
                                               memory.free_velocities, memory.is_free);

@@ -25,20 +25,13 @@ Vector3 angular_momentum(const Tree& tree) {
 
 // Articulated bodies give what the mass matrix gives: M dv/dt = f - c, or no change where a servo
 // prescribes a speed.
-TEST(ForwardDynamics, IsThatOfTheMassMatrix) {
+void expect_consistent(Tree& tree) {
   Workspace work;
-  const Link rod = testing::box_link({0.2, 0.1, 0.05}, 0.7);
-  const Vector3 end(0.1, 0.02, 0), middle(0.1, 0, 0.01);
-  Tree tree({testing::box_link({0.3, 0.2, 0.1}, 2),
-             testing::hung(rod, 0, JointType::spherical, Vector3::UnitZ(), end, middle),
-             testing::hung(rod, 1, JointType::revolute, Vector3(0, 0.6, 0.8), end, middle),
-             testing::hung(rod, 0, JointType::prismatic, Vector3::UnitZ(), -end, middle)},
-            {{0.1, 0.2, 0.3}, Quaternion(0.5, 0.1, 0.7, 0.2).normalized()});
   tree.gravity = Vector3(0, 1, -testing::g);
   for (int k = 0; k < tree.dofs; ++k) tree.v[k] = 0.3 + 0.1 * k;
   const int n = tree.dofs;
   std::vector<unsigned char> prescribed(n, 0);
-  std::vector<double> velocity(n, 0.0), force(n, 0.0), forces(n), acceleration(n);
+  std::vector<double> velocity(n, 0.0), force(n, 0.0), forces(n), weights(n), acceleration(n);
   for (const bool is_driven : {false, true}) {
     prescribed[n - 1] = is_driven;
     force[n - 2] = is_driven ? 0.3 : 0;
@@ -46,8 +39,13 @@ TEST(ForwardDynamics, IsThatOfTheMassMatrix) {
     forward_dynamics(tree, work, drive, acceleration);
     compute_mass_matrix(tree, work);
     external_forces(tree, work, forces, false, true);
+    gravity_forces(tree, work, weights);
     bias_forces(tree, work, work.scratch);
     for (int i = 0; i < n; ++i) {
+      EXPECT_NEAR(weights[i], forces[i], 1e-12) << i;
+      double momentum = 0;
+      for (int j = 0; j < n; ++j) momentum += work.mass[i * n + j] * tree.v[j];
+      EXPECT_NEAR(work.momentum[i], momentum, 1e-12) << i;
       if (prescribed[i]) {
         EXPECT_EQ(acceleration[i], 0) << i;
         continue;
@@ -57,6 +55,35 @@ TEST(ForwardDynamics, IsThatOfTheMassMatrix) {
       EXPECT_NEAR(sum, 0, 1e-9) << i;
     }
   }
+}
+
+TEST(ForwardDynamics, IsThatOfTheMassMatrix) {
+  const Link rod = testing::box_link({0.2, 0.1, 0.05}, 0.7);
+  const Vector3 end(0.1, 0.02, 0), middle(0.1, 0, 0.01);
+  Tree tree({testing::box_link({0.3, 0.2, 0.1}, 2),
+             testing::hung(rod, 0, JointType::spherical, Vector3::UnitZ(), end, middle),
+             testing::hung(rod, 1, JointType::revolute, Vector3(0, 0.6, 0.8), end, middle),
+             testing::hung(rod, 0, JointType::prismatic, Vector3::UnitZ(), -end, middle)},
+            {{0.1, 0.2, 0.3}, Quaternion(0.5, 0.1, 0.7, 0.2).normalized()});
+  EXPECT_EQ(tree.gyrostat, nullptr);
+  expect_consistent(tree);
+}
+
+// Two wheels of which each has equal moments of inertia across its axis, on tilted axes.
+TEST(ForwardDynamics, OfAGyrostatIsThatOfTheMassMatrix) {
+  const Link wheel = testing::box_link({0.2, 0.2, 0.05}, 0.7);
+  Link tilted = testing::hung(wheel, 0, JointType::revolute, Vector3::UnitZ(), {0.1, 0.2, 0.05},
+                              {0, 0, 0.03});
+  tilted.joint_in_parent.orientation = Quaternion(0.9, 0.1, -0.3, 0.2).normalized();
+  Tree tree(
+      {testing::box_link({0.3, 0.2, 0.1}, 2),
+       testing::hung(wheel, 0, JointType::revolute, Vector3::UnitZ(), {-0.1, 0.02, 0}, {0, 0, 0}),
+       tilted},
+      {{0.1, 0.2, 0.3}, Quaternion(0.5, 0.1, 0.7, 0.2).normalized()});
+  tree.q[7] = 0.4;
+  tree.q[8] = -1.3;
+  ASSERT_NE(tree.gyrostat, nullptr);
+  expect_consistent(tree);
 }
 
 // Euler's equation: the inertia's axes rotate with the body, so at the mass matrix of the beginning
