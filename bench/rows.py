@@ -82,7 +82,7 @@ def cameras(count):
 
 
 def pictures(count):
-    return Row(f"pictures-{count}", f"a picture of {count} box{'es' * (count > 1)} with a tag each, 640 × 480", "ms per picture",
+    return Row(f"pictures-{count}", f"a picture of {count} box{'es' * (count > 1)}{' with a tag each' if count > 1 else ' with a tag'}, 640 × 480", "ms per picture",
                per_tick(lambda: scenes.pictures(count), 100, of=sensing, scale=1e3))
 
 

@@ -39,8 +39,8 @@ struct Surface {
   Float3 half_size{};  ///< how long one unit of each coordinate is [m]
   float smallest = 0;  ///< full extent of the body [m]
   Float3 color{};      ///< linear light; of plain ones sRGB
-  /// Of a tag, a bit each: rows from up (+x) on, columns from left (+y) on, with the white around
-  /// its 10 x 10 modules.
+  /// White modules of a tag, a bit each: rows from up (+x) on, columns from left (+y) on, with the
+  /// white around its 10 x 10 modules.
   std::array<std::uint16_t, 12> white_modules{};
 };
 

@@ -24,7 +24,10 @@ ZIGGURAT_INLINE Point shown(const Point& light) {
   return {shown(light.x), shown(light.y), shown(light.z)};
 }
 
+/// @param a  beyond a million and what is not a number count as that
 ZIGGURAT_INLINE int integer_below(float a) {
+  constexpr float most = 1e6f;
+  a = !(a > -most) ? -most : a < most ? a : most;
   const int cut = static_cast<int>(a);
   return cut - (static_cast<float>(cut) > a ? 1 : 0);
 }
