@@ -29,8 +29,8 @@ struct Options {
   std::optional<std::uint64_t> seed;   ///< 0 = drawn from the system
   std::optional<double> real_time;     ///< simulated seconds per second of wall time; > 0
 
-  unsigned threads = 0;        ///< of the physics; 0: see threads_for()
-  unsigned lua_processes = 1;  ///< 0 = one per robot
+  unsigned threads = 0;                   ///< of the physics; 0: see threads_for()
+  std::optional<unsigned> lua_processes;  ///< 0 = one per robot; none: see lua_processes_for()
   std::vector<std::pair<std::string, std::string>> controllers;  ///< id, command
   std::vector<std::string> spawned_script_folders;  ///< whose files spawned robots may use, too
   std::string snapshot_folder;                      ///< for supervisors; empty = none

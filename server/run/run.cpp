@@ -201,10 +201,13 @@ processes::Controllers Run::start_controllers() {
 }
 
 processes::LaunchSettings Run::launch_settings() const {
-  processes::LaunchSettings settings{server_.endpoints().front(),  folder_.path(),
-                                     processes::find_lua_runner(), options_.lua_processes,
-                                     options_.lua_arguments,       signals_.guardian(),
-                                     programs_.directors};
+  const unsigned threads = threads_for(options_, world_.simulation.entities());
+  const std::size_t robots = world_.simulation.layout().robots.size();
+  processes::LaunchSettings settings{
+      server_.endpoints().front(),  folder_.path(),
+      processes::find_lua_runner(), lua_processes_for(options_, threads, robots),
+      options_.lua_arguments,       signals_.guardian(),
+      programs_.directors};
   settings.only_directors = service_ == Service::serve;
   settings.scene_folder = programs_.folder;
   settings.python_path = processes::python_path(folder_.path());

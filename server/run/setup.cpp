@@ -165,6 +165,12 @@ unsigned threads_for(const Options& options, std::span<const scene::Entity> enti
   return std::clamp(static_cast<unsigned>(moving) / bodies_of_a_thread, 1U, std::max(most, 1U));
 }
 
+unsigned lua_processes_for(const Options& options, unsigned threads, std::size_t robots) {
+  constexpr std::size_t robots_of_a_process = 64;  // measured: docs/performance.md
+  const auto most = static_cast<unsigned>(std::max<std::size_t>(1, robots / robots_of_a_process));
+  return options.lua_processes.value_or(std::min(threads, most));
+}
+
 wire::End end_message(const reports::Summary& summary) {
   using reports::Ending;
   wire::End end;

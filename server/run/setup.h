@@ -53,6 +53,9 @@ void check_programs(const scene::Scene& scene);
 /// worth, up to the processors. Local controllers need none of them: they wait while the physics
 /// computes.
 unsigned threads_for(const Options& options, std::span<const scene::Entity> entities);
+/// Number of processes that share the Lua robots, without option as many as keep enough of them
+/// busy where the physics has a thread.
+unsigned lua_processes_for(const Options& options, unsigned threads, std::size_t robots);
 
 /// Message to clients at the end of the run.
 wire::End end_message(const reports::Summary& summary);

@@ -284,6 +284,9 @@ void set_vectors(lua_State* state) {
 }
 
 void set_kind(lua_State* state, VectorKind kind) {
+  const bool has_vectors = lua_getfield(state, LUA_REGISTRYINDEX, shared_key) == LUA_TTABLE;
+  lua_pop(state, 1);
+  if (!has_vectors) return;
   push_metatable(state, metatables[static_cast<std::size_t>(kind)]);
   lua_setmetatable(state, -2);
 }

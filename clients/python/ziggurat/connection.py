@@ -84,10 +84,15 @@ class Connection:
         Raises Timeout, and ConnectionLost when all messages that arrived before have been read. Raises Malformed for what
         is no message; the connection stays open for the Leave.
         """
-        if self.closed:
+        message = self.receive_soon()
+        return self._decoded(self._receive(wait)) if message is None else message
+
+    def receive_soon(self) -> Optional[v1.ServerMessage]:
+        """As receive(), but None if it takes longer than most ticks."""
+        if self.transport.closed:
             raise ConnectionLost("the session is closed")
         data = self.transport.receive_soon() if self.transport.why_closed is None else None
-        return self._decoded(self._receive(wait) if data is None else data)
+        return None if data is None else self._decoded(data)
 
     def _receive(self, wait: Wait) -> bytes:
         silence = 0.0  # in pieces: a program that was stopped has not waited

@@ -146,10 +146,14 @@ class Exchange:
 
     def command(self, tick: int, epoch: Optional[int] = None) -> bytes:
         """A ClientMessage with a Command of the values that were set after the last one."""
-        parts = b"".join([packed_values(field, self.values[field]) for field in self._new if field in NUMBERS])
-        if not self._new <= NUMBERS.keys() or self.messages or self.markers or self.log or self.metrics:
-            parts += self._rest()
-        return packed_command(tick, epoch, parts)
+        parts = b""
+        has_more = bool(self.messages or self.markers or self.log or self.metrics)
+        for field in self._new:
+            if field in NUMBERS:
+                parts += packed_values(field, self.values[field])
+            else:
+                has_more = True
+        return packed_command(tick, epoch, parts + self._rest() if has_more else parts)
 
     def _rest(self) -> bytes:
         """What of the command is not packed numbers."""
@@ -167,11 +171,13 @@ class Exchange:
 
     def sent(self) -> None:
         """The command was sent."""
-        self._used |= self._new
-        self._new.clear()
-        self.messages.clear()
-        self.markers.clear()
-        self.log.clear()
+        if self._new:
+            self._used |= self._new
+            self._new.clear()
+        if self.messages or self.markers or self.log:
+            self.messages.clear()
+            self.markers.clear()
+            self.log.clear()
 
 
 class Readings(Generic[T]):

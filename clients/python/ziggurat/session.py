@@ -141,13 +141,17 @@ class Session:
         self.thread = threading.get_ident()
         if self._owes is not None:
             self._answer()
-        wait = Wait(self._wait_timeout, "observation")
+        wait = None
         while True:
             try:
-                message, self._heard = self._heard or self._connection.receive(wait), None
+                message = self._heard or self._connection.receive_soon()
+                if message is None:
+                    wait = wait or Wait(self._wait_timeout, "observation")
+                    message = self._connection.receive(wait)
+                self._heard = None
             except ConnectionLost as loss:
                 self._resume(loss)
-                wait = Wait(self._wait_timeout, "observation")
+                wait = None
                 continue
             except Malformed as error:
                 self.close(str(error))

@@ -105,8 +105,8 @@ constexpr Option controller_options[] = {
 
 constexpr Option lua_options[] = {
     {"lua-processes", "N", of_lua, common, scene, read_lua_processes,
-     "share the Lua robots among N processes; default 1, 0 is one for each robot; spawned Lua "
-     "robots share as many others, at most 16"},
+     "share the Lua robots among N processes; default as many as --threads, if each has 64 robots; "
+     "0 is one for each robot; spawned Lua robots share as many others, at most 16"},
     {"trust-scripts", nullptr, by_run | by_serve | by_render, common, settings, trust_scripts,
      "Lua scripts may start programs and use all of Lua and all files; otherwise they use only "
      "files below the folders of the scene, its includes and its scripts"},

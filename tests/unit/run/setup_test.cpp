@@ -30,5 +30,21 @@ TEST(ThreadsFor, ObeysTheOption) {
   EXPECT_EQ(threads_for(options, entities(1000, 0)), 3U);
 }
 
+TEST(LuaProcessesFor, ManyRobotsShareAsManyAsThreads) {
+  EXPECT_EQ(lua_processes_for({}, 8, 0), 1U);
+  EXPECT_EQ(lua_processes_for({}, 8, 127), 1U);
+  EXPECT_EQ(lua_processes_for({}, 8, 128), 2U);
+  EXPECT_EQ(lua_processes_for({}, 8, 1024), 8U);
+  EXPECT_EQ(lua_processes_for({}, 1, 1024), 1U) << "the runs of a sweep share the processors";
+}
+
+TEST(LuaProcessesFor, ObeysTheOption) {
+  Options options;
+  options.lua_processes = 0;
+  EXPECT_EQ(lua_processes_for(options, 8, 1024), 0U) << "one for each robot";
+  options.lua_processes = 5;
+  EXPECT_EQ(lua_processes_for(options, 1, 2), 5U);
+}
+
 }  // namespace
 }  // namespace ziggurat::run

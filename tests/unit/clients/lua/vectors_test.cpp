@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: MIT
 // vector2, vector3 and quaternion, and what older Luas had.
 
+#include "script/vectors.h"
+
+#include <array>
+#include <memory>
+
+#include "script/tables.h"
 #include "script_fixture.h"
 
 namespace ziggurat::lua {
@@ -90,6 +96,15 @@ TEST_F(Vectors, OlderFunctionsOfLuaAreThere) {
                    "bad argument #2 to 'string.format' (no value)",
                    "bad argument #2 to 'string.format' (number has no integer representation)",
                    "1integer", "8 1.5708"}));
+}
+
+TEST(VectorsOfOtherLuas, ArePlainTables) {
+  const std::unique_ptr<lua_State, void (*)(lua_State*)> state(luaL_newstate(), lua_close);
+  push_vector(state.get(), std::array{1.0, 2.0, 3.0});
+  EXPECT_EQ(lua_getmetatable(state.get(), -1), 0);
+  set_vectors(state.get());
+  push_vector(state.get(), std::array{1.0, 2.0, 3.0});
+  EXPECT_EQ(lua_getmetatable(state.get(), -1), 1);
 }
 
 }  // namespace
