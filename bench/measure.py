@@ -148,8 +148,8 @@ def memory_of(place, count, program):
     """Largest private memory of a program in a run of the swarm [kB]."""
     scene = place.scenes / "bench.argos"
     scenes.swarm(count).write(scene)
-    run = subprocess.Popen([str(place.program("ziggurat")), "run", str(scene), "--quiet", "--ticks", "20"],
-                           stdout=subprocess.DEVNULL, env=place.environment, start_new_session=True)
+    command = [str(place.program("ziggurat")), "run", str(scene), "--quiet", "--ticks", "20", "--lua-processes", "1"]
+    run = subprocess.Popen(command, stdout=subprocess.DEVNULL, env=place.environment, start_new_session=True)
     most = 0
     try:
         while run.poll() is None:
