@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <random>
 #include <string_view>
+#include <vector>
 
 namespace ziggurat::math {
 
@@ -29,7 +30,10 @@ class RandomStream {
   void archive(Archive& archive);
 
  private:
-  std::mt19937_64 engine_;
+  std::mt19937_64& engine();
+
+  std::uint64_t seed_;
+  std::vector<std::mt19937_64> engine_;  // one, from the first draw on: it takes 2.5 kB
 };
 
 }  // namespace ziggurat::math

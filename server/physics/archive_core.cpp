@@ -60,7 +60,8 @@ void ContactCache::CachedPair::archive(math::Archive& archive) {
   archive.require(count >= 0 && count <= most_points, "is too large");
   const int told =
       earlier_impulse.isZero(0) ? count : std::max(count, 1);  // see ContactCache::list_contacts()
-  for (int i = 0; i < told; ++i) archive("point", points[static_cast<std::size_t>(i)]);
+  points.make_room(told);
+  for (int i = 0; i < told; ++i) archive("point", points[i]);
 }
 
 void archive_fields(math::Archive& archive, ContactCache& contacts) {

@@ -92,6 +92,7 @@ Body make_body(const scene::Entity& entity, const scene::Physics& physics, std::
     body.magnets.push_back({.scene = magnet});
   body.origin_from_reference = math::inverse(entity.links[entity.reference_link].offset);
   const std::vector<Pose> assembled = assemble(entity);
+  body.links.reserve(entity.links.size());
   std::vector<Pose> placed;
   for (const Pose& pose : assembled) placed.push_back(entity.pose * pose);
   if (is_single_part(entity)) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "physics/contact_sensing.h"
 
-#include <algorithm>
-
 namespace ziggurat::physics {
 namespace {
 
@@ -18,8 +16,12 @@ void add(std::span<Body> bodies, const ContactSide& side, const math::Vector3& i
 
 }  // namespace
 
-bool ContactSensing::wants_contacts(std::span<const Body> bodies) const {
-  return std::ranges::any_of(bodies, [](const Body& body) { return body.watched; });
+void ContactSensing::body_watched(const Body& body) { watched_.push_back(body.entity); }
+
+void ContactSensing::body_removed(const Body& body) { std::erase(watched_, body.entity); }
+
+bool ContactSensing::wants_contacts(std::span<const Body> /*bodies*/) const {
+  return !watched_.empty();
 }
 
 void ContactSensing::contact_begins(std::span<Body> bodies, const LinkContact& contact) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
 #include <utility>
 
 #include "physics/multibody/free_motion.h"
@@ -11,8 +10,11 @@ void synchronise_velocities(LeapfrogSync& lags, dynamics::System& system, dynami
                             double time_step, const SubstepPartition* division,
                             std::span<const dynamics::ContactPoint> contacts,
                             std::span<const dynamics::Servo> servos) {
+  static_assert(LeapfrogSync::unknown == 0);
   const auto is_unknown = [](unsigned char lag) { return lag == LeapfrogSync::unknown; };
-  if (!division && std::ranges::all_of(lags.of_tree, is_unknown)) return;
+  unsigned char any = 0;  // without a branch, many at once
+  for (const unsigned char lag : lags.of_tree) any |= lag;
+  if (!division && is_unknown(any)) return;
   lags.is_constrained.assign(lags.of_tree.size(), 0);
   const auto mark = [&](int tree) {
     if (tree >= 0) lags.is_constrained[static_cast<std::size_t>(tree)] = 1;

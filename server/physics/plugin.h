@@ -37,6 +37,7 @@ class Plugin {
   virtual void body_added(Body&) {}
   virtual void body_removed(const Body&) {}  ///< it still has its links
   virtual void body_moved(Body&) {}          ///< put to rest elsewhere, as if placed there
+  virtual void body_watched(const Body&) {}  ///< contacts of one more of its links are wanted
 
   /// Called with the poses at the substep's beginning; forces last for it.
   /// @param substep  its length [s]

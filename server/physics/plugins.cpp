@@ -58,6 +58,10 @@ void Plugins::move(Body& body) {
   for (auto& plugin : plugins_) plugin->body_moved(body);
 }
 
+void Plugins::watch(const Body& body) {
+  for (auto& plugin : plugins_) plugin->body_watched(body);
+}
+
 void Plugins::before_substep(std::span<Body> bodies, double substep, timing::Stopwatch* watch) {
   for (auto& plugin : plugins_) {
     enter(watch, plugin->phase());

@@ -24,6 +24,7 @@ class Plugins {
   void add(Body& body);
   void remove(const Body& body);
   void move(Body& body);
+  void watch(const Body& body);
   /// @param watch  gets the time of each phase; null: none
   void before_substep(std::span<Body> bodies, double substep, timing::Stopwatch* watch = nullptr);
   /// The one that has stiff pairs in the coming substep; null: none has.

@@ -180,8 +180,8 @@ void set_joint(World& world, std::size_t entity, JointIndex joint, double positi
 
 void World::watch_contacts(std::size_t entity, std::size_t link) {
   Body& body = parts_->bodies[entity];
-  body.watched = true;
   body.links[link].touch.emplace();
+  parts_->plugins.watch(body);
 }
 
 LinkTouch World::take_touch(std::size_t entity, std::size_t link) {

@@ -105,7 +105,6 @@ struct Body {
   std::optional<Turret> turret;
   std::optional<FlyingBody> flight;
   bool is_grippable = false;     ///< grippers may hold it
-  bool watched = false;          ///< contacts of one of its links are
   bool carries_magnets = false;  ///< spheres that turn freely
 
   std::optional<Articulation> articulation;  ///< in the core; none: it was removed

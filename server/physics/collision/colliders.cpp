@@ -52,6 +52,7 @@ std::optional<Collider> make_collider(const Body& body, const scene::Entity& ent
   collider.part = static_cast<std::uint32_t>(placed.part);
   collider.in_part = to_bullet(placed.in_part);
   collider.is_centred = collider.in_part == btTransform::getIdentity();
+  collider.is_turned = collider.in_part.getBasis() != btMatrix3x3::getIdentity();
   collider.moves = body.parts[placed.part].moves;
   collider.is_on_fixed_base = collider.moves && !entity.movable;
   collider.is_single_body = entity.movable && body.parts.size() == 1 && collider.is_centred;
@@ -344,11 +345,12 @@ void Colliders::prefetch_after(const ColliderGroup& group, const dynamics::Syste
 /// @return  how far it moves [m]
 double Colliders::update_poses(ColliderGroup& group, const dynamics::System& system,
                                double time_step) {
+  const double margin = speculative_margin(*this, time_step);
   double fastest = 0;
   if (group.moves) prefetch_after(group, system);
   for (std::size_t i = group.first; i < group.first + group.count; ++i) {
     Collider& collider = all[i];
-    collider.reach = speculative_margin(*this, time_step);
+    collider.reach = margin;
     if (!group.moves) continue;
     set_pose(collider, system.trees[group.entity]);
     const double speed = speed_of(collider);

@@ -45,8 +45,9 @@ struct alignas(64) Collider {
   bool is_present = false;  ///< false: removed; also false of the floor
   bool has_wheels = false;  ///< has wheels: no friction with bodies below or above it
 
-  std::size_t group = 0;  ///< into the broad phase's groups
-  std::size_t link = 0;   ///< into Body::links
+  bool is_turned = false;  ///< in_part is more than a translation
+  std::size_t group = 0;   ///< into the broad phase's groups
+  std::size_t link = 0;    ///< into Body::links
   bool is_on_fixed_base =
       false;  ///< on joints from something that stands: its centre moves on a circle
   bool is_single_body = false;  ///< the only part of a free entity, with its centre at the part's

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "physics/bodies/convert.h"
 #include "physics/collision/contact_limits.h"
@@ -25,7 +26,15 @@ bool is_wheel_contact(const Collider& collider, const btVector3& normal) {
 }
 
 double squared_distance(const math::Vector3& a, const math::Vector3& b) {
-  return (to_bullet(a) - to_bullet(b)).length2();
+  const double x = a.x() - b.x(), y = a.y() - b.y(), z = a.z() - b.z();
+  return x * x + y * y + z * z;
+}
+
+/// Whether all of a collider stays above the floor, beyond its reach.
+bool stays_above_floor(const Collider& collider) {
+  constexpr btScalar rounding = btScalar(1e-9);  // [m]
+  const btScalar extent = collider.pose.getBasis()[2].absolute().dot(collider.half_extents);
+  return collider.pose.getOrigin().z() - extent > collider.reach + rounding;
 }
 
 /// Sets the points of contact of two moving colliders, see dynamics::ContactPoint. Separate
@@ -181,6 +190,7 @@ void ContactCache::collide_pairs(double time_step) {
   constexpr std::size_t block = 32;  // pairs that a thread takes at once
   ++part_;
   time_step_ = time_step;
+  slack_ = speculative_margin(colliders_, time_step);
   rotations_until_impact.clear();
   list_pairs();
   awake_ = 0;
@@ -249,13 +259,17 @@ void ContactCache::collide_pair(std::size_t index, Points& memory) {
   CachedPair& pair = pairs_[listed.pair];
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
-  const double slack = speculative_margin(colliders_, time_step_);
-  contact::Manifold found = collide(a, b, time_step_, slack, most_points, listed.rotation);
-  if (found.count == 0 && !colliders_.predicted.empty()) {
-    found = collide_predicted(colliders_, pair.a, pair.b, time_step_, slack, most_points,
-                              listed.rotation);
+  const bool has_predictions = !colliders_.predicted.empty();
+  if (pair.b == colliders_.floor && !has_predictions && stays_above_floor(a)) {
+    pair.count = 0;
+  } else {
+    contact::Manifold found = collide(a, b, time_step_, slack_, most_points, listed.rotation);
+    if (found.count == 0 && has_predictions) {
+      found = collide_predicted(colliders_, pair.a, pair.b, time_step_, slack_, most_points,
+                                listed.rotation);
+    }
+    match_points(found, pair, memory);
   }
-  match_points(found, pair, memory);
   listed.count = pair.count;
   listed.has_no_contact = pair.count == 0;
 }
@@ -282,14 +296,15 @@ void ContactCache::match_points(const contact::Manifold& found, CachedPair& pair
   constexpr double same = 25e-6;  // points more than 5 mm apart differ [m^2]
   const Collider& a = colliders_.all[pair.a];
   const Collider& b = colliders_.all[pair.b];
-  const int old_count = pair.count;
-  std::copy_n(pair.points.begin(), old_count, old.begin());
+  const int old_count = std::exchange(pair.count, found.count);
+  if (found.count == 0) return;
+  for (int i = 0; i < old_count; ++i) old[i] = pair.points[i];
+  pair.points.make_room(found.count);
   std::array<bool, most_points> taken{};
   // The contact point of a rolling body moves with that body's centre.
   const math::Vector3 with_a = time_step_ * from_bullet(a.velocity),
                       with_b = time_step_ * from_bullet(b.velocity);
-  pair.count = found.count;
-  if (found.count > 0) pair.normal = from_bullet(found.normal);
+  pair.normal = from_bullet(found.normal);
   for (int i = 0; i < found.count; ++i) {
     const contact::ManifoldPoint& point = found.points[i];
     const btVector3 on_a = point.on_b + found.normal * point.distance;
@@ -305,11 +320,12 @@ void ContactCache::match_points(const contact::Manifold& found, CachedPair& pair
     int nearest = -1;
     double least = same;
     for (int j = 0; j < old_count; ++j) {
+      if (taken[j]) continue;
       const double away = std::min({squared_distance(old[j].on_a, now.on_a),
                                     squared_distance(old[j].on_b, now.on_b),
                                     squared_distance(old[j].point + with_a, now.point),
                                     squared_distance(old[j].point + with_b, now.point)});
-      if (!taken[j] && away < least) least = away, nearest = j;
+      if (away < least) least = away, nearest = j;
     }
     if (nearest >= 0) {
       taken[nearest] = true;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <unordered_map>
 #include <utility>
@@ -83,6 +84,22 @@ class ContactCache {
     bool carried = false;  // it had an impulse when it was stepped last
     void archive(math::Archive& archive);
   };
+  /// Points of a pair: few, unless it tumbles.
+  class CachedPoints {
+   public:
+    CachedPoint& operator[](int i) { return i < few ? first_[i] : (*more_)[i - few]; }
+    const CachedPoint& operator[](int i) const { return i < few ? first_[i] : (*more_)[i - few]; }
+    /// Takes memory when a pair has many points for the first time.
+    void make_room(int count) {
+      if (count > few && !more_) more_ = std::make_unique<More>();
+    }
+
+   private:
+    static constexpr int few = 4;
+    using More = std::array<CachedPoint, most_points - few>;
+    std::array<CachedPoint, few> first_;
+    std::unique_ptr<More> more_;
+  };
   // Begins a line of the cache.
   struct alignas(64) CachedPair {
     static constexpr std::size_t prefetched_bytes = 384;  // with two points [bytes]
@@ -96,7 +113,7 @@ class ContactCache {
     math::Vector3 normal{0, 0, 1};
     math::Vector3 earlier_impulse{0, 0, 0};  // impulse in earlier parts of the substep [N s]
     double force_share = 1;                  // of the substep's forces, that acted in its last part
-    std::array<CachedPoint, most_points> points;
+    CachedPoints points;
     void archive(math::Archive& archive);
   };
 
@@ -141,6 +158,7 @@ class ContactCache {
   std::size_t awake_ = 0;               // that the last collide_pairs() saw
   std::unordered_map<std::uint64_t, int>
       places_;               // of pairs by their colliders; not with the floor
+  double slack_ = 0;         // speculative margin of the coming substep or part [m]
   double together_gap_ = 0;  // gap above which touching surfaces meet later in the substep [m]
   double time_step_ = 0;     // of the coming substep or part [s]
   double force_share_ = 1;   // of a substep's forces, that acts in the coming one

@@ -218,14 +218,18 @@ void reduce(Manifold& contacts, const btTransform& frame) {
   btVector3 middle(0, 0, 0);
   for (int i = 0; i < contacts.count; ++i) middle += points[i].on_b;
   middle /= btScalar(contacts.count);
-  std::array<std::pair<btScalar, ManifoldPoint>, 4> ordered;
+  std::array<std::pair<btScalar, int>, 4> ordered;
   for (int i = 0; i < contacts.count; ++i) {
     const btVector3 arm = points[i].on_b - middle;
-    ordered[i] = {turn(arm.dot(across.first), arm.dot(across.second)), points[i]};
+    ordered[i] = {turn(arm.dot(across.first), arm.dot(across.second)), i};
   }
-  sort_few(ordered.data(), ordered.data() + contacts.count,
-           [](const auto& p, const auto& q) { return p.first < q.first; });
-  for (int i = 0; i < contacts.count; ++i) points[i] = ordered[i].second;
+  const auto first = ordered.begin(), last = first + contacts.count;
+  if (std::is_sorted(first, last)) return;
+  for (auto next = first; next != last; ++next)  // of equal angles the first point comes first
+    std::rotate(std::upper_bound(first, next, *next), next, next + 1);
+  std::array<ManifoldPoint, 4> chosen;
+  for (int i = 0; i < contacts.count; ++i) chosen[i] = points[ordered[i].second];
+  std::copy_n(chosen.begin(), contacts.count, points.begin());
 }
 
 }  // namespace ziggurat::physics::contact

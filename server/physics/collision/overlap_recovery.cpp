@@ -23,11 +23,17 @@ bool overlaps_deeply(const contact::Manifold& found) {
 }
 
 /// A coarser bound than predicted_pose_error(), for an angle that rounding makes uncertain by 1e-7.
-double coarse_pose_error(const Collider& moving, const btTransform& now, double time_step) {
-  const btVector3 way = now.getOrigin() - moving.pose.getOrigin() - time_step * moving.velocity;
-  const btMatrix3x3 &before = moving.pose.getBasis(), &after = now.getBasis();
-  const double cosines =
-      before[0].dot(after[0]) + before[1].dot(after[1]) + before[2].dot(after[2]);
+/// @param tree  of the collider, after the substep
+double coarse_pose_error(const Collider& moving, const dynamics::Tree& tree, double time_step) {
+  const Eigen::Matrix3d& turn = tree.rotation[moving.part];
+  math::Vector3 origin = tree.position[moving.part];
+  if (!moving.is_centred) origin += turn * from_bullet(moving.in_part.getOrigin());
+  const btVector3 way = to_bullet(origin) - moving.pose.getOrigin() - time_step * moving.velocity;
+  double cosines = 0;
+  for (int row = 0; row < 3; ++row) {
+    const btVector3& before = moving.pose.getBasis()[row];
+    cosines += before.x() * turn(row, 0) + before.y() * turn(row, 1) + before.z() * turn(row, 2);
+  }
   const double angle = std::sqrt(std::max(0.0, 3 - cosines)) + 1e-7;
   return way.length() + moving.radius * (angle + time_step * moving.angular_velocity.length());
 }
@@ -59,11 +65,10 @@ bool ContactCache::is_off_prediction(const ListedPair& listed,
   if (listed.rotation.may_overlap || listed.rotation.tumbles) return true;
   const Collider& a = colliders_.all[pair.a];
   const Collider& moving = a.moves ? a : colliders_.all[pair.b];
-  const double known =
-      speculative_margin(colliders_, time_step_);  // with which contacts were found
-  const btTransform now = colliders_.pose(moving, system);
-  return coarse_pose_error(moving, now, time_step_) > known &&
-         predicted_pose_error(moving, now, time_step_) > known;
+  const dynamics::Tree& tree = system.trees[moving.entity];
+  // Contacts were found with the slack.
+  if (!moving.is_turned && coarse_pose_error(moving, tree, time_step_) <= slack_) return false;
+  return predicted_pose_error(moving, colliders_.pose(moving, system), time_step_) > slack_;
 }
 
 std::span<dynamics::ContactPoint> ContactCache::find_new_overlaps(const dynamics::System& system) {

@@ -6,8 +6,6 @@
 // All take the poses of the shapes' frames in the world and fill `out` with points no farther apart
 // than `reach`.
 
-#include <algorithm>
-
 #include "physics/collision/features.h"
 
 namespace ziggurat::physics::contact {
@@ -69,13 +67,5 @@ inline void contact_points(const HalfSpace&, const HalfSpace&, const PosedPair&,
 /// The same contacts seen from the other side: normal turned round, points moved to the
 /// surface of what was A.
 void swap_sides(Manifold& contacts);
-
-/// A stable sort for a handful of items. std::stable_sort allocates, each time it is called.
-template <class Item, class Less>
-void sort_few(Item* first, Item* last, Less less) {
-  for (Item* next = first; next != last; ++next) {
-    std::rotate(std::upper_bound(first, next, *next, less), next, next + 1);
-  }
-}
 
 }  // namespace ziggurat::physics::contact
