@@ -19,7 +19,7 @@ run::Options run(const Arguments& arguments) { return parse_options(arguments, r
 TEST(Options, DefaultsAreThoseOfTheHelp) {
   const auto options = run({"scene.argos"});
   EXPECT_EQ(run::only_scene(options), "scene.argos");
-  EXPECT_EQ(options.lua_processes, 1u);
+  EXPECT_EQ(options.lua_processes, std::nullopt);
   EXPECT_EQ(options.threads, 0u) << "chosen by the world";
   EXPECT_EQ(options.scene_file.max_size, std::size_t{64} << 20);
   EXPECT_FALSE(options.ticks || options.duration || options.seed || options.scene_file.clock ||
