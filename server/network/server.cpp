@@ -157,8 +157,7 @@ Outcome Server::State::wait_until(Done done, const Wait& wait, world::Commands* 
     if (barrier.calls.has_news()) return Outcome::woken;  // the caller answers
     looked = Clock::now();
     const auto rest = std::chrono::ceil<milliseconds>(std::min(end, next_event()) - looked);
-    const std::size_t awaited = commands == nullptr ? 0 : barrier.gate.owing();
-    const auto ready = socket.poll(std::max(rest, milliseconds{0}), wait.descriptors, awaited);
+    const auto ready = socket.poll(std::max(rest, milliseconds{0}), wait.descriptors);
     if (ready == Socket::Ready::woken) return Outcome::woken;
     if (Clock::now() >= end) {
       barrier.now = Clock::now();

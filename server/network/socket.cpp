@@ -228,19 +228,7 @@ void Socket::tend() {
   for (Entrance& entrance : entrances_) entrance.set_accepting(peers_.others(), true);
 }
 
-int Socket::wait_for_polled(milliseconds timeout, std::size_t awaited) {
-  constexpr milliseconds most{std::numeric_limits<int>::max()};
-  const auto look = [&](milliseconds time) {
-    return ::poll(polled_.data(), polled_.size(), static_cast<int>(time.count()));
-  };
-  int count = 0;
-  const bool is_done = timeout.count() > 0 && awake_wait_.is_worth_it(awaited) &&
-                       awake_wait_.until([&] { return (count = look(milliseconds{0})) != 0; });
-  return is_done ? count : look(std::min(timeout, most));
-}
-
-Socket::Ready Socket::poll(milliseconds timeout, std::span<const int> descriptors,
-                           std::size_t awaited) {
+Socket::Ready Socket::poll(milliseconds timeout, std::span<const int> descriptors) {
   handled();
   const bool serves_others = may_serve_others();
   const auto has_more = [](const Group& group) {
@@ -263,7 +251,9 @@ Socket::Ready Socket::poll(milliseconds timeout, std::span<const int> descriptor
                   {serves_others ? others_.list.number() : -1, POLLIN, 0}});
   const std::size_t ours = polled_.size();
   for (const int descriptor : descriptors) polled_.push_back({descriptor, POLLIN, 0});
-  const int count = wait_for_polled(timeout, awaited);
+  const auto longest = milliseconds(std::numeric_limits<int>::max());
+  const int count =
+      ::poll(polled_.data(), polled_.size(), static_cast<int>(std::min(timeout, longest).count()));
   if (count < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category(), "poll");
   if (count < 0) return Ready::woken;
   for (std::size_t i = ours; i < polled_.size(); ++i) {

@@ -20,7 +20,6 @@
 #include <string_view>
 #include <vector>
 
-#include "network/awake_wait.h"
 #include "network/config.h"
 #include "network/limits.h"
 #include "network/link.h"
@@ -84,9 +83,7 @@ class Socket {
 
   enum class Ready { message, woken, timed_out };
   /// Waits for a message, a readable descriptor, a signal, or the end of the time.
-  /// @param awaited  answers of a tick that are to come
-  Ready poll(std::chrono::milliseconds timeout, std::span<const int> descriptors,
-             std::size_t awaited = 0);
+  Ready poll(std::chrono::milliseconds timeout, std::span<const int> descriptors);
 
   /// Sentences for people since the last call.
   std::vector<std::string> take_notices(Time now) { return peers_.take_notices(now); }
@@ -117,8 +114,6 @@ class Socket {
   void listen(const std::string& endpoint, Trust trust);
   Delivery send(const std::string& connection, std::size_t size, MessageKind kind,
                 const auto& write);
-  /// Number of descriptors of polled_ that are ready; negative for a fault.
-  int wait_for_polled(std::chrono::milliseconds timeout, std::size_t awaited);
   bool may_serve_others() const { return !is_ticking_ || Clock::now() >= others_wait_until_; }
   Group* next_group();
   bool look_at(Group& group, Received& received);
@@ -142,7 +137,6 @@ class Socket {
   Time others_wait_until_;
   std::optional<ThreadClock::time_point> other_since_;  // when what is done for one began
   int members_in_a_row_ = 0;                            // looks at them
-  AwakeWait awake_wait_;
   Buffer frame_;
   std::vector<pollfd> polled_;
 };

@@ -53,8 +53,6 @@ class TickGate {
 
   /// A session is_owed an answer.
   bool is_owed() const { return owing_ > 0; }
-  /// Number of sessions that owe an answer.
-  std::size_t owing() const { return owing_; }
   /// No session is_owed an answer, and no free robot or director is waited for.
   bool is_answered() const {
     return !is_owed() && !robots_.is_awaited() && !directors_.is_awaited();
