@@ -231,28 +231,22 @@ LOOKING = """
 <lua_controller id="look">
   <actuators/>
   <sensors>
-    <cameras implementation="default" show_frustum="false">
-      <camera id="camera" range="0.05:0.8" resolution="640, 360" anchor="base" position="0.06, 0, 0.03"
-              orientation="-90, 90, 0" focal_length="884, 884" principal_point="320, 180">
-        <tag_detector medium="tags" show_rays="false"/>
-      </camera>
-    </cameras>
+    <cameras implementation="default" show_frustum="false">{camera}</cameras>
   </sensors>
-  <params script="look.lua"/>
+  <params script="{script}"/>
 </lua_controller>
 """
 
-PICTURING = """
-<lua_controller id="look">
-  <actuators/>
-  <sensors>
-    <cameras implementation="default" show_frustum="false">
-      <camera id="camera" range="0.05:8" resolution="640, 480" anchor="base" position="0.06, 0, 0.2"
-              orientation="-90, 90, 15" focal_length="600, 600" principal_point="320, 240" image="true"/>
-    </cameras>
-  </sensors>
-  <params script="blink.lua"/>
-</lua_controller>
+TAG_CAMERA = """
+<camera id="camera" range="0.05:0.8" resolution="640, 360" anchor="base" position="0.06, 0, 0.03"
+        orientation="-90, 90, 0" focal_length="884, 884" principal_point="320, 180">
+  <tag_detector medium="tags" show_rays="false"/>
+</camera>
+"""
+
+PICTURE_CAMERA = """
+<camera id="camera" range="0.05:8" resolution="640, 480" anchor="base" position="0.06, 0, 0.2"
+        orientation="-90, 90, 15" focal_length="600, 600" principal_point="320, 240" image="true"/>
 """
 
 BLINK = """\
@@ -284,7 +278,8 @@ def cameras(count):
         entities.append(CAMERA_ROBOT.format(number=i, x=x, y=y))
         entities += [TARGET.format(robot=i, number=j, x=x + 0.45, y=y + 0.05 * (j - 2)) for j in range(5)]
     tree = bare(columns + 2, "".join(entities))
-    tree.find("controllers").append(ElementTree.fromstring(LOOKING.strip()))
+    controller = LOOKING.format(camera=TAG_CAMERA, script="look.lua")
+    tree.find("controllers").append(ElementTree.fromstring(controller.strip()))
     ElementTree.SubElement(tree.find("media"), "tag", id="tags")
     return tree
 
@@ -297,6 +292,7 @@ def pictures(targets):
     entities += [TARGET.format(robot=0, number=j, x=0.1 * (j // columns), y=0.1 * (j % columns - (columns - 1) / 2))
                  for j in range(targets)]
     tree = bare(0.2 * columns + 4, "".join(entities))
-    tree.find("controllers").append(ElementTree.fromstring(PICTURING.strip()))
+    controller = LOOKING.format(camera=PICTURE_CAMERA, script="blink.lua")
+    tree.find("controllers").append(ElementTree.fromstring(controller.strip()))
     ElementTree.SubElement(tree.find("media"), "tag", id="tags")
     return tree

@@ -13,7 +13,7 @@ namespace ziggurat::lua {
 namespace {
 
 struct Forbidden {
-  const char* library;
+  const char* table;
   const char* name;
 };
 // Functions of debug reach into other functions and into the registry, and can remove the hook that
@@ -36,7 +36,7 @@ template <std::size_t i>
 int refuse(lua_State* state) {
   return luaL_error(
       state, "%s.%s is not allowed for scripts that are not trusted; --trust-scripts allows it",
-      forbidden[i].library, forbidden[i].name);
+      forbidden[i].table, forbidden[i].name);
 }
 
 /// Lets forbidden functions raise errors.
@@ -44,7 +44,7 @@ template <std::size_t... i>
 void forbid(lua_State* state, std::index_sequence<i...>) {
   constexpr lua_CFunction functions[] = {refuse<i>...};
   for (std::size_t k = 0; k < forbidden.size(); ++k) {
-    lua_getglobal(state, forbidden[k].library);
+    lua_getglobal(state, forbidden[k].table);
     lua_pushcfunction(state, functions[k]);
     lua_setfield(state, -2, forbidden[k].name);
     lua_pop(state, 1);

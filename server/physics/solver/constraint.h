@@ -56,7 +56,7 @@ struct Servo {
   Motion direction;             ///< world axes; the linear part at the link's centre of mass
   double target_velocity = 0;   ///< at the end of the substep [rad/s] or [m/s]
   double lower = 0, upper = 0;  ///< of the impulse [N m s] or [N s]; lower <= 0 <= upper
-  double impulse = 0;           ///< in: of the last substep; out: of this one
+  double impulse = 0;           ///< in: a first estimate; out: of this substep
   /// Link of another tree that the opposite impulse acts on, if there is one: then the speed is
   /// that of `link` relative to it, where both are at `point`, and `direction` is linear.
   LinkIndex other;
