@@ -60,7 +60,7 @@ struct Workspace {
 /// functions need it, for the same tree.
 void compute_mass_matrix(const Tree& tree, Workspace& work);
 
-/// out += factor M v, two entries at a time: M is symmetric.
+/// out += factor M v, column by column: M is symmetric.
 /// @param mass  n x n
 void add_momentum(const double* mass, double factor, const double* v, int n, double* out);
 
